@@ -1,4 +1,4 @@
-//! Every question asked of every case, by each kind of time: the runs that answer, over time and error.
+//! Questions put to every case, for each kind of time: the runs that answer, with their time and error.
 
 use crate::figures::chosen;
 use crate::fronts::{Clock, QUESTIONS, Question, WANTED, band, counts, point};
@@ -6,20 +6,20 @@ use crate::record::{Family, Purpose};
 use crate::seconds::Seconds;
 use crate::select::{Run, Series, kernels, labels, series};
 
-/// One run that answers.
+/// A run that answers a question.
 #[derive(Clone, Debug)]
 pub(crate) struct Timed {
     pub(crate) run: String,
     pub(crate) seconds: f64,
-    /// Half the range in which the middle half of the repeats lies, seconds.
+    /// Half the interquartile range of the repeats, s.
     pub(crate) spread: Option<f64>,
-    /// Relative.
+    /// Relative error.
     pub(crate) error: f64,
-    /// The error as which it counts: [`counts`].
+    /// Effective error of the answer: [`counts`].
     pub(crate) counts: f64,
 }
 
-/// One approximation at its sizes.
+/// An approximation at all its sizes.
 #[derive(Clone, Debug)]
 pub(crate) struct Line {
     pub(crate) label: String,
@@ -27,29 +27,29 @@ pub(crate) struct Line {
     pub(crate) runs: Vec<Timed>,
 }
 
-/// One question to one case.
+/// One question put to one case.
 pub(crate) struct Ask {
     pub(crate) case: String,
     pub(crate) poisson: f64,
     pub(crate) title: String,
     pub(crate) question: &'static Question,
     pub(crate) clock: Clock,
-    /// The seconds of a first solve.
+    /// The quantity of the times of a first solve.
     pub(crate) by: Seconds,
-    /// The quantity that measures it.
+    /// The quantity that measures the error.
     pub(crate) error: &'static str,
     pub(crate) lines: Vec<Line>,
-    /// The method that the others are compared with: having no error, it has no place on the axes.
+    /// Method that the others are compared with. It has no error and so no place on the axes.
     pub(crate) reference: Option<String>,
-    /// The reference's own error, relative, where it is known.
+    /// Relative error of the reference itself, if known.
     pub(crate) band: Option<f64>,
-    /// Whether it compares kernels alone.
+    /// Whether only kernels are compared.
     pub(crate) kernels: bool,
     pub(crate) rank: Rank,
 }
 
 impl Ask {
-    /// Label of the time axis, in seconds.
+    /// Label of the time axis, with its unit.
     pub(crate) fn time(&self) -> String {
         match self.clock {
             Clock::First => format!("{} [s]", self.by.name()),
@@ -58,12 +58,13 @@ impl Ask {
     }
 }
 
-/// A page and its figures begin with the case that many methods compete in, most of all one for what a tool feels that tests what a
-/// publication claims, and that some run answers within [`WANTED`]; a reading of a publication is compared with its numbers, not judged.
+/// Sort key of the questions of a page and its figures. Cases in which many methods compete come first, above
+/// all those with a tool force that test a published claim and that some run answers within [`WANTED`]. Cases
+/// that reproduce a publication are compared with its numbers rather than judged.
 pub(crate) type Rank = (bool, bool, bool, bool, usize);
 
-/// All that at least two runs answer. Where many kernels are compared, a further one for them, once: for the displacement of a first
-/// solve.
+/// All questions that at least two runs answer. If many kernels are compared, they have an additional
+/// question for the displacement of a first solve.
 pub(crate) fn asks(runs: &[Run]) -> Vec<Ask> {
     let mut out = Vec::new();
     for clock in Clock::ALL {
@@ -103,7 +104,7 @@ pub(crate) fn asks(runs: &[Run]) -> Vec<Ask> {
             out.extend(asked.into_iter().chain(compared));
         }
     }
-    // One run alone is neither faster nor better than another.
+    // A single run has nothing to be compared with.
     out.retain(|a| runs_of(&a.lines) > 1);
     out
 }
@@ -162,7 +163,7 @@ mod tests {
             };
             errors.iter().enumerate().flat_map(run).collect()
         };
-        // More runs answer the other case, none of them within what is wanted; by chance does not count.
+        // More runs answer the other case, but none within the wanted error; a chance hit does not count.
         let begins = |records: &[Record]| {
             let runs = runs(records);
             let first = asks(&runs).into_iter().max_by_key(|ask| ask.rank).unwrap();

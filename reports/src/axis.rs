@@ -1,10 +1,10 @@
-//! A scene driven along an axis: how each method fares, from value to value.
+//! A scene varied along an axis: the outcome of each method at each value.
 
 use serde::{Deserialize, Serialize};
 
 use crate::text::significant;
 
-/// Below this no error is called twice as large as another: there rounding decides.
+/// Errors below this are dominated by rounding, so a doubling is not reported.
 const ROUNDING: f64 = 1e-6;
 
 /// One axis of one case.
@@ -12,23 +12,23 @@ const ROUNDING: f64 = 1e-6;
 pub struct Axis {
     /// Case name.
     pub case: String,
-    /// What is driven.
+    /// Name of the varied quantity.
     pub name: String,
-    /// Unit of its values; empty for a bare number.
+    /// Unit of the values; empty for a dimensionless number.
     pub unit: String,
-    /// Its values, in their order.
+    /// Values, in order.
     pub values: Vec<f64>,
-    /// The value that errors are compared with.
+    /// Value whose errors the others are compared with.
     pub base: f64,
-    /// The metric that judges.
+    /// Quantity of the error that decides.
     pub judge: String,
-    /// From this error on a result is wrong.
+    /// Error from which a result is wrong.
     pub wrong: f64,
-    /// What became of each method at each value.
+    /// Outcome of each method at each value.
     pub trials: Vec<Trial>,
 }
 
-/// One method at one value.
+/// Outcome of one method at one value.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Trial {
     /// Method id.
@@ -37,11 +37,11 @@ pub struct Trial {
     pub value: f64,
     /// How the run ended.
     pub ended: Ended,
-    /// The error that judges, where it gave one.
+    /// The deciding error, if the run has one.
     pub error: Option<f64>,
-    /// Codes of its warnings.
+    /// Codes of the warnings.
     pub warnings: Vec<String>,
-    /// Why it has no numbers, or those of a part of the load; empty otherwise.
+    /// Reason for missing numbers, or for those of a partial load; empty otherwise.
     pub reason: String,
 }
 
@@ -49,32 +49,32 @@ pub struct Trial {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Ended {
-    /// With the whole load.
+    /// The whole load was reached.
     Whole,
-    /// With a part of it, and says so.
+    /// A part of the load was reached, and this was reported.
     Early,
-    /// Without numbers, and says why.
+    /// There are no numbers, and the reason was reported.
     Refused,
 }
 
-/// What a trial comes to.
+/// Verdict on a trial.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Verdict {
-    /// Not much worse than at the base.
+    /// Not much worse than at the base value.
     Holds,
-    /// Twice the error at the base, or more.
+    /// At least twice the error at the base value.
     Bends,
     /// Wrong, with a warning.
     Warned,
-    /// It ended early or was refused, and said so.
+    /// Ended early or refused, and reported as such.
     Refused,
-    /// Wrong without a word.
+    /// Wrong without a warning.
     Silent,
 }
 
 impl Verdict {
-    /// The word in tables.
+    /// Name in tables.
     pub fn name(self) -> &'static str {
         match self {
             Verdict::Holds => "holds",
@@ -86,12 +86,12 @@ impl Verdict {
     }
 }
 
-/// Errors that part the classes of a map, below that from which a result is wrong.
+/// Boundaries of the error classes of a map, below the error from which a result is wrong.
 const CLASSES: [f64; 2] = [0.01, 0.05];
 
 impl Axis {
-    /// Meaning of the colours of a map: classes of error that is not wrong, the best first, then the ways of
-    /// being wrong.
+    /// Names of the classes of a map: the classes of errors that are not wrong, the best first, followed by
+    /// the kinds of wrong results.
     pub(crate) fn classes(&self) -> Vec<String> {
         let ends = self.ends();
         let per_cent = |e: f64| significant(100.0 * e, 1 + usize::from(e >= 0.1));
@@ -101,7 +101,7 @@ impl Axis {
         out
     }
 
-    /// The class of a trial, by its place in [`classes`](Self::classes).
+    /// Class of a trial, as an index into [`classes`](Self::classes).
     pub(crate) fn class(&self, trial: &Trial) -> usize {
         let ends = self.ends();
         match self.verdict(trial) {
@@ -115,7 +115,7 @@ impl Axis {
         }
     }
 
-    /// The upper end of each class of error that is not wrong.
+    /// Upper bound of each class of errors that are not wrong.
     fn ends(&self) -> Vec<f64> {
         CLASSES.into_iter().filter(|end| *end < self.wrong).chain([self.wrong]).collect()
     }
@@ -131,18 +131,18 @@ impl Axis {
         out
     }
 
-    /// One method's trial at one value.
+    /// Trial of a method at a value.
     pub fn trial(&self, method: &str, value: f64) -> Option<&Trial> {
         self.trials.iter().find(|t| t.method == method && t.value == value)
     }
 
-    /// What a trial comes to.
+    /// Verdict on a trial.
     pub fn verdict(&self, trial: &Trial) -> Verdict {
-        // A run that gave no such number is no result either.
+        // A complete run without the deciding error is not a result either.
         let Some(error) = trial.error.filter(|_| trial.ended == Ended::Whole) else {
             return if trial.ended == Ended::Whole { Verdict::Silent } else { Verdict::Refused };
         };
-        // Written so that a NaN is wrong.
+        // The comparison is written so that NaN counts as wrong.
         if !(error < self.wrong) {
             return if trial.warnings.is_empty() { Verdict::Silent } else { Verdict::Warned };
         }
@@ -151,14 +151,14 @@ impl Axis {
         if bends { Verdict::Bends } else { Verdict::Holds }
     }
 
-    /// Number of a method's trials that are wrong without a word.
+    /// Number of a method's trials that are wrong without a warning.
     pub fn silent(&self, method: &str) -> usize {
         let own = self.trials.iter().filter(|t| t.method == method);
         own.filter(|t| self.verdict(t) == Verdict::Silent).count()
     }
 
-    /// The first value, from the base on towards `up` (to the end of the list) or back, at which a method is no better than
-    /// `verdict`.
+    /// The first value at which a method's verdict is `verdict` or worse. The search starts at the base and
+    /// goes to the end of the list if `up`, otherwise to its beginning.
     pub fn first(&self, method: &str, verdict: Verdict, up: bool) -> Option<f64> {
         let base = self.values.iter().position(|v| *v == self.base)?;
         let way: Vec<f64> = match up {

@@ -1,103 +1,104 @@
-//! A body's surface at recorded states, for a view in three dimensions: single precision, packed as text.
+//! A body's surface at recorded states for a three-dimensional view, in single precision and packed as text.
 
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use serde::{Deserialize, Serialize};
 
-/// The surface of a body, as its elements have it: faces of quadratic ones are curved.
+/// Surface of a body, composed of element faces; the faces of quadratic elements are curved.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Body {
-    /// Coordinates of its points in the reference configuration, metres: [`pack`]ed.
+    /// Coordinates of the points in the reference configuration (m), [`pack`]ed.
     pub points: String,
     /// Faces by their number of nodes.
     pub faces: Vec<Faces>,
-    /// How far each point is from where the reference or the exact solution has it at the end, metres,
-    /// packed; empty where neither is known.
+    /// Distance (m) of each point from its position in the reference or exact solution at the end, packed;
+    /// empty if neither is known.
     #[serde(default)]
     pub off: String,
-    /// Values shown by a cut through the body; `None` if they were left out.
+    /// Values on a cut through the body; `None` if they were omitted.
     #[serde(default)]
     pub inside: Option<Inside>,
-    /// Nodes of a cloud at the end, metres, packed; empty for elements, whose nodes their faces show.
+    /// Positions (m) of cloud nodes at the end, packed; empty for elements, whose faces show the nodes.
     #[serde(default)]
     pub cloud: String,
-    /// The tools where they start.
+    /// Tools at their start.
     pub tools: Vec<Skin>,
-    /// States kept of the run, in order; the last is its end.
+    /// Recorded states of the run, in order; the last is the end.
     pub states: Vec<BodyState>,
-    /// Number of states that were left out, evenly.
+    /// Number of states omitted at regular intervals.
     pub left_out: usize,
 }
 
-/// The cells of a body, with its points that are on no face.
+/// Cells of a body, and the points that are on no face.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Inside {
-    /// Coordinates of these points in the reference configuration, metres, packed.
+    /// Coordinates (m) of the interior points in the reference configuration, packed.
     pub points: String,
-    /// Cells by their number of nodes (4, 8, 10 or 20), of the points on faces and then these.
+    /// Cells by their number of nodes (4, 8, 10 or 20). Indices refer to the points on faces, followed by the
+    /// interior points.
     pub cells: Vec<Faces>,
-    /// At each state of the body.
+    /// Values at each state of the body.
     pub states: Vec<InsideState>,
 }
 
-/// Points that are on no face at a state.
+/// Interior points at one state.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct InsideState {
-    /// Displacement of each, metres, packed.
+    /// Displacement of each point (m), packed.
     pub u: String,
-    /// As those of the points on faces.
+    /// Values as in [`BodyState::values`].
     pub values: Option<[String; 3]>,
 }
 
 /// Faces, or cells, of one kind.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Faces {
-    /// Nodes of each: 3, 4, 6 or 8 of faces, corners first, then the middles of edges.
+    /// Number of nodes of each; 3, 4, 6 or 8 for faces, corners first, then mid-edge nodes.
     pub nodes: usize,
-    /// Their points, packed.
+    /// Indices of the points, packed.
     pub indices: String,
 }
 
-/// A tool's surface.
+/// Surface of a tool.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Skin {
-    /// Metres, packed.
+    /// Positions of the points (m), packed.
     pub points: String,
-    /// Four corners each, packed.
+    /// Four corners of each quadrilateral, packed.
     pub quads: String,
-    /// Unit direction of its way.
+    /// Unit vector of the tool's travel.
     pub along: [f64; 3],
 }
 
-/// A state.
+/// State of a body.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct BodyState {
-    /// Time (s) in dynamics, part of the load in statics.
+    /// Time (s) in dynamics, load fraction in statics.
     pub time: f64,
     /// Displacement of each point, metres, packed.
     pub u: String,
-    /// Way of each tool from its start, metres.
+    /// Travel of each tool from its start, m.
     pub closures: Vec<f64>,
-    /// Contact points that lie within a tool: three coordinates and the depth of each, metres, packed.
+    /// Contact points inside a tool: three coordinates and the penetration depth of each (m), packed.
     #[serde(default)]
     pub touching: String,
-    /// How deep the deepest point of the body lies within a tool, metres: contact does not act there.
+    /// Largest depth (m) of a node inside a tool, where contact does not act.
     #[serde(default)]
     pub deepest_node: f64,
     /// Pressure (Pa, positive in compression), von Mises stress (Pa) and determinant of the deformation
-    /// gradient at each point, packed, where they are known.
+    /// gradient at each point, packed, if known.
     pub values: Option<[String; 3]>,
 }
 
-/// Numbers as base64 of their four bytes each, the lowest first.
+/// Encodes numbers as base64 of their four bytes each, least significant byte first.
 pub fn pack<T: Word>(numbers: impl IntoIterator<Item = T>) -> String {
     let bytes: Vec<u8> = numbers.into_iter().flat_map(Word::bytes).collect();
     STANDARD.encode(bytes)
 }
 
-/// What is packed.
+/// A number that can be packed.
 pub trait Word {
-    /// The four bytes, the lowest first.
+    /// Returns the four bytes, least significant byte first.
     fn bytes(self) -> [u8; 4];
 }
 

@@ -1,23 +1,23 @@
-//! Texts in cells of CSV: a spreadsheet takes one that begins with `=`, `+`, `-` or `@` for a formula and
-//! runs it.
+//! Text cells of CSV. A spreadsheet interprets a text that begins with `=`, `+`, `-` or `@` as a formula and
+//! evaluates it.
 
 use std::borrow::Cow;
 
-/// Stands in front of such a text; a spreadsheet shows the rest.
+/// Prefix of a guarded text; a spreadsheet shows only the rest.
 const GUARD: char = '\'';
 
-/// Whether a text is a formula to a spreadsheet, be it behind guards of its own.
+/// Whether a spreadsheet would interpret the text, without its leading guards, as a formula.
 fn is_formula(text: &str) -> bool {
     text.trim_start_matches(GUARD).starts_with(['=', '+', '-', '@', '\t', '\r'])
 }
 
-/// The text as a cell: guarded if it is a formula. Numbers stay as they are.
+/// Text as a cell, guarded if it is a formula. Numbers are unchanged.
 pub(crate) fn guarded(text: &str) -> Cow<'_, str> {
     let safe = !is_formula(text) || text.parse::<f64>().is_ok();
     if safe { text.into() } else { format!("{GUARD}{text}").into() }
 }
 
-/// The text of a cell.
+/// Text of a cell, without its guard.
 pub(crate) fn unguarded(cell: &str) -> &str {
     cell.strip_prefix(GUARD).filter(|text| is_formula(text)).unwrap_or(cell)
 }

@@ -1,5 +1,5 @@
-//! Published claims that one kind of method is better than another, each as scenes, methods, relations and tolerances, held against
-//! results.
+//! Published claims that one kind of method is better than another, tested against results. A claim consists
+//! of scenes, methods, relations and tolerances.
 
 use std::path::Path;
 
@@ -14,22 +14,22 @@ use crate::seconds::decide;
 use crate::select::{Run, runs, solved};
 use crate::text::significant;
 
-/// What results say of a claim.
+/// Verdict of the results on a claim.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum ClaimVerdict {
     /// Every relation holds in every scene.
     Validated,
-    /// Some hold, or hold at some errors only, or some have no runs.
+    /// Some relations hold, hold only at some errors, or have no runs.
     Qualified,
-    /// None holds at any error.
+    /// No relation holds at any error.
     Refuted,
-    /// The results have no runs to judge it by.
+    /// The results contain no runs that test the claim.
     Untested,
 }
 
 impl ClaimVerdict {
-    /// The word in files and on a terminal.
+    /// Name in files and on a terminal.
     pub fn name(self) -> &'static str {
         match self {
             ClaimVerdict::Validated => "validated",
@@ -46,13 +46,13 @@ impl ClaimVerdict {
 pub struct Claim {
     /// Short name.
     pub id: String,
-    /// Who claims it, and where.
+    /// Source of the claim.
     pub source: String,
-    /// What is claimed, in a sentence.
+    /// The claim in one sentence.
     pub says: String,
-    /// Scenes that test it, by the names of their files without their ending.
+    /// Scenes that test the claim, by file name without suffix.
     pub scenes: Vec<String>,
-    /// What the results of this project are expected to say; another verdict is an error.
+    /// Verdict expected from the results of this project; another verdict is an error.
     #[serde(default)]
     pub expect: Option<ClaimVerdict>,
     left: Side,
@@ -60,7 +60,7 @@ pub struct Claim {
     relation: Vec<Relation>,
 }
 
-/// Which methods: of a family, or by their ids; of a family those with these ids.
+/// Methods on one side of a claim, selected by family, by id, or by both.
 #[derive(Clone, Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Side {
@@ -76,33 +76,34 @@ impl Side {
     }
 }
 
-/// What is compared.
+/// Kind of comparison.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 enum Kind {
-    /// The least error of the left over that of the right.
+    /// Smallest error of the left side over that of the right side.
     ErrorRatio,
-    /// The least time of the left over that of the right at equal errors, at every error that both reach.
+    /// Smallest time of the left side over that of the right side at equal errors, for every error that both
+    /// reach.
     TimeRatio,
 }
 
-/// One comparison.
+/// A comparison between the two sides of a claim.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Relation {
     kind: Kind,
-    /// Relative error, by its name in records.
+    /// Name of the relative error in records.
     error: String,
     at_most: f64,
-    /// Part by which the bound may be passed.
+    /// Relative tolerance of the bound.
     #[serde(default)]
     tolerance: f64,
 }
 
-/// A claim with what became of it.
+/// A claim with its verdict.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Judged {
-    /// What the results say.
+    /// Verdict of the results.
     pub verdict: ClaimVerdict,
     /// A line for each scene and relation.
     pub lines: Vec<String>,
@@ -117,7 +118,7 @@ struct File {
 /// Reads a file of claims.
 ///
 /// # Errors
-/// A file that can't be read, or is none of claims, with the line.
+/// A file that cannot be read or is not a file of claims, with the line.
 pub fn read_claims(path: &Path) -> Result<Vec<Claim>, ReportError> {
     let content = |reason: String| ReportError::Content { path: path.into(), reason };
     let text = disk::read_text(path, disk::Kind::SCENE).map_err(|bad| content(bad.to_string()))?;
@@ -133,7 +134,7 @@ pub fn read_claims(path: &Path) -> Result<Vec<Claim>, ReportError> {
 }
 
 impl Claim {
-    /// Judges it by the runs of its scenes.
+    /// Judges the claim by the runs of its scenes.
     pub fn judge(&self, set: &RunSet) -> Judged {
         let mut all = runs(&set.records);
         decide(&mut all, &set.provenance.machine);
@@ -147,7 +148,7 @@ impl Claim {
                 held.push(found);
             }
         }
-        // One relation without runs keeps a claim from being validated or refuted as a whole.
+        // A single relation without runs prevents the claim from being validated or refuted as a whole.
         let all = |wanted: Option<Held>| held.iter().all(|found| *found == wanted);
         let verdict = if all(None) {
             ClaimVerdict::Untested
@@ -162,17 +163,18 @@ impl Claim {
     }
 }
 
-/// Where a relation holds.
+/// Extent to which a relation holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Held {
     Always,
-    /// At some errors.
+    /// Holds at some errors only.
     Partly,
     Never,
 }
 
 impl Relation {
-    /// Whether it holds among runs, `None` where there is nothing to compare, and a line that says so.
+    /// Compares the runs of the two sides, and returns the extent to which the relation holds (`None` if
+    /// there is nothing to compare) and a line that reports the result.
     fn holds(&self, runs: &[&Run], left: &Side, right: &Side) -> (Option<Held>, String) {
         let points = |side: &Side| -> Vec<(f64, f64)> {
             let own = runs.iter().filter(|run| side.takes(run.is));
@@ -249,7 +251,7 @@ at_most = 0.01
         let fem = [
             run(("tet4", Family::Fem), 100, 10.0, &[("relative-rms", 0.2)]),
             run(("hex20", Family::Fem), 200, 1000.0, &[("relative-rms", 0.1)]),
-            // Not among the methods that the claim is about.
+            // A method outside of the claim.
             run(("hex8", Family::Fem), 200, 1e-3, &[("relative-rms", 0.01)]),
         ];
         let cloud = run(("efg", Family::Efg), 83, efg, &[("relative-rms", error)]);
@@ -260,7 +262,7 @@ at_most = 0.01
     #[test]
     fn a_claim_is_validated_qualified_refuted_or_untested() {
         assert_eq!(judged(0.05, 0.105).verdict, ClaimVerdict::Validated);
-        // Cheap enough beside hex20, not beside tet4; or cheap and not as accurate.
+        // Either cheap enough compared with hex20 but not with tet4, or cheap but less accurate.
         assert_eq!(judged(5.0, 0.1).verdict, ClaimVerdict::Qualified);
         assert_eq!(judged(0.05, 0.15).verdict, ClaimVerdict::Qualified);
         let refuted = judged(500.0, 0.15);
@@ -272,7 +274,7 @@ at_most = 0.01
                 "jaws: time at equal error (relative-rms) 0.50 to 50 times as large, claimed at most 0.010: does not hold",
             ]
         );
-        // What holds in one scene is not validated by another that nobody has run.
+        // A claim that holds in one scene is not validated if another scene has no runs.
         let twice = CLAIM.replace("[\"jaws\"]", "[\"jaws\", \"liver\"]");
         assert_eq!(judged_of(&twice, 0.05, 0.105).verdict, ClaimVerdict::Qualified);
         let untested = claims(CLAIM).unwrap()[0].judge(&RunSet::default());

@@ -1,11 +1,11 @@
-//! Runs that differ by the seed of their cloud only: how far a result depends on where nodes happen to stand.
+//! Runs that differ only in the seed of their cloud, which show how results depend on node placement.
 
 use crate::select::Run;
 
-/// Many clouds of one method, its seeds ascending.
+/// Runs of one method on many clouds, with ascending seeds.
 pub(crate) type Clouds<'a> = Vec<Run<'a>>;
 
-/// The runs that are shown everywhere else, one cloud of each method, and the groups of several.
+/// Splits runs into those shown elsewhere, one cloud per method, and the groups of several clouds.
 pub(crate) fn part<'a>(runs: &[Run<'a>]) -> (Vec<Run<'a>>, Vec<Clouds<'a>>) {
     let mut groups: Vec<Clouds> = Vec::new();
     for run in runs {
@@ -31,7 +31,8 @@ fn same_but_seed(a: &Run, b: &Run) -> bool {
         && x.poisson.total_cmp(&y.poisson).is_eq()
 }
 
-/// Least, lower quartile, median, upper quartile and most of a quantity over the clouds that have it, and their number.
+/// Minimum, lower quartile, median, upper quartile and maximum of a quantity over the clouds that have it,
+/// and their number.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Spread {
     pub(crate) count: usize,
@@ -39,13 +40,13 @@ pub(crate) struct Spread {
 }
 
 impl Spread {
-    /// Of the runs that carried all of their load; `None` without any.
+    /// Computes the quantiles over the runs that reached their whole load; `None` without any.
     pub(crate) fn of(clouds: &[Run], quantity: &str) -> Option<Spread> {
         let mut values: Vec<f64> =
             clouds.iter().filter(|run| run.whole()).filter_map(|run| run.value(quantity)).collect();
         values.sort_by(f64::total_cmp);
         let last = values.len().checked_sub(1)?;
-        // Between the two nearest of the sorted values, as R does by default (Hyndman & Fan 1996, type 7).
+        // Linear interpolation between sorted values, as in R by default (Hyndman & Fan 1996, type 7).
         let quantile = |part: f64| {
             let at = part * last as f64;
             let below = at.floor() as usize;
@@ -84,7 +85,7 @@ mod tests {
             .map(|(&v, seed)| record("efg", seed, "l2", v))
             .collect();
         records.push(record("other", 7, "l2", 9.0));
-        // A cloud that carried a part of its load has errors of that part.
+        // Errors of a cloud that reached only a part of its load refer to that part.
         records.push(record("efg", 3, "load-carried", 0.5));
         let all = runs(&records);
         let (shown, clouds) = part(&all);

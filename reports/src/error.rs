@@ -1,32 +1,32 @@
-//! What can go wrong between records and a report.
+//! Errors in writing, reading and rendering records.
 
 use std::path::PathBuf;
 
 use thiserror::Error;
 
-/// Why records couldn't be written, read or rendered.
+/// Reason for which records could not be written, read or rendered.
 #[derive(Debug, Error)]
 pub enum ReportError {
     /// A folder without results.
     #[error("{path} holds no results (no provenance.json); `tissuebench run SCENE --out {path}` or `tissuebench verify --out {path}` writes some", path = .0.display())]
     NoResults(PathBuf),
-    /// A folder whose study or run was begun and has not ended.
+    /// A folder whose study or run was started but has not finished.
     #[error("{path} is incomplete: the results of {of} were begun there and are not all written; run it again, a study with --resume to keep what is finished", path = .path.display())]
     Incomplete {
         /// The folder.
         path: PathBuf,
-        /// Name of the study's or scene's file.
+        /// File name of the study or scene.
         of: String,
     },
-    /// Results without a number.
+    /// Results without records.
     #[error("{} holds no records: there is nothing to {to}", path.display())]
     Nothing {
         /// The folder.
         path: PathBuf,
-        /// The action that was asked for.
+        /// Requested action.
         to: &'static str,
     },
-    /// A record holds a number that isn't finite.
+    /// A record with a number that is not finite.
     #[error("{case}, {method}: {field} of {quantity} is {value}, which isn't a finite number")]
     NotFinite {
         /// Case of the record.
@@ -35,12 +35,12 @@ pub enum ReportError {
         method: String,
         /// Quantity of the record.
         quantity: String,
-        /// Which number of the record.
+        /// Field of the record.
         field: &'static str,
-        /// The number.
+        /// Value of the field.
         value: f64,
     },
-    /// Two records of one run are of the same quantity, phase, step, mode, statistic and repeat.
+    /// Two records of one run with the same quantity, phase, step, mode, statistic and repeat.
     #[error("{case}, {method}: {quantity} was recorded twice in run {run}")]
     Twice {
         /// Case of the record.
@@ -52,49 +52,49 @@ pub enum ReportError {
         /// Id of the run.
         run: String,
     },
-    /// A surface field's arrays don't fit together.
+    /// Inconsistent arrays of a surface field.
     #[error("surface field of {case}, {method}: {reason}")]
     Field {
         /// Case of the field.
         case: String,
         /// Method of the field.
         method: String,
-        /// What doesn't fit.
+        /// Description of the inconsistency.
         reason: String,
     },
-    /// A file or folder couldn't be written.
+    /// A file or folder that could not be written.
     #[error("{} can't be written: {source}", path.display())]
     Unwritten {
         /// The file or folder.
         path: PathBuf,
-        /// The system's answer.
+        /// Error of the operating system.
         source: std::io::Error,
     },
-    /// A file or folder couldn't be read.
+    /// A file or folder that could not be read.
     #[error("{}: {source}", path.display())]
     Io {
         /// The file or folder.
         path: PathBuf,
-        /// The system's answer.
+        /// Error of the operating system.
         source: std::io::Error,
     },
-    /// A file's content isn't what it should be.
+    /// A file with invalid content.
     #[error("{}: {reason}", path.display())]
     Content {
         /// The file.
         path: PathBuf,
-        /// What is wrong with it.
+        /// Description of the problem.
         reason: String,
     },
-    /// A figure couldn't be drawn.
+    /// A figure that could not be drawn.
     #[error("figure {name}: {reason}")]
     Figure {
         /// Name of the figure.
         name: String,
-        /// What went wrong.
+        /// Description of the problem.
         reason: String,
     },
-    /// The report page couldn't be filled in.
+    /// A report page that could not be filled in.
     #[error("report page: {0}")]
     Page(#[from] serde_json::Error),
 }

@@ -1,26 +1,26 @@
-//! Run time against error: what is asked of a run, what its time is, and the runs that no other beats in both.
+//! Run time against error: the questions put to runs, the kinds of time, and the Pareto front.
 
 use crate::order::ROUNDING;
 use crate::select::Run;
 use crate::text::significant;
 
-/// Relative errors below this are drawn at it: what is exact to rounding would squeeze all others into a
-/// corner.
+/// Smallest relative error drawn; smaller errors are drawn at this value. Errors of rounding size would
+/// squeeze all others into a corner.
 pub(crate) const FLOOR: f64 = 1e-6;
 
-/// What a user wants right.
+/// A result that a user needs to be accurate.
 pub(crate) struct Question {
-    /// Ends the names of its figures; empty for the first.
+    /// Suffix of the names of its figures; empty for the first question.
     pub(crate) ending: &'static str,
-    /// In a sentence.
+    /// Name in a sentence.
     pub(crate) name: &'static str,
-    /// Relative errors that measure it, the best first. A case is asked by one of them.
+    /// Relative errors that measure the result, in order of preference. A case uses one of them.
     errors: &'static [&'static str],
-    /// Whether a single number is asked for, which can be right by chance, and not a field.
+    /// Whether the result is a single number, which may be right by chance, rather than a field.
     pub(crate) scalar: bool,
 }
 
-/// Whether a method has the field right, its pressure, what a tool feels and how far the tissue gives way.
+/// Questions on the displacement field, the pressure, the tool force and the largest displacement.
 pub(crate) const QUESTIONS: [Question; 4] = [
     Question { ending: "", name: "displacement", errors: &["l2", "relative-rms"], scalar: false },
     Question { ending: "-pressure", name: "pressure", errors: &["pressure"], scalar: false },
@@ -29,15 +29,16 @@ pub(crate) const QUESTIONS: [Question; 4] = [
 ];
 
 impl Question {
-    /// Whether it is measured by one quantity alone, and this one.
+    /// Whether the question is measured only by this quantity.
     pub(crate) fn errors_are(&self, quantity: &str) -> bool {
         self.errors == [quantity]
     }
 
-    /// The error by which a case answers, where any of its runs has one.
+    /// Name of the error for a case, `None` if no run has one.
     ///
-    /// What the scene prescribes is right with every method, which answers nothing: the force of a tool driven by force (up to
-    /// the tolerance of Newton's method), and a largest displacement that a support has.
+    /// A quantity that the scene prescribes is right with every method and answers nothing. Examples are the
+    /// force of a force-driven tool (up to the tolerance of Newton's method) and a largest displacement at a
+    /// support.
     pub(crate) fn error(&self, runs: &[Run]) -> Option<&'static str> {
         if self.errors_are("peak-error") && is_peak_prescribed(runs) {
             return None;
@@ -50,7 +51,7 @@ impl Question {
     }
 }
 
-/// A peak that is right to rounding where the displacement is not comes from a support.
+/// Whether the largest displacement is prescribed by a support: exact to rounding although the field is not.
 fn is_peak_prescribed(runs: &[Run]) -> bool {
     let Some(displacement) = QUESTIONS[0].error(runs) else { return false };
     runs.iter().any(|run| {
@@ -59,12 +60,12 @@ fn is_peak_prescribed(runs: &[Run]) -> bool {
     })
 }
 
-/// A plain value, of several tools (`NAME`, `NAME-2`, ...) the largest.
+/// A plain value, the largest for several tools (`NAME`, `NAME-2`, ...).
 fn worst(run: &Run, quantity: &str) -> Option<f64> {
     largest(quantity, |name| run.value(name))
 }
 
-/// The reference's own error in a quantity, of several tools the largest.
+/// Error of the reference itself in a quantity, the largest for several tools.
 pub(crate) fn band(run: &Run, quantity: &str) -> Option<f64> {
     largest(quantity, |name| run.band(name))
 }
@@ -74,24 +75,25 @@ fn largest(quantity: &str, of: impl Fn(&str) -> Option<f64>) -> Option<f64> {
     Some((2..).map_while(|tool| of(&format!("{quantity}-{tool}"))).fold(first, f64::max))
 }
 
-/// Two kinds of time.
+/// Kind of time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Clock {
-    /// A scene solved once, everything included: the median over repeats.
+    /// A complete solution of a scene: the median over repeats.
     First,
-    /// One solve of all displacements in a simulator's loop, prepared before: what 99 of 100 take at most.
+    /// One solve for all displacements in the loop of a simulator, after preparation: the 99th percentile.
     Repeated,
 }
 
-/// Times of single frames below this are not judged, in seconds.
+/// Smallest time of a frame that is evaluated, s.
 ///
-/// Each frame is timed by itself, between two readings of the clock. Both together take some 50 ns, which is a twentieth of this.
+/// Each frame is timed separately, between two readings of the clock. Both readings take some 50 ns, a
+/// twentieth of this.
 pub(crate) const RESOLUTION: f64 = 1e-6;
 
-/// What a loop of frames gives in each of them.
+/// Result of each frame in a loop.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Frame {
-    /// The displacement of all nodes.
+    /// The displacement at all nodes.
     Field,
     /// The displacement at the probes and the mean over each loaded face, by an operator condensed once.
     Probes,
@@ -100,10 +102,10 @@ pub(crate) enum Frame {
 impl Frame {
     pub(crate) const ALL: [Frame; 2] = [Frame::Probes, Frame::Field];
 
-    /// A statistic of a run's frames, in seconds.
+    /// A statistic of the times of a run's frames, s.
     pub(crate) fn time(self, run: &Run, statistic: &str) -> Option<f64> {
         let has = |phase: &str| run.time(phase, "median").is_some();
-        // Only a linear problem can be condensed; Newton's method finds the equilibrium of all nodes, or none.
+        // Only a linear problem can be condensed; Newton's method always solves for all nodes.
         let phase = match self {
             Frame::Field if has("condense") || has("repeated-field") => "repeated-field",
             Frame::Probes if !has("condense") => return None,
@@ -112,7 +114,7 @@ impl Frame {
         run.time(phase, statistic)
     }
 
-    /// What 99 of 100 frames take at most; of fewer frames the slowest.
+    /// 99th percentile of the frame times (s), or the maximum for fewer frames.
     pub(crate) fn p99(self, run: &Run) -> Option<f64> {
         self.time(run, "p99").or_else(|| self.time(run, "max"))
     }
@@ -124,45 +126,47 @@ impl Clock {
     fn seconds(self, run: &Run) -> Option<f64> {
         match self {
             Clock::First => run.total(),
-            // Every error that is plotted is one of the field: its largest displacement too is looked for at all nodes.
+            // Every error shown refers to the field: the largest displacement also requires all nodes.
             Clock::Repeated => Frame::Field.p99(run).filter(|time| *time >= RESOLUTION),
         }
     }
 }
 
-/// What a simulator's loop has time for.
+/// Time limit of a simulator's loop.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Deadline {
-    /// Its rate.
+    /// Rate of the loop.
     pub(crate) name: &'static str,
-    /// What needs it.
+    /// Purpose of the rate.
     pub(crate) what: &'static str,
-    /// Its period.
+    /// Period of the loop, s.
     pub(crate) seconds: f64,
 }
 
-/// Motion looks continuous from some 30 pictures a second on; a stiff touch feels steady from some 1000 forces a second on.
+/// Frame rates of simulators: motion looks continuous from about 30 images per second, and a stiff contact
+/// feels steady from about 1000 forces per second.
 pub(crate) const DEADLINES: [Deadline; 2] = [
     Deadline { name: "1 kHz", what: "haptic", seconds: 1e-3 },
     Deadline { name: "30 Hz", what: "visual", seconds: 1.0 / 30.0 },
 ];
 
-/// `(seconds, relative error)` of a run that carried all of its load. An error of exactly nothing is the reference itself.
+/// `(seconds, relative error)` of a run that reached its whole load. An error of exactly zero belongs to the
+/// reference and gives `None`.
 pub(crate) fn point(run: &Run, quantity: &str, clock: Clock) -> Option<(f64, f64)> {
     let (time, error) = (clock.seconds(run)?, worst(run, quantity)?);
     (run.whole() && time > 0.0 && error > 0.0).then_some((time, error))
 }
 
-/// The same with an error that counts no less than the reference's own.
+/// The same as [`point`], with an error no smaller than the error of the reference.
 pub(crate) fn judged(run: &Run, quantity: &str, clock: Clock) -> Option<(f64, f64)> {
     point(run, quantity, clock).map(|(time, error)| (time, error.max(band(run, quantity).unwrap_or(0.0))))
 }
 
-/// A single number may be right by chance. It is an answer within an error only where the displacement is within this many times the error.
+/// A single number may be right by chance. It counts as within an error only if the displacement error is
+/// within this multiple of the error.
 const CHANCE: f64 = 3.0;
 
-/// The error that a page asks for at first, unless no run reaches it, and that tables of the cheapest runs
-/// are for.
+/// Error initially selected on a page, unless no run reaches it, and used in the tables of the cheapest runs.
 pub(crate) const WANTED: f64 = 0.05;
 
 /// [`WANTED`] in words.
@@ -170,9 +174,9 @@ pub(crate) fn wanted() -> String {
     format!("{} %", significant(100.0 * WANTED, 1))
 }
 
-/// The error as which a run's answer counts: its own, or of a single number a third of that of the
-/// displacement where that is larger, and neither counts for less than the reference's own. Within what is
-/// asked for, a run answers if this is.
+/// Effective error of a run's answer. For a field it is the run's own error; for a single number it is at
+/// least a third of the displacement error. Neither error counts for less than the error of the reference. A
+/// run answers a question within a given error if its effective error does not exceed it.
 pub(crate) fn counts(
     run: &Run,
     question: &Question,
@@ -186,10 +190,10 @@ pub(crate) fn counts(
     known(quantity, error).max(companion.unwrap_or(0.0) / CHANCE)
 }
 
-/// Fewest runs that have a front: of one or two it would say nothing that their markers do not.
+/// Smallest number of runs with a front; for fewer, it adds nothing to their markers.
 pub(crate) const FRONT: usize = 3;
 
-/// The runs that no other beats in both time and error, by rising time.
+/// Runs on the Pareto front of time and error, by ascending time.
 pub(crate) fn pareto<T>(runs: impl IntoIterator<Item = T>, at: impl Fn(&T) -> (f64, f64)) -> Vec<T> {
     let mut sorted: Vec<T> = runs.into_iter().collect();
     sorted.sort_by(|a, b| {
@@ -212,7 +216,7 @@ pub(crate) mod tests {
     use crate::record::{Family, Record};
     use crate::select::runs;
 
-    /// One number of one run, its phase before a colon and its statistic after one: `time`, `total:median`.
+    /// A record of one number. `of` is its phase and statistic, separated by a colon: `time`, `total:median`.
     pub(crate) fn record(
         (case, method, family): (&str, &str, Family),
         nodes: u64,
@@ -239,7 +243,7 @@ pub(crate) mod tests {
         .of_its_run()
     }
 
-    /// A run of `jaws`: its nodes stand for its size, its time in seconds, and an error by name.
+    /// Records of a run of `jaws`: its nodes as its size, its time in seconds, and its errors by name.
     pub(crate) fn run(is: (&str, Family), nodes: u64, seconds: f64, errors: &[(&str, f64)]) -> Vec<Record> {
         let of = ("jaws", is.0, is.1);
         let mut records = vec![record(of, nodes, ("time", "total:median"), seconds)];
@@ -264,7 +268,7 @@ pub(crate) mod tests {
         let all = [("relative-rms", 0.1), ("l2", 0.2), ("pressure", 0.3), ("peak-error", 0.4)];
         assert_eq!(asked(&all), [Some("l2"), Some("pressure"), None, Some("peak-error")]);
         assert_eq!(asked(&all[..1])[0], Some("relative-rms"));
-        // The reference itself, alone, answers nothing; nor does a force that was given.
+        // The reference alone answers nothing, and neither does a prescribed force.
         assert_eq!(asked(&[("relative-rms", 0.0), ("tool-force-error", 4e-11)]), [None; 4]);
         assert_eq!(
             asked(&[("tool-force-error", 0.0), ("tool-force-error-2", 0.02)])[2],
@@ -292,16 +296,17 @@ pub(crate) mod tests {
         };
         let probes = [("condense:median", 0.01), ("repeated:p99", 4e-7)];
         let with = |more: &[(&'static str, f64)]| seconds(&[&probes, more].concat());
-        // The probes of a linear problem are no field, however fast they are.
+        // The probes of a linear problem are not a field, however fast they are.
         assert_eq!(with(&[]), None);
         assert_eq!(with(&[("repeated-field:median", 2e-3), ("repeated-field:p99", 3e-3)]), Some(3e-3));
-        // Of few frames there is no 99th of 100, but a slowest.
+        // A few frames have no 99th percentile but a maximum.
         assert_eq!(with(&[("repeated-field:median", 0.06), ("repeated-field:max", 0.07)]), Some(0.07));
         assert_eq!(with(&[("repeated-field:median", 0.06)]), None);
-        // A linear problem without probes and loaded faces has its field alone; Newton's method finds nothing less than the field.
+        // A linear problem without probes and loaded faces has only its field; Newton's method always solves
+        // for the field.
         assert_eq!(seconds(&[("repeated-field:median", 1e-3), ("repeated-field:p99", 2e-3)]), Some(2e-3));
         assert_eq!(seconds(&[("repeated:p99", 0.02)]), Some(0.02));
-        // What the clock can't tell is no time.
+        // A time below the resolution of the clock is not used.
         assert_eq!(seconds(&[("repeated:p99", 0.9e-6)]), None);
     }
 
@@ -315,7 +320,7 @@ pub(crate) mod tests {
         assert_eq!(counted(force, &[("relative-rms", 0.69)], 0.001), 0.69 / 3.0);
         assert_eq!(counted(force, &[("relative-rms", 0.02)], 0.01), 0.01);
         assert_eq!(counted(force, &[], 0.01), 0.01);
-        // A field is no single number.
+        // A field is not a single number.
         assert_eq!(counted(&QUESTIONS[1], &[("relative-rms", 0.69)], 0.01), 0.01);
     }
 
@@ -330,7 +335,7 @@ pub(crate) mod tests {
         assert_eq!(counted(&records, &QUESTIONS[0], displacement), 0.127);
         records.push(record(of, 100, ("relative-rms", ":band"), 0.9));
         assert_eq!(counted(&records, &QUESTIONS[0], displacement), 0.9);
-        // Nor is a force right whose displacement nobody knows.
+        // A force whose displacement error is uncertain is not counted as right either.
         assert_eq!(counted(&records, &QUESTIONS[2], ("tool-force-error", 0.01)), 0.9 / 3.0);
         records.extend([
             record(of, 100, ("tool-force-error", ":band"), 0.2),

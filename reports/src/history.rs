@@ -1,36 +1,36 @@
-//! Numbers recorded step by step or mode by mode: which of them a run recorded, and one quantity over another.
+//! Numbers recorded step by step or mode by mode, and curves of one quantity against another.
 
 use std::collections::BTreeMap;
 
 use crate::record::{Family, Record};
 use crate::select::Run;
 
-/// The number of the step or mode a record belongs to, where it belongs to one.
+/// Number of the step or mode that a record belongs to, if any.
 pub(crate) fn step(record: &Record) -> Option<u64> {
     record.step.or(record.mode)
 }
 
-/// One quantity by step, for one statistic.
+/// Values of a quantity by step, for one statistic.
 fn by_step(run: &Run, quantity: &str, statistic: &str) -> BTreeMap<u64, f64> {
     let fits = |r: &&&Record| r.quantity == quantity && r.statistic == statistic;
     run.records().iter().filter(fits).filter_map(|r| Some((step(r)?, r.value))).collect()
 }
 
-/// `(x, y)` at every step that recorded both, in the order of the steps.
+/// `(x, y)` at every step that has both, in the order of the steps.
 pub(crate) fn curve(run: &Run, x: &str, y: &str) -> Vec<(f64, f64)> {
     let along = by_step(run, x, "value");
     by_step(run, y, "value").into_iter().filter_map(|(step, y)| Some((*along.get(&step)?, y))).collect()
 }
 
-/// `(x, low, high)` at every step that recorded both ends of an uncertainty.
+/// `(x, low, high)` at every step that has both bounds of an uncertainty.
 pub(crate) fn band(run: &Run, x: &str, y: &str) -> Vec<(f64, f64, f64)> {
     let (along, high) = (by_step(run, x, "value"), by_step(run, y, "high"));
     let low = by_step(run, y, "low").into_iter();
     low.filter_map(|(step, low)| Some((*along.get(&step)?, low, *high.get(&step)?))).collect()
 }
 
-/// The run that the others of a case are compared with: the recorded reference, or else the method whose tool force has no
-/// error against it at any step, as it is the reference itself.
+/// The run with which the others of a case are compared. It is the recorded reference, or else the method
+/// whose tool force has an error of zero at every step and which therefore is the reference.
 pub(crate) fn reference<'r, 'a>(case: &'r [Run<'a>]) -> Option<&'r Run<'a>> {
     let itself = |r: &&Run| {
         let errors = by_step(r, "tool-force-error", "value");
@@ -39,9 +39,9 @@ pub(crate) fn reference<'r, 'a>(case: &'r [Run<'a>]) -> Option<&'r Run<'a>> {
     case.iter().find(|r| r.is.family == Family::Reference).or_else(|| case.iter().find(itself))
 }
 
-/// A line of points at `x`, straight between them; nothing beyond its ends.
+/// Linear interpolation of a line at `x`; `None` beyond its ends.
 pub(crate) fn between(line: &[(f64, f64)], x: f64) -> Option<f64> {
-    // Two methods told to close by the same way end a rounding error apart.
+    // Two methods with the same prescribed travel may end a rounding error apart.
     let near = |a: f64| (a - x).abs() <= 1e-9 * x.abs();
     if let Some(met) = line.iter().find(|p| near(p.0)) {
         return Some(met.1);
@@ -88,7 +88,7 @@ mod tests {
             at(9, "closure", "value", 2.0),
             at(9, "tool-force", "low", 19.0),
             at(9, "tool-force", "high", 22.0),
-            // No force at this step, and a bound without its other end.
+            // No force at this step, and a bound without its counterpart.
             at(11, "closure", "value", 4.0),
             at(10, "tool-force", "low", 28.0),
             at(0, "strain-energy", "value", 7.0),

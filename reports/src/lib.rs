@@ -1,20 +1,19 @@
-//! From records to tables, figures and one page.
+//! Turns records into tables, figures and a page.
 //!
-//! The harness hands over a [`RunSet`]; [`write_run`] puts it into a folder, [`render`] turns the folder into CSV, Markdown and
-//! LaTeX tables, SVG, PNG and PDF figures and a self-contained HTML report. Rendering only reads: nothing is solved, or timed, again.
+//! The harness passes a [`RunSet`]. [`write_run`] writes it to a folder. [`render`] turns the folder into
+//! CSV, Markdown and LaTeX tables, SVG, PNG and PDF figures and a self-contained HTML report. Rendering only
+//! reads: nothing is solved or timed again.
 //!
 //! ```
 //! use reports::{Family, Record, RunSet, read_run, render, write_run};
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
 //! // One number of one run: who made it, what it is, how much.
-//! let run = Record { case: "block".into(), method: "tet4".into(), family: Family::Fem, ..Record::default() };
-//! let error = Record { quantity: "l2".into(), unit: "1".into(), statistic: "value".into(), value: 0.02, ..run };
-//! let set = RunSet { records: vec![error], ..RunSet::default() };
-//! let folder = std::env::temp_dir().join(format!("tissuebench-{}", std::process::id()));
-//! write_run(&folder, &set)?;
-//! assert_eq!(read_run(&folder)?.records[0].value, 0.02);
-//! let rendered = render(&folder, &folder.join("report"))?;
-//! assert!(rendered.files.iter().any(|file| file.ends_with("report.html")));
+//! let run = Record { case: "block".into(), method: "tet4".into(), family: Family::Fem, ..Record::default()
+//! }; let error = Record { quantity: "l2".into(), unit: "1".into(), statistic: "value".into(), value: 0.02,
+//! ..run }; let set = RunSet { records: vec![error], ..RunSet::default() }; let folder =
+//! std::env::temp_dir().join(format!("tissuebench-{}", std::process::id())); write_run(&folder, &set)?;
+//! assert_eq!(read_run(&folder)?.records[0].value, 0.02); let rendered = render(&folder,
+//! &folder.join("report"))?; assert!(rendered.files.iter().any(|file| file.ends_with("report.html")));
 //! # std::fs::remove_dir_all(&folder)?;
 //! # Ok(())
 //! # }

@@ -1,24 +1,24 @@
-//! How a method looks, in every figure of every report: by what it is, never by the order it comes in.
+//! Appearance of a method, the same in every figure of every report, independent of the order of methods.
 //!
-//! The colour and the marker are those of its name, the dash and the filling those of its family; other people's solvers have a colour
-//! each and the marker of the element. What the table does not have goes by the
-//! beginning of its name, as `efg-gauss-lumped` by `efg-gauss`, and by a hash of the rest. Two labels of one
-//! figure never look alike:
-//! [`distinct`] gives the one that is less known another marker or shade.
+//! The name determines the colour and the marker, the family the dash and the filling. External solvers have
+//! a colour each and the marker of the element. A name that is not in the table takes the colour of its
+//! longest known prefix, as `efg-gauss-lumped` does of `efg-gauss`, and a marker by a hash. Two labels of one
+//! figure never look the same: [`distinct`] gives the less known label another marker or shade.
 
 use crate::record::Family;
 
-/// Markers told apart by their shape, as pages name them.
+/// Names of the markers in pages.
 pub(crate) const MARKERS: [&str; 7] =
     ["circle", "square", "triangle", "diamond", "down", "pentagon", "hexagon"];
 
-/// Okabe and Ito (2008) without yellow, which vanishes on white, then darker ones of Tol (2021).
+/// Colours of Okabe and Ito (2008) without yellow, which vanishes on white, followed by darker ones of Tol
+/// (2021).
 const COLOURS: [u32; 12] = [
     0xd55e00, 0x0072b2, 0xe69f00, 0x56b4e9, 0x009e73, 0xcc79a7, 0x4d4d4d, 0x882255, 0x999933, 0x332288,
     0x8c510a, 0x7f7f7f,
 ];
 
-/// Name, colour and marker. What competes in one case differs in both.
+/// Name, colour and marker of the known methods. Methods that compete in one case differ in both.
 const KNOWN: [(&str, u32, usize); 44] = [
     ("tet4", 0xd55e00, 0),
     ("tet4-nodal", 0x8c510a, 4),
@@ -66,7 +66,7 @@ const KNOWN: [(&str, u32, usize); 44] = [
     ("lost in the scheme", 0xe69f00, 1),
 ];
 
-/// Solvers outside this program, by their place among [`COLOURS`]: a colour for each, the marker that of the element.
+/// External solvers with the index of their colour in [`COLOURS`]; the marker is that of the element.
 const SOLVERS: [(&str, usize); 7] = [
     ("calculix", 4),
     ("dolfinx", 0),
@@ -77,21 +77,22 @@ const SOLVERS: [(&str, usize); 7] = [
     ("dummy", 11),
 ];
 
-/// Colour, marker, dash and filling of one label.
+/// Appearance of a label: colour, marker, dash and filling.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Look {
     /// Red, green and blue.
     pub(crate) colour: [u8; 3],
-    /// Which of [`MARKERS`].
+    /// Index into [`MARKERS`].
     pub(crate) marker: usize,
-    /// Lengths drawn and left out in turn, points; none is a full line.
+    /// Alternating drawn and omitted lengths in points; empty for a solid line.
     pub(crate) dash: &'static [f64],
-    /// Whether the marker is an outline: of clouds, so that no element and no cloud look alike, in grey either.
+    /// Whether the marker is only an outline, as for clouds, which distinguishes clouds from elements even in
+    /// grey.
     pub(crate) open: bool,
 }
 
 impl Look {
-    /// Of a label such as `tet4`, `efg-gauss-lumped` or `efg (neighbours 12)`.
+    /// Appearance of a label such as `tet4`, `efg-gauss-lumped` or `efg (neighbours 12)`.
     pub(crate) fn of(label: &str, family: Family) -> Look {
         let name = label.split(" (").next().unwrap_or(label);
         let (colour, marker) = match longest(name) {
@@ -120,12 +121,12 @@ impl Look {
     }
 }
 
-/// Parts of white in a colour: its own first.
+/// Fractions of white mixed into a colour (negative: black), beginning with the colour itself.
 const SHADES: [f64; 4] = [0.0, 0.35, -0.3, 0.6];
 
 impl Look {
-    /// The `k`-th other look of the same family: first with other markers, then in another shade. The look
-    /// itself is the 0-th.
+    /// The `k`-th alternative look of the same family: other markers first, then other shades. The 0-th is
+    /// the look itself.
     fn other(self, k: usize) -> Look {
         let shade = SHADES[k / MARKERS.len() % SHADES.len()];
         let mixed = |c: u8| match shade < 0.0 {
@@ -140,10 +141,10 @@ impl Look {
     }
 }
 
-/// Looks of labels, no two the same of labels that are drawn `together`.
+/// Looks of labels, distinct among labels that are drawn `together`.
 ///
-/// A name of the table keeps its look before one that goes by its beginning, and an earlier name of the table
-/// before a later one.
+/// A name in the table takes precedence over a name matched by its prefix, and an earlier name over a later
+/// one.
 pub(crate) fn distinct(labels: &[(String, Family)], together: impl Fn(usize, usize) -> bool) -> Vec<Look> {
     let known = |label: &str| KNOWN.iter().position(|entry| entry.0 == label).unwrap_or(KNOWN.len());
     let mut order: Vec<usize> = (0..labels.len()).collect();
@@ -159,20 +160,20 @@ pub(crate) fn distinct(labels: &[(String, Family)], together: impl Fn(usize, usi
     looks.into_iter().flatten().collect()
 }
 
-/// The colour of a solver.
+/// Colour of an external solver.
 fn solver(name: &str) -> u32 {
     let known = SOLVERS.into_iter().find(|entry| entry.0 == name);
     COLOURS[known.map_or(hash(name) % COLOURS.len(), |entry| entry.1)]
 }
 
-/// The entry whose name is all of a name, or most of its words from the first on.
+/// The table entry with the longest name that equals the given name or is a prefix of its words.
 fn longest(name: &str) -> Option<(&'static str, u32, usize)> {
     let begins =
         |known: &str| name.strip_prefix(known).is_some_and(|rest| rest.is_empty() || rest.starts_with('-'));
     KNOWN.into_iter().filter(|entry| begins(entry.0)).max_by_key(|entry| entry.0.len())
 }
 
-/// FNV-1a: the same on every machine.
+/// FNV-1a hash, the same on every machine.
 fn hash(text: &str) -> usize {
     let mixed =
         text.bytes().fold(0xcbf2_9ce4_8422_2325u64, |h, b| (h ^ u64::from(b)).wrapping_mul(0x0100_0000_01b3));
@@ -196,7 +197,7 @@ mod tests {
 
     #[test]
     fn no_two_labels_drawn_together_look_alike() {
-        // Both kinds of integration, and four support scales, once had one look.
+        // Both kinds of integration, and four support scales, once looked the same.
         let names =
             ["efg", "efg-gauss", "efg (integration gauss-1)", "efg (integration gauss-4)", "cubic-spline"];
         let scales = ["efg-gauss-1.2", "efg-gauss-2.0", "efg-gauss-2.5", "efg-flat", "efg-separate"];
@@ -205,7 +206,7 @@ mod tests {
         for i in 0..looks.len() {
             assert!(looks[..i].iter().all(|look| *look != looks[i]), "{}", labels[i].0);
         }
-        // The first name of the table has its own look, and so has every label that shares no figure with
+        // The first name of the table keeps its own look, and so does every label that shares no figure with
         // another.
         assert_eq!(looks[0], Look::of("efg", Family::Efg));
         assert_eq!(distinct(&labels, |_, _| false)[3], Look::of(&labels[3].0, Family::Efg));
@@ -221,7 +222,7 @@ mod tests {
         assert_eq!(theirs("tet4-calculix").colour, theirs("hex20-calculix").colour);
         assert_eq!(theirs("tet4-calculix").marker, theirs("tet4-felupe").marker);
         assert_ne!(theirs("tet4-calculix").colour, theirs("tet4-felupe").colour);
-        // `tet4x` is no `tet4`.
+        // `tet4x` does not begin with the word `tet4`.
         assert_eq!(longest("tet4x"), None);
         assert_ne!(Look::of("hex20", Family::Fem).dash, Look::of("hex20", Family::External).dash);
         assert_eq!(of("efg").dash, Look::of("other", Family::Efg).dash);

@@ -1,43 +1,44 @@
 //! Observed order of convergence and the grid convergence index.
 
-/// Errors below this are rounding, not discretisation: they say nothing about an order.
+/// Errors below this are dominated by rounding and show no order.
 pub(crate) const ROUNDING: f64 = 1e-11;
 
-/// Two pairwise orders closer than this count as settled.
+/// Largest difference of two pairwise orders that count as settled.
 const SETTLED: f64 = 0.15;
-/// As near to 1 as this two grid convergence indices agree with their order.
+/// Largest deviation from 1 of the ratio of two grid convergence indices that agree with their order.
 const IN_RANGE: f64 = 0.05;
 
-/// What a series of errors says about its order.
+/// Observed order of a series of errors.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Order {
     /// ln(e1/e2) / ln(h1/h2) of neighbouring levels, coarse to fine.
     pub pairs: Vec<f64>,
-    /// Slope of ln e over ln h by least squares.
+    /// Slope of ln e over ln h, by least squares.
     pub fit: f64,
-    /// Standard error of the slope; needs three levels.
+    /// Standard error of the slope; requires three levels.
     pub error: Option<f64>,
-    /// Half width of its 95 % confidence band (Student's t, n - 2 degrees of freedom).
+    /// Half width of the slope's 95 % confidence band (Student's t, n - 2 degrees of freedom).
     pub band: Option<f64>,
-    /// What the levels are; needs three.
+    /// Verdict on the levels; requires three.
     pub verdict: Option<Verdict>,
 }
 
-/// What a series of levels does.
+/// Convergence behaviour of a series of levels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
-    /// It has settled on an order: the last two pairs agree within 0.15, or the ratio of two grid convergence indices is 1 within 0.05.
+    /// Settled on an order: the last two pairs agree within 0.15, or the ratio of two grid convergence
+    /// indices is 1 within 0.05.
     Asymptotic,
-    /// It gets better at an order that still changes.
+    /// Improving, at an order that still changes.
     NotYet,
-    /// It gets better and worse in turn.
+    /// Improving and deteriorating alternately.
     Oscillatory,
-    /// It gets worse.
+    /// Deteriorating.
     Divergent,
 }
 
 impl Verdict {
-    /// As tables have it.
+    /// Name in tables.
     pub fn name(self) -> &'static str {
         match self {
             Verdict::Asymptotic => "asymptotic",
@@ -47,21 +48,21 @@ impl Verdict {
         }
     }
 
-    /// Of the orders between neighbouring levels, coarse to fine.
+    /// Verdict on the orders between neighbouring levels, from coarse to fine.
     fn of_pairs(pairs: &[f64]) -> Option<Verdict> {
         let [.., before, last] = *pairs else { return None };
         let worse = pairs.iter().filter(|p| **p <= 0.0).count();
         Some(match worse {
             0 if (last - before).abs() <= SETTLED => Verdict::Asymptotic,
             0 => Verdict::NotYet,
-            // Worse from some level on, and not better again.
+            // Errors grow from some level on to the last.
             _ if pairs[pairs.len() - worse..].iter().all(|p| *p <= 0.0) => Verdict::Divergent,
             _ => Verdict::Oscillatory,
         })
     }
 }
 
-/// Order of `(h, error)` pairs, coarse to fine; `None` with fewer than two usable levels.
+/// Computes the order of `(h, error)` pairs, from coarse to fine; `None` with fewer than two usable levels.
 pub fn observed(points: &[(f64, f64)]) -> Option<Order> {
     let mut logs: Vec<(f64, f64)> = Vec::new();
     for &(h, e) in points {
@@ -93,11 +94,11 @@ fn student(freedom: usize) -> f64 {
     table.get(freedom - 1).copied().unwrap_or(1.96 + 2.4 / freedom as f64)
 }
 
-/// What the three finest levels say about a functional.
+/// Result on the three finest levels of a functional.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Outcome {
     pub(crate) verdict: Verdict,
-    /// Where the levels approach a limit from one side.
+    /// The index, if the levels approach a limit from one side.
     pub(crate) index: Option<Gci>,
 }
 
@@ -112,13 +113,13 @@ pub(crate) struct Gci {
     pub(crate) fine: f64,
     /// Index of the next coarser grid: 1.25 |(f2 - f3)/f2| / (r32^p - 1).
     pub(crate) coarse: f64,
-    /// r21^p GCI21 / GCI32: near 1 inside the asymptotic range.
+    /// Ratio r21^p GCI21 / GCI32, near 1 in the asymptotic range.
     pub(crate) range: f64,
 }
 
-/// Grid convergence index of `(h, f)` pairs, coarse to fine (Celik et al., J. Fluids Eng. 130, 2008, steps 3 to 5; safety factor 1.25).
-///
-/// `None` with fewer than three levels, or where the finest two agree to rounding.
+/// Computes the grid convergence index of `(h, f)` pairs, from coarse to fine (Celik et al., J. Fluids Eng.
+/// 130, 2008, steps 3 to 5; safety factor 1.25). Returns `None` with fewer than three levels, or if the
+/// finest two agree to rounding.
 pub(crate) fn grid_convergence(points: &[(f64, f64)]) -> Option<Outcome> {
     let [.., (h3, f3), (h2, f2), (h1, f1)] = *points else { return None };
     let (r21, r32) = (h2 / h1, h3 / h2);
@@ -129,7 +130,7 @@ pub(crate) fn grid_convergence(points: &[(f64, f64)]) -> Option<Outcome> {
         return None;
     }
     if ratio <= 0.0 {
-        // Changes that alternate: towards a limit as long as they shrink.
+        // Alternating changes approach a limit as long as they shrink.
         let verdict = if ratio < -1.0 { Verdict::Oscillatory } else { Verdict::Divergent };
         return Some(Outcome { verdict, index: None });
     }
@@ -146,7 +147,8 @@ pub(crate) fn grid_convergence(points: &[(f64, f64)]) -> Option<Outcome> {
     Some(Outcome { verdict, index: Some(index) })
 }
 
-/// `p = |ln(e32/e21) + q(p)| / ln r21`, `q = ln((r21^p - 1)/(r32^p - 1))`; constant refinement gives q = 0 at once.
+/// Apparent order: the solution of `p = |ln(e32/e21) + q(p)| / ln r21`, `q = ln((r21^p - 1)/(r32^p - 1))`.
+/// Constant refinement gives q = 0 at once.
 fn apparent_order(ratio: f64, r21: f64, r32: f64) -> f64 {
     let mut p = ratio.ln().abs() / r21.ln();
     for _ in 0..200 {
@@ -176,7 +178,8 @@ mod tests {
 
     #[test]
     fn scatter_widens_the_band() {
-        // By hand: x = ln h = (0, -1, -2), y = (0, -2, -3): slope 1.5, residuals (-1, 2, -1)/6, s = sqrt(1/6), se = sqrt(1/12).
+        // Computed by hand: x = ln h = (0, -1, -2), y = (0, -2, -3), slope 1.5, residuals (-1, 2, -1)/6, s =
+        // sqrt(1/6), se = sqrt(1/12).
         let e = std::f64::consts::E;
         let order = observed(&[(1.0, 1.0), (1.0 / e, e.powi(-2)), (e.powi(-2), e.powi(-3))]).unwrap();
         assert!((order.fit - 1.5).abs() < 1e-12, "{order:?}");
@@ -211,8 +214,9 @@ mod tests {
         assert_eq!(grid_convergence(&[(0.4, 1.0), (0.2, 1.1)]), None);
     }
 
-    /// Slater (NASA Glenn), Examining spatial (grid) convergence: total pressure recovery of an inlet on three grids. Its program works in
-    /// single precision: an order of 1.78618 where these digits give 1.78617, and indices a few millionths off.
+    /// Slater (NASA Glenn), Examining spatial (grid) convergence: total pressure recovery of an inlet on
+    /// three grids. The published program works in single precision. Its order is 1.78618, whereas these
+    /// digits give 1.78617, and its indices differ by a few millionths.
     #[test]
     fn the_inlet_of_nasa_to_its_digits() {
         let outcome = grid_convergence(&[(4.0, 0.96178), (2.0, 0.96854), (1.0, 0.97050)]).unwrap();

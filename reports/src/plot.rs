@@ -1,14 +1,14 @@
-//! What a figure shows, as numbers: drawn on paper, written beside it as CSV, and drawn again by the page.
+//! Data of a figure, which is drawn on paper, written as CSV next to the figure, and redrawn by the page.
 
 use serde::Serialize;
 
 use crate::record::Family;
 use crate::table::csv_line;
 
-/// One pair of axes and the curves in it.
+/// A pair of axes with its curves.
 #[derive(Clone, Debug)]
 pub(crate) struct Plot {
-    /// The case it is of; empty where it is of several.
+    /// Case of the plot; empty if it shows several.
     pub(crate) case: String,
     pub(crate) title: String,
     pub(crate) x: Scale,
@@ -16,10 +16,10 @@ pub(crate) struct Plot {
     pub(crate) curves: Vec<Curve>,
 }
 
-/// An axis by name.
+/// A labelled axis.
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct Scale {
-    /// With its unit.
+    /// Label with its unit.
     pub(crate) label: String,
     pub(crate) log: bool,
 }
@@ -34,7 +34,7 @@ impl Scale {
     }
 }
 
-/// One method.
+/// Curve of one method.
 #[derive(Clone, Debug)]
 pub(crate) struct Curve {
     pub(crate) label: String,
@@ -42,7 +42,7 @@ pub(crate) struct Curve {
     pub(crate) points: Vec<(f64, f64)>,
     /// `(x, low, high)` of an uncertainty or a range.
     pub(crate) band: Vec<(f64, f64, f64)>,
-    /// Ids of the runs that it is of: of each point, or one for all.
+    /// Ids of the runs: one for each point, or one for all.
     pub(crate) runs: Vec<String>,
 }
 
@@ -52,12 +52,12 @@ impl Curve {
     }
 }
 
-/// Labels with their families, as looks go by.
+/// Labels with their families, which determine the looks.
 pub(crate) fn labels(plots: &[Plot]) -> Vec<(String, Family)> {
     plots.iter().flat_map(|p| p.curves.iter().map(|c| (c.label.clone(), c.family))).collect()
 }
 
-/// A row for each point, and for each end of a band.
+/// CSV with a row for each point and for each end of a band.
 pub(crate) fn csv(plots: &[Plot]) -> String {
     let mut out = csv_line(&["case", "panel", "series", "what", "x", "y", "x axis", "y axis", "run"]);
     for plot in plots {

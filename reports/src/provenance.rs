@@ -1,12 +1,12 @@
-//! By what program, on what machine and from what files the numbers of a run came.
+//! Provenance of the numbers of a run: program, machine and files.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Version of the files in a folder of results. A change that a reader of them would notice raises it.
+/// Version of the files in a folder of results, raised by every change that affects a reader.
 pub const FORMAT: u32 = 1;
 
-/// A program, as it was built.
+/// Build of a program.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct Program {
     /// Version.
@@ -17,7 +17,7 @@ pub struct Program {
     pub dirty: bool,
     /// Compiler version.
     pub rustc: String,
-    /// Machine that it is built for, such as `x86_64-unknown-linux-gnu`.
+    /// Target of the build, such as `x86_64-unknown-linux-gnu`.
     pub target: String,
     /// Instruction sets that the compiler may use, such as `fxsr,sse,sse2`.
     pub features: String,
@@ -26,40 +26,42 @@ pub struct Program {
 }
 
 impl Program {
-    /// The commit, with `+` appended where the source was changed since.
+    /// The commit, with `+` appended if the source was changed since.
     pub fn revision(&self) -> String {
         format!("{}{}", self.commit, if self.dirty { "+" } else { "" })
     }
 }
 
-/// A machine, as it was when a run began.
+/// State of a machine at the start of a run.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Machine {
     /// Processor model.
     pub cpu: String,
-    /// Its family, model and stepping, as far as the system says: names such as `AMD EPYC` are those of
-    /// several generations.
+    /// Family, model and stepping of the processor, as far as the system reports them; names such as `AMD
+    /// EPYC` cover several generations.
     #[serde(default)]
     pub model: String,
-    /// Its clock when the run began, GHz; `None` where it is not known.
+    /// Clock of the processor at the start of the run, GHz; `None` if unknown.
     #[serde(default)]
     pub clock: Option<f64>,
     /// Instruction sets that the solvers choose between, such as `avx2,fma`.
     pub instructions: String,
     /// Threads that the solvers use.
     pub threads: u32,
-    /// Load at the start: processes that ran or waited to run in the minute before, on average; `None` where it is not known.
+    /// Load at the start: average number of running or waiting processes in the minute before; `None` if
+    /// unknown.
     pub load: Option<f64>,
-    /// Whether at most a fifth of the processors was busy then: times of a machine that was not quiet are too long.
+    /// Whether at most a fifth of the processors was busy at the start. Times on a machine that was not quiet
+    /// are too long.
     pub quiet: Option<bool>,
-    /// Runs that were made at once by one process, of which the seconds of the processors are not told apart;
-    /// 0 or 1 where each had the process for itself.
+    /// Number of concurrent runs in one process, whose CPU times cannot be separated; 0 or 1 for runs one
+    /// after another.
     #[serde(default)]
     pub at_once: u32,
 }
 
 impl Machine {
-    /// The processor in words: its name, model and clock.
+    /// Description of the processor: name, model and clock.
     pub fn processor(&self) -> String {
         let model = if self.model.is_empty() { String::new() } else { format!(", {}", self.model) };
         let clock = self.clock.map_or(String::new(), |ghz| format!(", {ghz:.1} GHz"));
@@ -67,19 +69,19 @@ impl Machine {
     }
 }
 
-/// By what, where and from what a run's numbers came. Carries no date.
+/// Program, machine and scenes that a run's numbers came from, without a date.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Provenance {
-    /// Version of the files in this folder; 0 in results from before it was written.
+    /// Version of the files in this folder; 0 in results from before the version was recorded.
     #[serde(default)]
     pub format: u32,
-    /// Name of the study's or scene's file that the numbers are of.
+    /// File name of the study or scene.
     pub source: String,
-    /// The program.
+    /// Program that computed the numbers.
     pub program: Program,
-    /// The machine.
+    /// Machine that ran the program.
     pub machine: Machine,
-    /// Keys set in place of the scene's file, `KEY=VALUE` each.
+    /// Keys that replace values of the scene file, each as `KEY=VALUE`.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub set: Vec<String>,
     /// Content hash (BLAKE3, hexadecimal) of each scene file, by scene name, sorted.
@@ -93,7 +95,7 @@ pub struct SceneHash {
     pub case: String,
     /// BLAKE3 hash of the file, hexadecimal.
     pub blake3: String,
-    /// What the scene is, in its own words.
+    /// Title of the scene.
     #[serde(default)]
     pub title: String,
 }

@@ -1,23 +1,23 @@
-//! Published comparisons, number by number with its place, so that ours can stand beside them.
+//! Published comparisons, number by number with their place, so that they can be set against computed ones.
 
 use crate::record::{Family, Purpose, Record};
 use crate::select::Run;
 
 /// A published comparison of finite elements with clouds.
 pub(crate) struct Publication {
-    /// As scenes name it.
+    /// Name in scenes.
     name: &'static str,
-    /// Its numbers, in the order of the table.
+    /// Published numbers, in the order of the table.
     pub(crate) numbers: &'static [Published],
-    /// Nodes of its finite-element mesh.
+    /// Number of nodes of the finite-element mesh.
     pub(crate) fe_nodes: u64,
-    /// Nodes of its cloud.
+    /// Number of nodes of the cloud.
     pub(crate) efg_nodes: u64,
-    /// Kernel of its cloud.
+    /// Kernel of the cloud.
     pub(crate) kernel: &'static str,
-    /// Scheme that carries its cloud's displacement to the mesh.
+    /// Scheme that transfers the cloud's displacement to the mesh.
     pub(crate) scheme: &'static str,
-    /// What our reading of it does not claim.
+    /// Limits of the reproduction of the case.
     pub(crate) caveat: &'static str,
 }
 
@@ -29,32 +29,32 @@ impl Publication {
 }
 
 impl Published {
-    /// Whether a run does what the number is of.
+    /// Whether a run computes the same thing as the published number.
     ///
-    /// The published times of a solution are of contact with jaws, those of finite elements of explicit
-    /// dynamics: a linear scene with given loads has nothing to set against them.
+    /// The published solution times are for contact with jaws, and those of finite elements for explicit
+    /// dynamics. A linear scene with given loads has no comparable time.
     pub(crate) fn is_of(&self, run: &Run) -> bool {
         let solves = self.quantity == "total" || self.quantity.contains("solve");
         !solves || (run.has_contact() && (self.family != Family::Fem || run.value("time-steps").is_some()))
     }
 }
 
-/// The publication whose claim on time and error a case tests.
+/// Publication whose claim on time and error a case tests.
 pub(crate) fn tested(record: &Record) -> Option<&'static Publication> {
     PUBLICATIONS.iter().find(|p| p.name == record.published)
 }
 
-/// The publication that a case is a reading of: its numbers may be compared with ours.
+/// Publication that a case reproduces, so that its numbers may be compared.
 pub(crate) fn read_as(record: &Record) -> Option<&'static Publication> {
     tested(record).filter(|_| record.purpose == Purpose::Published)
 }
 
-/// Whether a publication's numbers are held here.
+/// Whether the numbers of a publication are available here.
 pub fn is_known_publication(name: &str) -> bool {
     PUBLICATIONS.iter().any(|p| p.name == name)
 }
 
-/// All of them.
+/// All publications.
 const PUBLICATIONS: [Publication; 1] = [Publication {
     name: "saghaei-2016",
     numbers: &SAGHAEI_2016,
@@ -67,17 +67,18 @@ const PUBLICATIONS: [Publication; 1] = [Publication {
 
 /// One published number.
 pub(crate) struct Published {
-    /// The quantity here: `max-x`, `rms-y`, `rms-least`, `elements`, or the phases of a time joined by `+`.
+    /// Name of the quantity: `max-x`, `rms-y`, `rms-least`, `elements`, or the phases of a time joined by
+    /// `+`.
     pub(crate) quantity: &'static str,
-    /// Whose (`rms-*` compares EFG with FE).
+    /// Family of methods (`rms-*` compares EFG with FE).
     pub(crate) family: Family,
-    /// SI value.
+    /// Value in SI units.
     pub(crate) value: f64,
-    /// Digits it was given with.
+    /// Number of published digits.
     pub(crate) digits: usize,
-    /// What it is.
+    /// Description of the number.
     pub(crate) what: &'static str,
-    /// Where it stands.
+    /// Place in the publication.
     pub(crate) place: &'static str,
 }
 
@@ -98,9 +99,10 @@ const TEXT: &str = "text";
 const COMPARED: &str = "text, section 3.3";
 const ABSTRACT: &str = "abstract";
 
-/// Saghaei Nooshabadi et al., Scientia Iranica B 23(1) (2016) 295-300: a kidney in a grasper. Finite elements: Abaqus/Explicit, C3D4,
-/// 1330 nodes. Element-free Galerkin: Matlab, 83 nodes. Where a number's section isn't known for certain its place is just "text".
-/// Two numbers of elements, and two accounts of the RMS, contradict each other in print.
+/// Saghaei Nooshabadi et al., Scientia Iranica B 23(1) (2016) 295-300: a kidney in a grasper. Finite
+/// elements: Abaqus/Explicit, C3D4, 1330 nodes. Element-free Galerkin: Matlab, 83 nodes. The place of a
+/// number whose section is uncertain is "text". Two numbers of elements, and two accounts of the RMS,
+/// contradict each other in print.
 const SAGHAEI_2016: [Published; 17] = [
     published("elements", FEM, 6195.0, 4, "elements of the FE mesh", TEXT),
     published("elements", FEM, 2621.0, 4, "elements of the FE mesh, in another passage", TEXT),

@@ -1,45 +1,45 @@
-//! What a recorded quantity is called on axes and in tables: the label of its catalogue entry and the unit it is shown in.
+//! Names of recorded quantities on axes and in tables: the label and the display unit of the catalogue entry.
 
 use catalogue::Dimension;
 use catalogue::metric::{self, Metric};
 
-/// Millimetres to a metre: lengths are shown in mm.
+/// Factor from metres to millimetres, in which lengths are shown.
 const MILLIMETRES: f64 = 1e3;
 
-/// A metric as reports show it.
+/// Display form of a metric.
 #[derive(Clone, Copy)]
 pub(crate) struct Shown {
     entry: &'static Metric,
 }
 
 impl Shown {
-    /// A recorded quantity; `None` for one that the catalogue does not have.
+    /// Looks up a recorded quantity; `None` if the catalogue does not have it.
     pub(crate) fn of(quantity: &str) -> Option<Shown> {
         metric::find(quantity).map(|entry| Shown { entry })
     }
 
-    /// `relative L2 error`.
+    /// Label, such as `relative L2 error`.
     pub(crate) fn label(self) -> &'static str {
         self.entry.label
     }
 
-    /// `mm` for lengths, else the SI unit.
+    /// Display unit: `mm` for lengths, otherwise the SI unit.
     pub(crate) fn unit(self) -> &'static str {
         if self.entry.dimension == Dimension::Length { "mm" } else { self.entry.unit() }
     }
 
-    /// `relative L2 error [1]`.
+    /// Label with its unit, such as `relative L2 error [1]`.
     pub(crate) fn with_unit(self) -> String {
         format!("{} [{}]", self.label(), self.unit())
     }
 
-    /// What an SI value is multiplied by to be shown.
+    /// Factor from the SI value to the value shown.
     pub(crate) fn scale(self) -> f64 {
         if self.entry.dimension == Dimension::Length { MILLIMETRES } else { 1.0 }
     }
 }
 
-/// The label of a quantity with its unit; the bare name of one that the catalogue does not have.
+/// Label of a quantity with its unit, or only the name of a quantity that is not in the catalogue.
 pub(crate) fn label(quantity: &str) -> String {
     Shown::of(quantity).map_or_else(|| quantity.into(), Shown::with_unit)
 }

@@ -1,29 +1,39 @@
-//! One tidy long table: one number a row, with everything that is needed to find it again.
+//! Tidy long table of results: one number per row, with all that identifies it.
 //!
-//! All values are SI (lengths in metres, times in seconds); millimetres appear only when a table or a figure is drawn.
+//! All values are SI (lengths in metres, times in seconds). Millimetres appear only in drawn tables and
+//! figures.
 //!
-//! - A row is found by `run`, `quantity`, `phase`, `step`, `mode`, `statistic` and `repeat`: no two rows agree in all of them.
-//! - Errors (`rms-*`, `relative-rms`, `l2`, `energy`, `pressure`, `max-error*`, `peak-error`, `tool-force-error`) and plain outcomes
-//!   (`max-*`, `tip`, `strain-energy`) have `statistic = "value"` and no phase, step or mode.
-//! - Relative errors against a method or a stored record have beside them `statistic = "band"`, the reference's own error, where it is known:
-//!   what is below it says nothing.
-//! - Times (`time`: by the clock on the wall; `cpu-time`: of all threads of the process, of other runs too where several go on at
-//!   once) have a `phase` (`prepare`, `assemble`, `factor`, `solve`, `transfer`, `total`; within `solve` a static path's
-//!   `solve-to-limit`). Each repeat has a row (`statistic = "repeat"`, `repeat` counts from 1), and so have their `median`, and of
-//!   `time` also `spread` (interquartile range) and `min`.
-//! - `memory` is of the method, beyond its input; with `phase = "process"` of the whole process during the run.
-//! - A loop of frames has the phases `repeated` and `repeated-field` with `median`, `p99` and `p99.9` or, of too few frames, `max` (s), and `frames`,
-//!   `iterations` (per frame), `deviation` or, where it broke off, `broke-off` (pure numbers); `condense` is made once for it.
-//! - A transfer scheme is a run of its own, whose `rms` is the error of the displacement after the transfer (the method's error and the
-//!   transfer's together) and whose `transfer-rms` is what the transfer changes of the method's own displacement: `family = "interp"`, `variant` its name, `method` the scheme's id, `nodes` the number of
-//!   source nodes, `from` the method whose field it carries and `kernel` that method's kernel.
-//! - What is recorded step by step has one row per `step` (from 0, the start) and quantity: `closure` (m) or `time` (s, the
-//!   model's own) says where the step is, `tool-force` (N), `external-work`, `strain-energy`, `kinetic-energy`, `contact-energy`,
-//!   `friction-dissipation` and `damping-dissipation` (J) what was found there; a reference (`family = "reference"`) adds `low` and
-//!   `high` rows for its uncertainty. Modes of vibration have their number in `mode` (from 1).
-//! - The same approach at several sizes is one series: it differs in `level`, `nodes` and `spacing` only.
+//! - A row is identified by `run`, `quantity`, `phase`, `step`, `mode`, `statistic` and `repeat`: no two rows
+//!   agree in all of them.
+//! - Errors (`rms-*`, `relative-rms`, `l2`, `energy`, `pressure`, `max-error*`, `peak-error`,
+//!   `tool-force-error`) and plain outcomes (`max-*`, `tip`, `strain-energy`) have `statistic = "value"` and
+//!   no phase, step or mode.
+//! - Relative errors against a method or a stored record also have a row with `statistic = "band"`, if the
+//!   error of the reference itself is known. Differences below this value are not significant.
+//! - Times are `time` (wall time) or `cpu-time` (of all threads of the process, including concurrent runs).
+//!   They have a `phase` (`prepare`, `assemble`, `factor`, `solve`, `transfer`, `total`; within `solve` also
+//!   `solve-to-limit` of a static path). Each repeat has a row (`statistic = "repeat"`, `repeat` counts from
+//!   1). Further rows have the `median`, and for `time` the `spread` (interquartile range) and `min`.
+//! - `memory` is that of the method in excess of its input; with `phase = "process"`, that of the whole
+//!   process during the run.
+//! - A loop of frames has the phases `repeated` and `repeated-field`. Their rows are `median`, `p99` and
+//!   `p99.9` or, for too few frames, `max` (s), and the pure numbers `frames`, `iterations` (per frame),
+//!   `deviation` and, for a loop that ended early, `broke-off`. The phase `condense` is computed once for the
+//!   loop.
+//! - A transfer scheme is a separate run with `family = "interp"`. Its `rms` is the error of the displacement
+//!   after the transfer, which combines the errors of the method and the transfer. Its `transfer-rms` is the
+//!   change by the transfer of the method's own displacement. `variant` is the name of the scheme, `method`
+//!   its id, `nodes` the number of source nodes, `from` the method whose field is transferred, and `kernel`
+//!   the kernel of this method.
+//! - Histories have one row per `step` (from 0, the start) and quantity. The step is located by `closure` (m)
+//!   or `time` (s, of the model). Results are `tool-force` (N), and `external-work`, `strain-energy`,
+//!   `kinetic-energy`, `contact-energy`, `friction-dissipation` and `damping-dissipation` (J). A reference
+//!   (`family = "reference"`) adds rows `low` and `high` for its uncertainty. Modes of vibration have their
+//!   number in `mode` (from 1).
+//! - An approach at several sizes forms one series, which varies only in `level`, `nodes` and `spacing`.
 //!
-//! Nothing is read out of a name: what a case is for is its `purpose`, what a method is its `family` and settings.
+//! No information is derived from names: the role of a case is its `purpose`, and a method is described by
+//! its `family` and settings.
 
 use std::cmp::Ordering;
 
@@ -31,7 +41,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::ReportError;
 
-/// What made a number.
+/// Kind of method that produced a number.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Family {
@@ -42,7 +52,7 @@ pub enum Family {
     Efg,
     /// Another family of methods over a mesh.
     OverMesh,
-    /// A solver outside this program.
+    /// A solver outside of this program.
     External,
     /// A transfer scheme.
     Interp,
@@ -50,94 +60,96 @@ pub enum Family {
     Reference,
 }
 
-/// What a case is for.
+/// Purpose of a case.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Purpose {
-    /// A test of exactness: run times, locking and orders mean nothing.
+    /// A test of exactness, without meaning for run times, locking and orders.
     Patch,
-    /// A smooth solution, whose errors fall with the order that theory promises.
+    /// A smooth solution, whose errors decrease with the theoretical order.
     #[default]
     Smooth,
-    /// A solution that is not smooth: no order is promised.
+    /// A non-smooth solution, without a theoretical order.
     Rough,
-    /// A reading of a published case, compared with its numbers; no order is promised.
+    /// A reproduction of a published case, compared with its numbers, without a theoretical order.
     Published,
 }
 
 /// One number of one run. Settings that a method does not have are `None`.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Record {
-    /// Id of the run: the same for all of its rows, and in every study that runs the same case with the same settings and size.
+    /// Id of the run, the same for all its rows and in every study that runs the same case with the same
+    /// settings and size.
     pub run: String,
     /// Case (scene) name, such as `pure-bending`.
     pub case: String,
-    /// What the case is for.
+    /// Purpose of the case.
     pub purpose: Purpose,
-    /// The published comparison that the case belongs to, such as `saghaei-2016`; empty where there is none.
+    /// Published comparison that the case belongs to, such as `saghaei-2016`; empty without one.
     pub published: String,
-    /// Method id as the scene gives it, such as `tet4` or `efg-83`.
+    /// Method id in the scene, such as `tet4` or `efg-83`.
     pub method: String,
-    /// The name that the sizes of one approach share, such as `efg`.
+    /// Common name of the sizes of an approach, such as `efg`.
     pub series: String,
     /// Finite elements, clouds, a transfer scheme or a reference.
     pub family: Family,
-    /// Element (`tet10`), kernel (`cubic-spline`), transfer scheme (`inverse-distance`) or, of a reference, its method.
+    /// Element (`tet10`), kernel (`cubic-spline`), transfer scheme (`inverse-distance`) or method of a
+    /// reference.
     pub variant: String,
     /// Polynomial basis of a cloud: `linear`, `quadratic` or `maximum-entropy`.
     pub basis: Option<String>,
     /// Support radius over the local node spacing.
     pub support_scale: Option<f64>,
-    /// Neighbours that a support reaches to, or that a transfer scheme takes.
+    /// Number of neighbours that a support reaches, or that a transfer scheme uses.
     pub neighbours: Option<u64>,
     /// Support radius over the distance to the last of these neighbours.
     pub neighbour_factor: Option<f64>,
-    /// Shape of supports other than balls.
+    /// Shape of supports that are not balls.
     pub neighbourhood: Option<String>,
     /// Locality of maximum-entropy functions.
     pub gamma: Option<f64>,
-    /// Kernel of a cloud; of a transfer scheme that of the method whose field it carries.
+    /// Kernel of a cloud; for a transfer scheme, that of the method whose field is transferred.
     pub kernel: Option<String>,
     /// Volumetric projection, such as `standard` or `nodal-mean`.
     pub dilation: Option<String>,
-    /// Rule of integration where a family has several, such as `gauss-4` or `cell-smoothed-1`.
+    /// Integration rule, for a family with several, such as `gauss-4` or `cell-smoothed-1`.
     pub integration: Option<String>,
-    /// How prescribed displacements are imposed on a cloud, such as `nitsche`.
+    /// Enforcement of prescribed displacements on a cloud, such as `nitsche`.
     pub essential: Option<String>,
-    /// Error indicator and steps by which a cloud was refined.
+    /// Error indicator and number of steps of the refinement of a cloud.
     pub refine: Option<String>,
-    /// Rule of the second integration by which errors of integration and of discretisation are told apart.
+    /// Rule of the second integration that separates integration errors from discretisation errors.
     pub split: Option<String>,
     /// Material law at large strain.
     pub law: Option<String>,
-    /// Mass of vibrations: `consistent`, `lumped` or `transformed`.
+    /// Mass matrix of vibrations: `consistent`, `lumped` or `transformed`.
     pub mass: Option<String>,
-    /// The method whose field a transfer scheme carries.
+    /// Method whose field a transfer scheme transfers.
     pub from: Option<String>,
     /// Power of the distance in a transfer scheme.
     pub power: Option<f64>,
     /// Width of a scheme's radial functions over the mean node spacing.
     pub shape: Option<f64>,
-    /// Whether a scheme's radial functions have a linear polynomial with them.
+    /// Whether the radial functions of a scheme are augmented by a linear polynomial.
     pub polynomial: Option<bool>,
-    /// Kernel that evaluated the internal forces of explicit dynamics.
+    /// Kernel for the internal forces of explicit dynamics.
     pub force_kernel: Option<String>,
-    /// The adapter of a solver outside this program, with its settings.
+    /// Adapter of a solver outside of this program, with its settings.
     #[serde(default)]
     pub adapter: Option<String>,
-    /// Lanes that it ran in, such as `avx2`, or `plain` for one element at a time.
+    /// SIMD lanes of the run, such as `avx2`, or `plain` for one element at a time.
     pub lane_path: Option<String>,
-    /// Linear solver that ran, such as `sparse-llt`.
+    /// Linear solver of the run, such as `sparse-llt`.
     pub linear_solver: Option<String>,
-    /// What a study drives the scene along; empty for the scene as it is.
+    /// Axis along which a study varies the scene; empty for the unchanged scene.
     #[serde(default)]
     pub axis: String,
-    /// Where on that axis it is.
+    /// Value on this axis.
     #[serde(default)]
     pub at: Option<f64>,
     /// Poisson's ratio of the (first) material, dimensionless.
     pub poisson: f64,
-    /// Refinement level, 1 the coarsest; 0 where the run belongs to no family of levels.
+    /// Refinement level, 1 the coarsest; 0 for a run without levels.
     pub level: u32,
     /// Nodes of the discretisation.
     pub nodes: u64,
@@ -145,37 +157,42 @@ pub struct Record {
     pub elements: u64,
     /// Integration points.
     pub points: u64,
-    /// Unknowns solved for: supports eliminated, multipliers included.
+    /// Unknowns of the system, without prescribed displacements and with multipliers.
     pub dofs: u64,
     /// Mean node spacing h, in metres.
     pub spacing: f64,
-    /// Seed of jitter and clouds; 0 where there is no randomness.
+    /// Seed of jitter and clouds; 0 without randomness.
     pub seed: u64,
-    /// What was measured: `rms-x`, `rms`, `l2`, `energy`, `pressure`, `max-x`, `time`, `memory`, `condition-max`, `tip`, ...
+    /// Measured quantity: `rms-x`, `rms`, `l2`, `energy`, `pressure`, `max-x`, `time`, `memory`,
+    /// `condition-max`, `tip`, ...
     pub quantity: String,
-    /// SI unit as text: `m`, `s`, `Pa`, `B`, or `1` for a pure number.
+    /// SI unit: `m`, `s`, `Pa`, `B`, or `1` for a pure number.
     pub unit: String,
-    /// Phase of a time: `prepare`, `assemble`, `factor`, `solve`, `transfer`, `total`, `repeated`; empty where none applies.
+    /// Phase of a time: `prepare`, `assemble`, `factor`, `solve`, `transfer`, `total`, `repeated`; empty
+    /// without a phase.
     pub phase: String,
-    /// Load step or recorded state, 0 the start.
+    /// Load step or recorded state; 0 is the start.
     pub step: Option<u64>,
-    /// Mode of vibration, 1 the lowest.
+    /// Mode of vibration; 1 is the lowest.
     pub mode: Option<u64>,
-    /// `value`, `repeat`, `median`, `spread` (interquartile range), `min`, `max`, `p99` and `p99.9`
-    /// (quantiles), the ends `low` and `high` of an uncertainty, or `band`: the reference's own error in that
-    /// quantity.
+    /// Statistic: `value`, `repeat`, `median`, `spread` (interquartile range), `min`, `max`, the quantiles
+    /// `p99` and `p99.9`, the ends `low` and `high` of an uncertainty, or `band`, the error of the reference
+    /// itself in this quantity.
     pub statistic: String,
-    /// Which repeat of a timing, from 1.
+    /// Number of the timing repeat, from 1.
     pub repeat: Option<u64>,
     /// The number, in `unit`; always finite.
     pub value: f64,
 }
 
-/// What finds a row: run, quantity, phase, step, mode, statistic, repeat.
+/// Unique key of a row: run, quantity, phase, step, mode, statistic, repeat.
 pub(crate) type Key<'a> = (&'a str, &'a str, &'a str, Option<u64>, Option<u64>, &'a str, Option<u64>);
 
 impl Record {
-    /// Refuses a record whose value, Poisson's ratio or spacing isn't finite.
+    /// Checks the numbers of the record.
+    ///
+    /// # Errors
+    /// A value, Poisson's ratio or spacing that is not finite.
     pub fn check(&self) -> Result<(), ReportError> {
         for (field, value) in [("value", self.value), ("poisson", self.poisson), ("spacing", self.spacing)] {
             if !value.is_finite() {
@@ -191,7 +208,7 @@ impl Record {
         Ok(())
     }
 
-    /// All of its texts.
+    /// All text fields of the record.
     pub(crate) fn texts_mut(&mut self) -> impl Iterator<Item = &mut String> {
         let own = [
             &mut self.run,
@@ -226,24 +243,24 @@ impl Record {
         own.into_iter().chain(settings.into_iter().flatten())
     }
 
-    /// Whether the value depends on the machine and the moment (times and memory): such rows are left out when two runs
-    /// are compared bit by bit.
+    /// Whether the value depends on the machine and the moment (times and memory). Such rows are excluded
+    /// from bitwise comparisons of two runs.
     pub fn is_measured(&self) -> bool {
         match self.quantity.as_str() {
-            // Of a step, time is the model's own.
+            // The time of a step is model time.
             "time" => self.step.is_none(),
             "cpu-time" | "memory" => true,
             _ => false,
         }
     }
 
-    /// What no other row has.
+    /// Unique key of the row.
     pub(crate) fn key(&self) -> Key<'_> {
         let Record { run, quantity, phase, step, mode, statistic, repeat, .. } = self;
         (run, quantity, phase, *step, *mode, statistic, *repeat)
     }
 
-    /// The settings that a method has, with their names in words. A kernel that is the variant is not repeated.
+    /// Settings of the method, with their names in words. A kernel that equals the variant is not repeated.
     pub fn settings(&self) -> Vec<(&'static str, String)> {
         let words = |value: &Option<String>| value.clone();
         let number = |value: &Option<f64>| value.map(|v| v.to_string());
@@ -272,7 +289,8 @@ impl Record {
         all.into_iter().filter_map(|(name, value)| Some((name, value?))).collect()
     }
 
-    /// The order of the stored table: by run as a reader would look for it, then by what finds a row.
+    /// Order of the stored table: by the properties of the run that a reader looks for, then by the key of
+    /// the row.
     pub fn order(&self, other: &Record) -> Ordering {
         type Who<'a> = (&'a str, Family, &'a str, &'a str, u32, u64, u64);
         fn who(r: &Record) -> Who<'_> {
@@ -283,7 +301,7 @@ impl Record {
             .then(self.poisson.total_cmp(&other.poisson))
             .then_with(|| match self.run == other.run {
                 true => Ordering::Equal,
-                // Not by their ids alone, which the name of a case is part of.
+                // Not by the id alone, which contains the name of the case.
                 false => self.settings().cmp(&other.settings()),
             })
             .then_with(|| self.key().cmp(&other.key()))
@@ -293,12 +311,12 @@ impl Record {
 
 #[cfg(test)]
 impl Record {
-    /// What tests fill in: a value of a run of no size.
+    /// A record for tests: a value of a run without a size.
     pub(crate) fn blank() -> Record {
         Record { poisson: 0.495, unit: "m".into(), statistic: "value".into(), ..Record::default() }
     }
 
-    /// With an id made of what tells runs of tests apart.
+    /// The record with an id composed of the properties that distinguish runs in tests.
     pub(crate) fn of_its_run(mut self) -> Record {
         let who = (
             &self.case,

@@ -1,4 +1,4 @@
-//! References of runs, and their own error.
+//! References of runs, with their own errors.
 
 use std::collections::BTreeMap;
 
@@ -7,29 +7,29 @@ use serde::{Deserialize, Serialize};
 
 use crate::text::{list, percent};
 
-/// The reference of a case's runs, with its own error.
+/// Reference of the runs of a case, with its own error.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Reference {
     /// Case name.
     pub case: String,
     /// Poisson's ratio of the (first) material.
     pub poisson: f64,
-    /// Id of its method, or the name of an exact solution.
+    /// Id of the reference method, or name of an exact solution.
     pub method: String,
-    /// Its nodes; 0 of an exact solution.
+    /// Number of nodes; 0 for an exact solution.
     pub nodes: u64,
-    /// Its own error by metric, relative; empty of an exact solution, and where it is unknown.
+    /// Relative error of the reference by metric; empty for an exact solution, or if it is unknown.
     pub band: BTreeMap<String, f64>,
-    /// The solutions by whose distance that error is estimated.
+    /// Solutions whose distance estimates this error.
     pub by: Vec<String>,
-    /// Why its error is unknown; empty where it is known.
+    /// Reason for which the error is unknown; empty if it is known.
     pub unknown: String,
-    /// Warnings about its numbers.
+    /// Warnings about the numbers of the reference.
     pub warnings: Vec<String>,
 }
 
 impl Reference {
-    /// Its name with its size.
+    /// Name of the reference with its size.
     pub fn name(&self) -> String {
         match self.nodes {
             0 => format!("the exact solution {}", self.method),
@@ -37,7 +37,7 @@ impl Reference {
         }
     }
 
-    /// Its name and its own error, in a sentence without the full stop.
+    /// Name of the reference and its error, as a sentence without the full stop.
     pub fn sentence(&self) -> String {
         let name = self.name();
         if !self.unknown.is_empty() {
@@ -61,10 +61,10 @@ impl Reference {
     }
 }
 
-/// Errors below this are of rounding, or of a quantity that is prescribed.
+/// Errors below this are due to rounding, or belong to a prescribed quantity.
 const ROUNDING: f64 = 1e-6;
 
-/// Metrics of a reference's own error that a sentence names, and how.
+/// Metrics of the reference error that a sentence mentions, with their words.
 const WORDS: [(&str, &str); 4] = [
     ("relative-rms", "displacement"),
     ("tool-force-error", "force"),

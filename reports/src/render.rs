@@ -1,4 +1,4 @@
-//! A run's folder turned into tables, figures and one page.
+//! Renders the folder of a run as tables, figures and a page.
 
 use std::path::{Path, PathBuf};
 
@@ -15,23 +15,31 @@ use crate::select;
 use crate::store::{end, make_dir, read_marked, read_numbers, remove_files, write_marked, write_text};
 use crate::tables;
 
-/// What rendering wrote.
+/// Files written by a rendering.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Rendered {
-    /// The page to open first.
+    /// Path of the page.
     pub page: PathBuf,
-    /// Every file, in the order written, the page last.
+    /// All files in the order of writing, the page last.
     pub files: Vec<PathBuf>,
 }
 
-/// Reads a run's folder and writes `tables/*.{csv,md,tex}`, `figures/*.{svg,png,pdf,csv}` and `report.html` to another (or the same).
+/// Reads the folder of a run and writes `tables/*.{csv,md,tex}`, `figures/*.{svg,png,pdf,csv}` and
+/// `report.html` to another folder (or the same).
 ///
 /// The same records give the same bytes. Nothing is solved or timed again.
+///
+/// # Errors
+/// A folder without complete results or without records, or a file that cannot be written.
 pub fn render(results: &Path, out: &Path) -> Result<Rendered, ReportError> {
     render_over_commits(results, out, None)
 }
 
-/// The same, with a history of studies ([`commits`](crate::commits)) drawn over commits where one is given.
+/// Renders a run as [`render`] does, with a history of studies ([`commits`](crate::commits)) drawn over
+/// commits if one is given.
+///
+/// # Errors
+/// As for [`render`], and a history that cannot be read.
 pub fn render_over_commits(
     results: &Path,
     out: &Path,
@@ -40,8 +48,11 @@ pub fn render_over_commits(
     render_set(&read_numbers(results, "report")?, results, out, history)
 }
 
-/// Writes a run to a folder, and its report to `report` in it. The folder is marked as incomplete until both
-/// are there: whatever ends the program earlier, results do not pass as whole with an older page.
+/// Writes a run to a folder, and its report to `report` in this folder. The folder is marked as incomplete
+/// until both are written, so that results never appear complete with an older page.
+///
+/// # Errors
+/// Invalid records, or a file that cannot be written.
 pub fn write_with_report(dir: &Path, run: &RunSet, history: Option<&Path>) -> Result<Rendered, ReportError> {
     write_marked(dir, run)?;
     let rendered = render_set(&read_marked(dir)?, dir, &dir.join("report"), history)?;
@@ -59,7 +70,7 @@ fn render_set(
         Some(history) => commits::shown(history, &set.provenance.source)?,
         None => Vec::new(),
     };
-    // Along an axis a scene is another one from value to value: it has maps of its own.
+    // Each value on an axis is a different scene; stability maps show these runs.
     let as_they_are = set.records.iter().filter(|r| r.at.is_none());
     let mut all = select::runs(as_they_are);
     seconds::decide(&mut all, &set.provenance.machine);
@@ -92,7 +103,8 @@ fn render_set(
     }
     let drawn: Vec<Drawn> = drawn.into_iter().map(|painted| painted.drawn).collect();
     let page = out.join("report.html");
-    // Beside a page of ours what has our endings in the two folders is ours, and what is not written again is old.
+    // The folders of an existing report contain only report files with these suffixes; those not written
+    // again are outdated.
     let ours = disk::read_text(&page, disk::Kind::RESULTS).is_ok_and(|old| old.contains(page::TITLE));
     let html = page::html(set, (&runs, &clouds), &trends, &tables, &drawn, records_from(results, out))?;
     write(page.clone(), html.as_bytes())?;
@@ -103,7 +115,7 @@ fn render_set(
     Ok(Rendered { page, files })
 }
 
-/// A figure in all its forms.
+/// A figure in all its formats.
 struct Painted {
     drawn: Drawn,
     png: Vec<u8>,
@@ -116,7 +128,7 @@ fn draw(figure: Figure) -> Result<Painted, ReportError> {
     Ok(Painted { drawn: Drawn { figure, svg }, png, pdf })
 }
 
-/// Where the page finds the records: only a folder that is moved with it is named.
+/// Path of the records for the page; empty unless the folders move together.
 fn records_from(results: &Path, out: &Path) -> &'static str {
     if out == results {
         "records.csv"

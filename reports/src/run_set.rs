@@ -1,4 +1,4 @@
-//! Everything that one study leaves behind.
+//! Results of one study.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -10,22 +10,22 @@ use crate::provenance::Provenance;
 use crate::record::{Family, Record};
 use crate::reference::Reference;
 
-/// How a check came out.
+/// Outcome of a check.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Status {
     /// The bound held.
     Pass,
-    /// The bound didn't hold.
+    /// The bound did not hold.
     Fail,
-    /// The bound didn't hold and wasn't expected to; the reason says why.
+    /// The bound did not hold, as expected for the stated reason.
     KnownFailure,
-    /// The check couldn't be evaluated.
+    /// The check could not be evaluated.
     NotRun,
 }
 
 impl Status {
-    /// The word used in files and tables.
+    /// Name in files and tables.
     pub fn name(self) -> &'static str {
         match self {
             Status::Pass => "pass",
@@ -35,7 +35,7 @@ impl Status {
         }
     }
 
-    /// Reads the word back.
+    /// Parses a name.
     pub fn from_name(name: &str) -> Option<Status> {
         [Status::Pass, Status::Fail, Status::KnownFailure, Status::NotRun]
             .into_iter()
@@ -43,37 +43,37 @@ impl Status {
     }
 }
 
-/// One bound on one number, and whether it held.
+/// Bound on a number, and its outcome.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Check {
     /// Case name.
     pub case: String,
     /// Method id.
     pub method: String,
-    /// The number that is bounded, such as `rms-x` or `order-l2`.
+    /// Name of the bounded number, such as `rms-x` or `order-l2`.
     pub metric: String,
-    /// Its value in SI; `None` where it couldn't be computed.
+    /// Value in SI units; `None` if it could not be computed.
     pub value: Option<f64>,
     /// The bound in words, such as `at most 1e-12`.
     pub bound: String,
-    /// How it came out.
+    /// Outcome of the check.
     pub status: Status,
-    /// Why it failed, is known to fail, or wasn't run; empty for a pass.
+    /// Reason for which the check failed, is known to fail, or was not run; empty for a pass.
     pub reason: String,
-    /// Place of the check, `file:line` with the file as it was named; not stored, as results are the same
-    /// wherever a study is.
+    /// Place of the check, as `file:line` with the file name as given. It is not stored, so that results do
+    /// not depend on the location of a study.
     #[serde(skip)]
     pub at: String,
 }
 
-/// Displacement on a body's surface, for the pictures.
+/// Displacement on a body's surface, for pictures.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SurfaceField {
     /// Case name.
     pub case: String,
     /// Method id.
     pub method: String,
-    /// Finite elements or a cloud.
+    /// Family of the method.
     pub family: Family,
     /// Title above the picture.
     pub title: String,
@@ -83,34 +83,34 @@ pub struct SurfaceField {
     pub triangles: Vec<[u32; 3]>,
     /// Displacement at each point, metres.
     pub displacement: Vec<[f64; 3]>,
-    /// The tools of a scene where they stand in this state.
+    /// Tools of the scene at their positions in this state.
     #[serde(default)]
     pub tools: Vec<ToolHull>,
-    /// A section between the tools.
+    /// Section between the tools.
     #[serde(default)]
     pub section: Option<Section>,
-    /// What a view in three dimensions shows.
+    /// Data of the three-dimensional view.
     #[serde(default)]
     pub body: Option<Body>,
 }
 
-/// A tool as points whose convex hull it is.
+/// A tool as the convex hull of points.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ToolHull {
     /// Name in the scene.
     pub name: String,
-    /// The points, metres.
+    /// Positions of the points, m.
     pub points: Vec<[f64; 3]>,
 }
 
 /// A plane cut through the undeformed body, shown deformed.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Section {
-    /// Unit vector in the plane that is to the right on paper: the way of the first tool.
+    /// Unit vector in the plane that points right on paper: the travel of the first tool.
     pub right: [f64; 3],
-    /// Unit vector in the plane that is upwards on paper.
+    /// Unit vector in the plane that points up on paper.
     pub up: [f64; 3],
-    /// The cells it cuts.
+    /// Cells cut by the plane.
     pub cells: Vec<SectionCell>,
 }
 
@@ -124,7 +124,10 @@ pub struct SectionCell {
 }
 
 impl SurfaceField {
-    /// Refuses a field whose arrays don't fit together or hold a number that isn't finite.
+    /// Checks the arrays of the field.
+    ///
+    /// # Errors
+    /// Arrays that are inconsistent or contain a number that is not finite.
     pub fn check(&self) -> Result<(), ReportError> {
         let wrong = |reason: String| ReportError::Field {
             case: self.case.clone(),
@@ -150,7 +153,7 @@ impl SurfaceField {
     }
 }
 
-/// One stage of one plan.
+/// Decision on one stage of a run's plan.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct PlanEntry {
     /// Case name.
@@ -159,36 +162,36 @@ pub struct PlanEntry {
     pub method: String,
     /// Stage, such as `contact search`.
     pub stage: String,
-    /// Whether it ran.
+    /// Whether the stage ran.
     pub ran: bool,
-    /// Why it ran or was skipped.
+    /// Reason for which the stage ran or was skipped.
     pub why: String,
 }
 
-/// A run that ended early: it gave no numbers, or those of a part of its load.
+/// A run that ended early, without numbers or with those of a partial load.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Failure {
     /// Case name.
     pub case: String,
     /// Method id.
     pub method: String,
-    /// What went wrong.
+    /// Reason for the early end.
     pub reason: String,
-    /// The part of the load, 0 to 1, that its numbers are of; `None` where it gave none.
+    /// Load fraction, 0 to 1, that the numbers belong to; `None` without numbers.
     #[serde(default)]
     pub carried: Option<f64>,
-    /// The word for how it ended, such as `stalled`.
+    /// Status word, such as `stalled`.
     #[serde(default)]
     pub status: String,
-    /// The adapter of a solver outside this program, with its settings; empty for a run of this program.
+    /// Adapter of a solver outside of this program, with its settings; empty for a run of this program.
     #[serde(default)]
     pub adapter: String,
-    /// Place of the key that it is about, `file:line`; empty where none is known.
+    /// Place of the key concerned, `file:line`; empty if unknown.
     #[serde(default)]
     pub at: String,
 }
 
-/// What is to be said against the numbers of a run.
+/// Warning about the numbers of a run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Warning {
     /// Case name.
@@ -197,38 +200,38 @@ pub struct Warning {
     pub method: String,
     /// Id of the run, as in the records.
     pub run: String,
-    /// Which warning, such as `probe-outside`.
+    /// Code of the warning, such as `probe-outside`.
     pub code: String,
-    /// What it means here, with its numbers.
+    /// Message with its numbers.
     pub message: String,
-    /// The number it goes by, SI.
+    /// Decisive number, SI.
     pub value: f64,
-    /// Unit of the value; `1` for a bare number.
+    /// Unit of the value; `1` for a pure number.
     pub unit: String,
-    /// The key of the scene that it is about, or empty.
+    /// Scene key concerned, or empty.
     #[serde(rename = "where")]
     pub place: String,
 }
 
-/// Everything one study leaves behind.
+/// Results of one study.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct RunSet {
-    /// Where the numbers come from.
+    /// Provenance of the numbers.
     pub provenance: Provenance,
-    /// The numbers.
+    /// Numbers of all runs.
     pub records: Vec<Record>,
-    /// The bounds.
+    /// Checks with their outcomes.
     pub checks: Vec<Check>,
-    /// Surface displacements for the pictures.
+    /// Surface displacements for pictures.
     pub fields: Vec<SurfaceField>,
     /// Stages run and skipped.
     pub plans: Vec<PlanEntry>,
     /// Runs that failed or ended early.
     pub failures: Vec<Failure>,
-    /// What is to be said against the numbers.
+    /// Warnings about the numbers.
     pub warnings: Vec<Warning>,
     /// References of the numbers.
     pub references: Vec<Reference>,
-    /// How methods fare along axes.
+    /// Outcomes of methods along axes.
     pub axes: Vec<Axis>,
 }

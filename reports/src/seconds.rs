@@ -1,8 +1,8 @@
-//! The seconds by which runs are compared.
+//! Choice of the time by which runs are compared.
 //!
-//! The clock on the wall says what a user waits for, as long as no other program has the processors.
-//! Otherwise it says how busy the machine was: the seconds of the processors are then nearer to what the
-//! method takes. This is decided here, for all runs of a case alike.
+//! Wall time is the time that a user waits for, as long as no other program uses the processors. Otherwise it
+//! measures how busy the machine was, and CPU time is closer to the cost of the method. The choice is made
+//! here, equally for all runs of a case.
 
 use serde::{Deserialize, Serialize};
 
@@ -10,36 +10,36 @@ use crate::provenance::Machine;
 use crate::record::{Family, Record};
 use crate::select::{Run, runs};
 
-/// Seconds on the wall over seconds of the processors above which other programs had the processors.
+/// Ratio of wall time to CPU time above which other programs used the processors.
 const DISTURBED: f64 = 1.2;
-/// Shorter runs are not judged, s: to wake a thread takes a part of them.
+/// Smallest wall time that is assessed, s. In shorter runs, waking threads takes a significant part of the
+/// time.
 const SHORTEST: f64 = 5e-3;
 
-/// Seconds of a run.
+/// Kind of time by which runs are compared.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Seconds {
-    /// On the wall, the median of the repeats.
+    /// Wall time, median of the repeats.
     #[default]
     Wall,
-    /// Of all processors together, the median of the repeats; on the wall where they are not known.
+    /// CPU time of all processors, median of the repeats; wall time if the CPU time is unknown.
     Cpu,
-    /// On the wall, the least of the repeats.
+    /// Wall time, minimum of the repeats.
     Least,
 }
 
-/// Times of one run, medians of its repeats.
+/// Times of one run, as medians of its repeats.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Took {
-    /// On the wall, s.
+    /// Wall time, s.
     pub wall: f64,
-    /// Of all processors together, s; `None` where it is not known.
+    /// CPU time of all processors, s; `None` if unknown.
     pub cpu: Option<f64>,
 }
 
 impl Took {
-    /// Seconds on the wall over those of the processors, where they show that other programs had the
-    /// processors.
+    /// Ratio of wall time to CPU time, if it shows that other programs used the processors.
     pub fn disturbed(&self) -> Option<f64> {
         let ratio = self.wall / self.cpu.filter(|cpu| *cpu > 0.0)?;
         (self.wall >= SHORTEST && ratio > DISTURBED).then_some(ratio)
@@ -47,9 +47,9 @@ impl Took {
 }
 
 impl Seconds {
-    /// By which seconds runs are compared that were made on a machine: the clock on the wall where that was
-    /// quiet and no run was disturbed, otherwise the processors. Of runs that were made at once the
-    /// processors' seconds are not told apart, and the least repeat counts.
+    /// Chooses the time for runs on a machine. Wall time is used if the machine was quiet and no run was
+    /// disturbed, otherwise CPU time. The CPU times of concurrent runs cannot be separated, so their shortest
+    /// repeat is used.
     pub fn of(machine: &Machine, took: impl IntoIterator<Item = Took>) -> Seconds {
         let mut took = took.into_iter();
         match machine {
@@ -68,7 +68,7 @@ impl Seconds {
         }
     }
 
-    /// One word.
+    /// Name in one word.
     pub fn word(self) -> &'static str {
         match self {
             Seconds::Wall => "wall",
@@ -78,8 +78,8 @@ impl Seconds {
     }
 }
 
-/// Times of a run; `None` for a solver outside this program, whose start-up is part of its wall time, and for
-/// runs that were not timed.
+/// Times of a run. `None` for a run without times, and for an external solver, whose wall time includes its
+/// start-up.
 fn took(run: &Run) -> Option<Took> {
     if run.is.family == Family::External {
         return None;
@@ -91,7 +91,7 @@ fn took(run: &Run) -> Option<Took> {
     Some(Took { wall: of("time")?, cpu: of("cpu-time") })
 }
 
-/// Decides for neighbouring runs of each case by which seconds they are compared.
+/// Chooses the time for the runs of each case, which are adjacent.
 pub(crate) fn decide(runs: &mut [Run], machine: &Machine) {
     for case in runs.chunk_by_mut(|a, b| a.is.case == b.is.case) {
         let by = Seconds::of(machine, case.iter().filter_map(took));
@@ -99,19 +99,19 @@ pub(crate) fn decide(runs: &mut [Run], machine: &Machine) {
     }
 }
 
-/// How busy a machine was while runs were timed.
+/// Disturbance of a machine during timed runs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Busy {
-    /// Runs that were disturbed.
+    /// Number of disturbed runs.
     pub disturbed: usize,
-    /// Runs that were timed.
+    /// Number of timed runs.
     pub timed: usize,
-    /// Case, method and id of the run that was disturbed the most, and what it took.
+    /// The most disturbed run, by a record with its case, method and id, and its times.
     pub worst: Option<(Record, Took)>,
 }
 
 impl Busy {
-    /// Of runs by their records; `None` where the machine was quiet and none was disturbed.
+    /// Evaluates the runs of the records; `None` if the machine was quiet and no run was disturbed.
     pub fn of(records: &[Record], machine: &Machine) -> Option<Busy> {
         let all = runs(records);
         let took: Vec<(&Run, Took)> = all.iter().filter_map(|run| Some((run, took(run)?))).collect();
@@ -132,7 +132,7 @@ mod tests {
 
     const RUN: (&str, &str, Family) = ("jaws", "tet4", Family::Fem);
 
-    /// A run of so many nodes with its seconds on the wall, of the processors and of the least repeat.
+    /// Records of a run with its wall time, CPU time and shortest repeat.
     fn run(case: &str, nodes: u64, [wall, cpu, least]: [f64; 3]) -> Vec<Record> {
         let is = (case, RUN.1, RUN.2);
         let cpu = Record { quantity: "cpu-time".into(), ..record(is, nodes, ("time", "total:median"), cpu) };
@@ -156,7 +156,7 @@ mod tests {
         let calm = [run("jaws", 100, [0.02, 0.021, 0.019]), run("jaws", 200, [0.04, 0.039, 0.038])].concat();
         assert_eq!(totals(&calm, &quiet), [0.02, 0.04]);
         assert_eq!(Busy::of(&calm, &quiet), None);
-        // 18.8 ms for 2.86 ms of the processors.
+        // 18.8 ms of wall time for 2.86 ms of CPU time.
         let busy =
             [calm.clone(), run("jaws", 300, [0.0188, 0.00286, 0.003]), run("other", 100, [0.3, 0.3, 0.3])]
                 .concat();
@@ -164,9 +164,9 @@ mod tests {
         let found = Busy::of(&busy, &quiet).unwrap();
         let (worst, took) = found.worst.unwrap();
         assert_eq!((found.disturbed, found.timed, worst.nodes, took.wall), (1, 4, 300, 0.0188));
-        // More threads than one take more seconds of the processors than on the wall.
+        // Several threads take more CPU time than wall time.
         assert_eq!(totals(&run("jaws", 100, [1.0, 3.9, 1.0]), &quiet), [1.0]);
-        // Of a short run the threads are woken for as long.
+        // In a short run, waking the threads takes as long.
         assert_eq!(totals(&run("jaws", 100, [0.0004, 0.0002, 0.0004]), &quiet), [0.0004]);
     }
 
@@ -177,7 +177,7 @@ mod tests {
         assert_eq!(totals(&calm, &loaded), [0.021]);
         assert_eq!(Busy::of(&calm, &loaded).unwrap().disturbed, 0);
         assert_eq!(totals(&calm, &Machine { at_once: 4, ..loaded.clone() }), [0.019]);
-        // Runs without processor seconds keep their wall time.
+        // Runs without CPU times keep their wall times.
         assert_eq!(totals(&calm[..3], &loaded), [0.02]);
         let mut all = runs(&calm);
         decide(&mut all, &loaded);

@@ -1,18 +1,24 @@
-//! A run's folder: written once by the harness, read by the report.
+//! Folder of a run, written once by the harness and read by the report.
 //!
 //! | file | content |
 //! |---|---|
-//! | `records.csv` | the long table, one number a row, SI |
-//! | `provenance.json` | where the numbers come from, with the hash of every scene |
-//! | `checks.csv`, `checks.json` | every bound and how it came out |
-//! | `plans.json`, `failures.json` | stages run and skipped; runs that gave no numbers, or those of a part of their load |
-//! | `warnings.json` | what is to be said against the numbers of runs |
-//! | `references.json` | what runs are compared with, and how far that is off itself |
-//! | `axes.json` | how methods fare along the axes of the study |
-//! | `fields/CASE--METHOD.json` | surface displacements, and the surface at some states for a view in three dimensions; with tools also these and a section with its pressure |
-//! | `incomplete.json` | there from the beginning of a study or run until all of the above is written, and its report |
+//! | `records.csv` | the long table, one number per row, SI |
+//! | `provenance.json` | provenance of the numbers, with the hash of every scene |
+//! | `checks.csv`, `checks.json` | every bound with its outcome |
+//! | `plans.json`, `failures.json` | stages run and skipped; runs without numbers or with a partial load |
+//! | `warnings.json` | warnings about the numbers of runs |
+//! | `references.json` | references of the runs, with their own errors |
+//! | `axes.json` | outcomes of methods along the axes of the study |
+//! | `fields/CASE--METHOD.json` | surface displacements and states, see below |
+//! | `incomplete.json` | present from the start of a study or run until all files and the report are written
+//! |
 //!
-//! Each file is written beside its place and renamed: it is whole, the older one, or not there. Rows are sorted and carry no date, so two runs of one state differ in measured rows (times, memory) only.
+//! A file in `fields` contains the surface displacements, and the surface at some states for a
+//! three-dimensional view. For a case with tools it also contains the tools and a section with its pressure.
+//!
+//! Each file is written under another name and then renamed, so it is complete, the previous version, or
+//! absent. Rows are sorted and contain no date. Two runs of one state therefore differ only in measured rows
+//! (times, memory).
 
 use std::collections::HashSet;
 use std::fs;
@@ -30,30 +36,36 @@ use crate::record::Record;
 use crate::run_set::RunSet;
 use crate::table::csv_line;
 
-/// There while the results in a folder are not those of the last study or run that was begun there.
+/// Name of the mark of a folder whose results are not those of the last study or run started there.
 const MARK: &str = "incomplete.json";
 
-/// What is said of results that are yet to come.
+/// Content of the mark.
 #[derive(Serialize, Deserialize)]
 struct Mark {
-    /// Name of the study's or scene's file.
+    /// File name of the study or scene.
     source: String,
 }
 
-/// Marks a folder as one whose results are being made, until they are written, with their report where they
-/// have one. Records of an earlier run there are no longer read: they would pass for the new ones if this run
+/// Marks a folder as incomplete until its results, and their report if there is one, are written. Records of
+/// an earlier run in this folder are then not read. Otherwise they would pass for the new results if this run
 /// were killed.
+///
+/// # Errors
+/// A folder or file that cannot be written.
 pub fn begin(dir: &Path, source: &str) -> Result<(), ReportError> {
     make_dir(dir)?;
     write_json(&dir.join(MARK), &Mark { source: source.to_string() })
 }
 
-/// Whether a folder is marked so.
+/// Whether a folder is marked as incomplete.
 pub fn is_incomplete(dir: &Path) -> bool {
     dir.join(MARK).exists()
 }
 
-/// Takes the mark away, of results that are whole: all written, or none of them touched.
+/// Removes the mark from results that are complete: all written, or none touched.
+///
+/// # Errors
+/// A mark that cannot be removed.
 pub fn end(dir: &Path) -> Result<(), ReportError> {
     let mark = dir.join(MARK);
     match disk::remove(&mark) {
@@ -62,13 +74,18 @@ pub fn end(dir: &Path) -> Result<(), ReportError> {
     }
 }
 
-/// Writes a run to a folder, which is created where missing; surface fields of an earlier run there are removed.
+/// Writes a run to a folder, which is created if it does not exist. Surface fields of an earlier run there
+/// are removed.
+///
+/// # Errors
+/// Invalid records or fields, two records with the same key, or a file that cannot be written.
 pub fn write_run(dir: &Path, run: &RunSet) -> Result<(), ReportError> {
     write_marked(dir, run)?;
     end(dir)
 }
 
-/// The same, but the folder stays marked as incomplete: for results whose report is still to be rendered.
+/// Writes a run as [`write_run`] does, but leaves the folder marked as incomplete, for results whose report
+/// is not yet rendered.
 pub(crate) fn write_marked(dir: &Path, run: &RunSet) -> Result<(), ReportError> {
     run.records.iter().try_for_each(|r| r.check())?;
     run.fields.iter().try_for_each(|f| f.check())?;
@@ -129,7 +146,7 @@ pub(crate) fn write_marked(dir: &Path, run: &RunSet) -> Result<(), ReportError> 
     Ok(())
 }
 
-/// Refuses rows that nothing tells apart.
+/// Rejects rows with the same key.
 fn once(records: &[Record]) -> Result<(), ReportError> {
     let mut seen = HashSet::with_capacity(records.len());
     match records.iter().find(|r| !seen.insert(r.key())) {
@@ -143,18 +160,22 @@ fn once(records: &[Record]) -> Result<(), ReportError> {
     }
 }
 
-/// The study's or scene's file that the results in a folder are of, or are to be of; `None` where there are none.
+/// File name of the study or scene whose results are in a folder, or are being computed there; `None` without
+/// results.
 pub fn source_of(dir: &Path) -> Option<String> {
     let begun = read_json::<Mark>(&dir.join(MARK)).ok().map(|mark| mark.source);
     begun.or_else(|| provenance_of(dir).map(|held| held.source))
 }
 
-/// Where the results in a folder come from, be they whole or not.
+/// Provenance of the results in a folder, complete or not.
 pub fn provenance_of(dir: &Path) -> Option<Provenance> {
     read_json(&dir.join("provenance.json")).ok()
 }
 
-/// Reads a run back from its folder; surface fields in the order of their file names.
+/// Reads a run from its folder, with surface fields in the order of their file names.
+///
+/// # Errors
+/// A folder without results or marked as incomplete, or a file that cannot be read.
 pub fn read_run(dir: &Path) -> Result<RunSet, ReportError> {
     if is_incomplete(dir) {
         let of = source_of(dir).unwrap_or_else(|| "a study".into());
@@ -163,19 +184,22 @@ pub fn read_run(dir: &Path) -> Result<RunSet, ReportError> {
     read_marked(dir)
 }
 
-/// As [`read_run`], but results without a single number are refused: nothing can be said of them.
+/// Reads a run as [`read_run`] does, and rejects results without records. `to` is the requested action.
+///
+/// # Errors
+/// As for [`read_run`], and results without records.
 pub fn read_numbers(dir: &Path, to: &'static str) -> Result<RunSet, ReportError> {
     let set = read_run(dir)?;
     if set.records.is_empty() { Err(ReportError::Nothing { path: dir.into(), to }) } else { Ok(set) }
 }
 
-/// The same of a folder that may be marked.
+/// Reads a run as [`read_run`] does, from a folder that may be marked as incomplete.
 pub(crate) fn read_marked(dir: &Path) -> Result<RunSet, ReportError> {
     let provenance = dir.join("provenance.json");
     if !provenance.exists() {
         return Err(ReportError::NoResults(dir.into()));
     }
-    // Its version is read before what may have changed with it.
+    // The version is read first, before any content that may depend on it.
     #[derive(Deserialize)]
     struct Version {
         #[serde(default)]
@@ -211,7 +235,10 @@ pub(crate) fn make_dir(dir: &Path) -> Result<(), ReportError> {
     fs::create_dir_all(dir).map_err(|source| unwritten(dir, source))
 }
 
-/// Writes a file, whole or not at all.
+/// Writes a file completely or not at all.
+///
+/// # Errors
+/// A file that cannot be written.
 pub fn write_text(path: &Path, text: impl AsRef<[u8]>) -> Result<(), ReportError> {
     disk::replace(path, |file| file.write_all(text.as_ref())).map_err(|source| unwritten(path, source))
 }
@@ -220,13 +247,14 @@ pub(crate) fn unwritten(path: &Path, source: io::Error) -> ReportError {
     ReportError::Unwritten { path: path.into(), source }
 }
 
-/// Lower case letters, digits, dots and dashes only: safe as a file name.
+/// Replaces all but letters (in lower case), digits and dots by dashes, for use as a file name.
 pub(crate) fn slug(name: &str) -> String {
     let safe = |c: char| if c.is_ascii_alphanumeric() || c == '.' { c.to_ascii_lowercase() } else { '-' };
     name.chars().map(safe).collect()
 }
 
-/// Removes what an earlier run left but for what is kept, so that no file of it passes for one of this run.
+/// Removes the files with these suffixes that are not in `kept`, so that no file of an earlier run passes for
+/// a current one.
 pub(crate) fn remove_files(dir: &Path, endings: &[&str], kept: &[PathBuf]) -> Result<(), ReportError> {
     for old in files_ending(dir, endings)?.iter().filter(|old| !kept.contains(old)) {
         disk::remove(old).map_err(|source| unwritten(old, source))?;

@@ -1,29 +1,29 @@
-//! One table, four ways of writing it: CSV, Markdown, LaTeX and HTML cells.
+//! A table and its output formats: CSV, Markdown, LaTeX and HTML cells.
 
 use crate::cell::guarded;
 use crate::text::{scientific, significant, spread};
 
-/// How a number is shown. CSV always has every digit.
+/// A cell and its number format. CSV always contains every digit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Cell<'a> {
-    /// Words, borrowed while a row is built.
+    /// Text, borrowed while a row is built.
     Text(&'a str),
     /// A whole number.
     Count(u64),
     /// Four significant digits, `1.234e-3`.
     Scientific(Option<f64>),
-    /// So many significant digits, plain where that reads well.
+    /// A given number of significant digits, in plain notation if this is readable.
     Digits(Option<f64>, usize),
-    /// A number that a word says better; CSV has the number.
+    /// A number shown as a word; CSV contains the number.
     Named(&'a str, f64),
     /// Median and spread, `1.23 ± 0.04`; two columns in CSV.
     Spread(Option<f64>, Option<f64>),
 }
 
-/// What a column holds.
+/// Kind of content of a column.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Column {
-    /// Words, aligned left.
+    /// Text, aligned left.
     Words,
     /// Numbers, aligned right.
     Number,
@@ -43,7 +43,7 @@ impl Entry {
     }
 }
 
-/// A titled table; units stand in its header, what is absent is a dash explained below it.
+/// A titled table with units in its header. A dash, explained below the table, marks missing values.
 #[derive(Clone, Debug)]
 pub(crate) struct Table {
     pub(crate) name: &'static str,
@@ -57,7 +57,7 @@ pub(crate) struct Table {
 const DASH: &str = "—";
 
 impl Table {
-    /// Columns are `(heading with its unit, what it holds)`.
+    /// Creates a table; each column is `(heading with its unit, kind of content)`.
     pub(crate) fn new(name: &'static str, title: &str, caption: &str, header: &[(&str, Column)]) -> Table {
         Table {
             name,
@@ -69,7 +69,7 @@ impl Table {
         }
     }
 
-    /// Adds a row unless one that reads the same is there already.
+    /// Adds a row unless a row with the same text exists.
     pub(crate) fn row_once(&mut self, cells: &[Cell]) {
         self.row(cells);
         if let Some((last, before)) = self.rows.split_last() {
@@ -80,7 +80,7 @@ impl Table {
         }
     }
 
-    /// Adds a row; a number that isn't finite counts as absent.
+    /// Adds a row; a number that is not finite counts as missing.
     pub(crate) fn row(&mut self, cells: &[Cell]) {
         debug_assert_eq!(cells.len(), self.header.len(), "table {}", self.name);
         let mut row = Vec::with_capacity(cells.len());
@@ -94,7 +94,7 @@ impl Table {
                 Cell::Digits(v, digits) => (finite(v).map(|v| significant(v, digits)), vec![exact(v)]),
                 Cell::Named(word, v) => (Some(word.to_string()), vec![exact(Some(v))]),
                 Cell::Spread(v, around) => {
-                    // A spread of exactly nothing comes from a single repeat: it says nothing.
+                    // A spread of exactly zero comes from a single repeat and has no meaning.
                     let around = around.filter(|s| *s > 0.0);
                     let text = |v| {
                         let spread = finite(around).map(|s| format!(" ± {}", spread(s, v)));
@@ -113,27 +113,27 @@ impl Table {
         self.rows.is_empty()
     }
 
-    /// Headings, with what their columns hold.
+    /// Headings with the kind of their columns.
     pub(crate) fn header(&self) -> &[(String, Column)] {
         &self.header
     }
 
-    /// Rows as shown.
+    /// Rows as displayed.
     pub(crate) fn shown(&self) -> Vec<Vec<&str>> {
         self.rows.iter().map(|row| row.iter().map(|e| e.shown.as_str()).collect()).collect()
     }
 
-    /// Rows as CSV has them; of a median and its spread the median.
+    /// Rows with exact values; a median with its spread gives the median.
     pub(crate) fn exact(&self) -> Vec<Vec<&str>> {
         self.rows.iter().map(|row| row.iter().map(Entry::exact).collect()).collect()
     }
 
-    /// What the dash means, where there is one.
+    /// Explanation of the dash, empty if no value is missing.
     pub(crate) fn note(&self) -> &'static str {
         if self.absent { "— : not measured, not defined or not stated." } else { "" }
     }
 
-    /// RFC 4180, every digit, an empty cell for what is absent.
+    /// The table as CSV (RFC 4180) with all digits; missing values are empty cells.
     pub(crate) fn csv(&self) -> String {
         let mut head: Vec<String> = Vec::new();
         for (heading, column) in &self.header {
@@ -151,7 +151,7 @@ impl Table {
         out
     }
 
-    /// A GitHub table under a heading.
+    /// The table in GitHub Markdown, with a heading.
     pub(crate) fn markdown(&self) -> String {
         let line = |cells: Vec<String>| format!("| {} |\n", cells.join(" | "));
         let mut out = format!("# {}\n\n{}\n\n", markdown(&self.title), markdown(&self.caption));
@@ -171,7 +171,7 @@ impl Table {
         out
     }
 
-    /// A `booktabs` + `longtable` table to `\input` into a paper.
+    /// The table in LaTeX, with `booktabs` and `longtable`, for `\input` into a paper.
     pub(crate) fn latex(&self) -> String {
         let columns: String =
             self.header.iter().map(|(_, c)| if *c == Column::Words { 'l' } else { 'r' }).collect();
@@ -197,7 +197,7 @@ impl Table {
     }
 }
 
-/// One CSV line (RFC 4180): cells with a comma, quote or line break are quoted, formulas guarded.
+/// A line of CSV (RFC 4180): cells with a comma, quote or line break are quoted, and formulas are guarded.
 pub(crate) fn csv_line(cells: &[&str]) -> String {
     let quoted: Vec<String> = cells
         .iter()
@@ -210,7 +210,7 @@ pub(crate) fn csv_line(cells: &[&str]) -> String {
     quoted.join(",") + "\n"
 }
 
-/// Escapes what Markdown would read as markup inside a table cell; a line break becomes a space.
+/// Escapes Markdown markup in a table cell; a line break becomes a space.
 pub(crate) fn markdown(text: &str) -> String {
     let mut out = String::new();
     for c in text.chars() {
@@ -226,7 +226,7 @@ pub(crate) fn markdown(text: &str) -> String {
     out
 }
 
-/// Escapes what LaTeX would read as markup, and writes the few symbols used here by name.
+/// Escapes LaTeX markup, and replaces some symbols by commands.
 pub(crate) fn latex(text: &str) -> String {
     let mut out = String::new();
     let mut chars = text.chars().peekable();
@@ -264,7 +264,7 @@ pub(crate) fn latex(text: &str) -> String {
     out
 }
 
-/// The plain sign behind a superscript.
+/// Plain character of a superscript.
 fn power(c: char) -> Option<char> {
     let plain = ['0', '1', '2', '3', '4', '5', '6', '7', '8', '9', '-'];
     "⁰¹²³⁴⁵⁶⁷⁸⁹⁻".chars().position(|s| s == c).map(|at| plain[at])

@@ -1,16 +1,16 @@
-//! Numbers and names as text, for every medium.
+//! Numbers and names as text, for all output formats.
 
-/// Four significant digits as `1.234e-3`: what tables hold and snapshots compare.
+/// Four significant digits as `1.234e-3`, for tables and snapshots.
 pub(crate) fn scientific(value: f64) -> String {
     format!("{value:.3e}")
 }
 
-/// A number for a person: `digits` significant digits, plain between 0.001 and 100 000, scientific elsewhere.
+/// A readable number with `digits` significant digits, plain between 0.001 and 100 000, scientific otherwise.
 pub(crate) fn significant(value: f64, digits: usize) -> String {
     if value == 0.0 {
         return "0".into();
     }
-    // Rounding first keeps 9.996 from becoming 10.00 with one digit too many.
+    // Rounding first prevents 9.996 from becoming 10.00 with one digit too many.
     let rounded: f64 = format!("{value:.*e}", digits.saturating_sub(1)).parse().unwrap_or(value);
     let exponent = rounded.abs().log10().floor() as i32;
     if (-3..5).contains(&exponent) {
@@ -25,13 +25,13 @@ pub(crate) fn significant(value: f64, digits: usize) -> String {
     }
 }
 
-/// A number on an axis: plain from 0.001 to 1000, a [`power`] of ten elsewhere.
+/// A number on an axis: plain from 0.001 to 1000, a [`power`] of ten otherwise.
 pub(crate) fn tick(value: f64) -> String {
     let exponent = exponent(value);
     if value == 0.0 {
         "0".into()
     } else if (-3..=3).contains(&exponent) {
-        // 0.015 and 1.5 need one place more than 0.01 and 1.
+        // 0.015 and 1.5 need one more decimal than 0.01 and 1.
         let mantissa = value / 10f64.powi(exponent);
         let finer = i32::from((mantissa - mantissa.round()).abs() > 1e-6);
         let decimals = (finer - exponent).max(0) as usize;
@@ -41,12 +41,12 @@ pub(crate) fn tick(value: f64) -> String {
     }
 }
 
-/// A number as a person would write it: all of its digits from 0.001 to 100 000, a [`power`] of ten elsewhere.
+/// A number with all its digits: plain from 0.001 to 100 000, a [`power`] of ten otherwise.
 pub(crate) fn short(value: f64) -> String {
     if value == 0.0 || (1e-3..1e5).contains(&value.abs()) { value.to_string() } else { power(value) }
 }
 
-/// `10⁻³`, `2×10⁻³` or `1.5×10⁻³`; plain from 1 to 100.
+/// A number in powers of ten, as `10⁻³`, `2×10⁻³` or `1.5×10⁻³`; plain from 1 to 100.
 pub(crate) fn power(value: f64) -> String {
     let exponent = exponent(value);
     if value == 0.0 || (0..=1).contains(&exponent) {
@@ -63,12 +63,12 @@ pub(crate) fn power(value: f64) -> String {
     }
 }
 
-/// The power of ten at or below a number; what is one but for rounding counts as it.
+/// Exponent of the power of ten at or below a number, with a tolerance for rounding.
 fn exponent(value: f64) -> i32 {
     (value.abs().log10() + 1e-9).floor() as i32
 }
 
-/// A spread beside its median: one significant digit, plain wherever the median is plain.
+/// A spread next to its median: one significant digit, plain if the median is plain.
 pub(crate) fn spread(value: f64, median: f64) -> String {
     let plain = |v: f64| (1e-3..1e5).contains(&v.abs());
     if value <= 0.0 || plain(value) || !plain(median) {
@@ -78,12 +78,13 @@ pub(crate) fn spread(value: f64, median: f64) -> String {
     format!("{value:.decimals$}")
 }
 
-/// A Poisson's ratio: one that was computed from moduli has no seventeen digits to a reader.
+/// A Poisson's ratio with at most six decimals, because a ratio computed from moduli has seventeen
+/// meaningless digits.
 pub(crate) fn ratio(poisson: f64) -> String {
     format!("{:.6}", poisson).trim_end_matches('0').trim_end_matches('.').to_string()
 }
 
-/// A time in the unit that reads best, from nanoseconds to hours.
+/// A time in the most readable unit, from nanoseconds to hours.
 pub(crate) fn duration(seconds: f64) -> String {
     let (scale, unit) = match seconds {
         s if s >= 7200.0 => (3600.0, "h"),
@@ -95,7 +96,7 @@ pub(crate) fn duration(seconds: f64) -> String {
     format!("{} {unit}", significant(seconds / scale, 3))
 }
 
-/// A relative error in percent, or in scientific form where percent would be silly.
+/// A relative error in per cent, or in scientific notation if it is very small.
 pub(crate) fn percent(value: f64) -> String {
     if value == 0.0 || value.abs() >= 1e-4 {
         format!("{} %", significant(100.0 * value, 3))
@@ -104,7 +105,7 @@ pub(crate) fn percent(value: f64) -> String {
     }
 }
 
-/// `a`, `a and b`, `a, b and c`.
+/// A list in words: `a`, `a and b`, `a, b and c`.
 pub(crate) fn list(items: &[String]) -> String {
     match items {
         [] => String::new(),
@@ -113,7 +114,7 @@ pub(crate) fn list(items: &[String]) -> String {
     }
 }
 
-/// `s` unless there is exactly one.
+/// Plural `s`, empty for a count of one.
 pub(crate) fn plural(count: usize) -> &'static str {
     if count == 1 { "" } else { "s" }
 }

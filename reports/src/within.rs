@@ -1,30 +1,28 @@
-//! The cheapest method within an error, case by case: the data of the table and of the performance profile.
+//! Cheapest method within an error, case by case: data of the table and of the performance profile.
 
 use crate::asks::{Ask, Line, asks};
 use crate::fronts::{Clock, WANTED};
 use crate::record::Family;
 use crate::select::Run;
 
-/// The quantity judged in a case: the force of its tool if an error of that is known, otherwise the
-/// displacement.
+/// The quantity judged in a case: the tool force if its error is known, otherwise the displacement.
 pub(crate) struct Problem {
-    /// The case, and that it is asked for the force.
+    /// Title: the case, with a note if the force is judged.
     pub(crate) title: String,
-    /// Each method that was run, with the least time within the error, seconds, and with the run that took
-    /// it.
+    /// Each method that was run, with its smallest time within the error.
     pub(crate) methods: Vec<Cheapest>,
 }
 
-/// A method on a problem.
+/// Result of a method on a problem.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Cheapest {
     pub(crate) label: String,
     pub(crate) family: Family,
-    /// `None` where no run of the method is within the error.
+    /// Smallest time (s), or `None` if no run of the method is within the error.
     pub(crate) seconds: Option<f64>,
 }
 
-/// The problems of all cases, in the order of the questions.
+/// Problems of all cases, in the order of the questions.
 pub(crate) fn problems(runs: &[Run]) -> Vec<Problem> {
     let mut chosen: Vec<Ask> = Vec::new();
     for ask in asks(runs).into_iter().filter(|ask| ask.clock == Clock::First && !ask.kernels) {
@@ -62,8 +60,9 @@ pub(crate) fn methods(problems: &[Problem]) -> Vec<(String, Family)> {
     out
 }
 
-/// Times of a method over the least of any method, ascending, one for each problem that it solves within the
-/// error; and the number of problems that it was run on and that any method solves (Dolan and More 2002).
+/// Ratios of a method's times to the smallest of any method, ascending, for the problems that it solves
+/// within the error. Also returns the number of problems that the method was run on and that any method
+/// solves (Dolan and More 2002).
 pub(crate) fn ratios(problems: &[Problem], label: &str) -> (Vec<f64>, usize) {
     let (mut out, mut of) = (Vec::new(), 0);
     for problem in problems {

@@ -1,4 +1,4 @@
-//! The page's script is built from the sources beside it, and a method looks the same wherever it is drawn.
+//! The page's script is built from its sources, and a method looks the same wherever it is drawn.
 
 mod common;
 
@@ -8,7 +8,8 @@ use std::path::Path;
 
 use reports::{RunSet, render, write_run};
 
-/// As `page/build.mjs` does: FNV-1a over the sources' bytes, in the order of their names.
+/// Hash of the sources, as computed by `page/build.mjs`: FNV-1a over their bytes, in the order of their
+/// names.
 fn hash_of_sources(page: &Path) -> u64 {
     let source = |entry: fs::DirEntry| entry.file_name().into_string().unwrap();
     let mut names: Vec<String> = fs::read_dir(page.join("src"))
@@ -37,7 +38,7 @@ fn the_script_is_built_from_its_sources() {
     }
 }
 
-/// Colours of the markers before each label of a figure's legend, and of the line through them.
+/// Collects the colours of the markers and lines before each label in a figure's legend.
 fn looks(svg: &str, found: &mut BTreeMap<String, BTreeSet<String>>, labels: &BTreeSet<String>) {
     let mut before: Vec<&str> = Vec::new();
     for tag in svg.split('<') {
@@ -45,14 +46,14 @@ fn looks(svg: &str, found: &mut BTreeMap<String, BTreeSet<String>>, labels: &BTr
         if open.starts_with("text") {
             if labels.contains(content.trim()) && !before.is_empty() {
                 let colours = before.iter().flat_map(|shape| shape.split('"').filter(|w| w.starts_with('#')));
-                // White is the paper in an open marker, and the rim of a filled one.
+                // White is the paper inside an open marker, or the rim of a filled one.
                 let own: BTreeSet<&str> = colours.filter(|c| *c != "#FFFFFF").collect();
                 found.entry(content.trim().into()).or_default().insert(format!("{own:?}"));
             }
             before.clear();
         } else if !open.starts_with('/') {
             before.push(open);
-            // A legend's entry is a line of dashes, the marker and its rim.
+            // A legend entry is a dashed line, a marker and its rim.
             before = before.split_off(before.len().saturating_sub(2));
         }
     }
@@ -62,7 +63,7 @@ fn looks(svg: &str, found: &mut BTreeMap<String, BTreeSet<String>>, labels: &BTr
 fn a_method_looks_the_same_in_all_figures_of_all_reports() {
     let study = common::study();
     let mut found = BTreeMap::new();
-    // All of a study, and each of its cases alone: what else is drawn must not matter.
+    // The whole study, and each of its cases alone: other methods in a figure must not matter.
     let mut cases: Vec<String> = study.records.iter().map(|r| r.case.clone()).collect();
     cases.dedup();
     let alone = cases.iter().map(|case| {

@@ -1,4 +1,4 @@
-//! A run rendered: its page, tables and figures.
+//! A rendered run: its page, tables and figures.
 
 mod common;
 
@@ -13,14 +13,14 @@ fn text(path: &Path) -> String {
     fs::read_to_string(path).unwrap()
 }
 
-/// The numbers that a page has inside.
+/// Data embedded in a page.
 fn inside(page: &Path) -> Value {
     let text = text(page);
     let data = text.split_once("id=\"data\">").unwrap().1.split_once("</script>").unwrap().0;
     serde_json::from_str(data).unwrap()
 }
 
-/// The names of what a list of a page holds.
+/// Names of the items in a list of the page.
 fn names<'a>(data: &'a Value, list: &str, key: impl serde_json::value::Index + Copy) -> Vec<&'a str> {
     data[list].as_array().unwrap().iter().map(|it| it[key].as_str().unwrap()).collect()
 }
@@ -30,7 +30,7 @@ fn a_second_page_leaves_no_table_or_figure_of_the_first() {
     let dir = tempfile::tempdir().unwrap();
     let (figures, mut set) = (dir.path().join("figures"), common::study());
     write_run(dir.path(), &set).unwrap();
-    // Before there is a page, nothing in the folder is known to be ours.
+    // Without a page, no file in the folder is assumed to belong to a report.
     fs::create_dir(&figures).unwrap();
     fs::write(figures.join("mine.svg"), "").unwrap();
     render(dir.path(), dir.path()).unwrap();
@@ -57,7 +57,7 @@ fn the_same_records_give_the_same_bytes() {
     let mut set = common::study();
     write_run(&dir.path().join("run"), &set).unwrap();
     let first = render(&dir.path().join("run"), &dir.path().join("one")).unwrap();
-    // Another order of arrival must not show.
+    // The order of the records must not affect the result.
     set.records.reverse();
     write_run(&dir.path().join("run2"), &set).unwrap();
     let second = render(&dir.path().join("run2"), &dir.path().join("two")).unwrap();
@@ -79,7 +79,7 @@ fn forces_stand_beside_the_reference_and_its_band() {
     render(dir.path(), dir.path()).unwrap();
     let table = text(&dir.path().join("tables/force-closure.csv"));
     let rows: Vec<Vec<&str>> = table.lines().skip(1).map(|l| l.split(',').collect()).collect();
-    // Two methods at forty steps; of hex8 the finer run only.
+    // Two methods at forty steps, for hex8 only the finer run.
     assert_eq!(rows.len(), 80);
     for row in rows {
         let number = |k: usize| row[k].parse::<f64>().unwrap();
@@ -155,19 +155,19 @@ fn every_table_and_figure_appears_and_is_linked() {
         "neighbours",
     ] {
         assert!(names(&page, "figures", 0).contains(&figure), "{figure}");
-        // What a picture shows of a body is in the results' folder `fields`.
+        // The data of a picture of a body are in the folder `fields` of the results.
         let picture = figure.starts_with("surface-") || figure.starts_with("pressure-");
         for ending in ["svg", "png", "csv"].into_iter().take(if picture { 2 } else { 3 }) {
             let name = format!("figures/{figure}.{ending}");
             assert!(rendered.files.contains(&dir.path().join(&name)), "{name}");
         }
         let svg = text(&dir.path().join(format!("figures/{figure}.svg")));
-        // Two columns of a journal, or one.
+        // The width of two columns of a journal, or of one.
         let whole = ["504pt", "241pt"].iter().any(|w| svg.starts_with(&format!("<svg width=\"{w}\"")));
         assert!(whole && svg.contains("<title>"), "{figure}");
     }
     assert!(!page.to_string().contains("NaN"));
-    // The script of the page knows what is not a number.
+    // The page is excluded, because its script may contain NaN.
     for file in rendered
         .files
         .iter()
@@ -185,7 +185,7 @@ fn the_page_stands_alone_and_escapes_what_it_shows() {
     write_run(dir.path(), &set).unwrap();
     let path = render(dir.path(), dir.path()).unwrap().page;
     let page = text(&path);
-    // Numbers and script are an element each, which nothing inside ends; there is no third.
+    // Data and script are one element each, which no content terminates; there is no third element.
     assert_eq!((page.matches("<script").count(), page.matches("</script>").count()), (2, 2));
     for request in ["src=\"", "@import", "url(http", "<link", "fetch(", "XMLHttpRequest"] {
         assert!(!page.contains(request), "{request}");
@@ -212,7 +212,7 @@ fn findings_state_what_the_records_hold() {
     ] {
         assert!(found.contains(sentence), "{sentence}\n{found}");
     }
-    // A linear scene without contact has no time to set against the published contact.
+    // A linear scene without contact has no time comparable with the published contact.
     for unlike in [
         "kidney-paper: the fastest EFG run is compared",
         "the whole FE run (about 2 h) takes",
@@ -243,9 +243,9 @@ fn what_was_not_recorded_is_not_claimed() {
         assert!(!page.contains(claim), "{claim}");
     }
     assert!(page.contains("Locking"));
-    // Nothing at all still gives a page.
+    // An empty run set still gives a page.
     let nothing = RunSet { provenance: set.provenance, ..RunSet::default() };
-    // A run without numbers has a page, which says so; there is none to be asked for.
+    // A run without numbers has a page that states this, but a requested report is refused.
     let empty = write_with_report(dir.path(), &nothing, None).unwrap();
     let refused = render(dir.path(), &dir.path().join("empty")).unwrap_err().to_string();
     assert!(refused.ends_with("holds no records: there is nothing to report"), "{refused}");
@@ -298,13 +298,14 @@ fn histories_become_figures_and_nothing_else() {
         assert!(energy.contains(words), "{words}");
     }
     assert!(!energy.contains("measured"), "a reference without energies has no panel");
-    // One step is no history.
+    // A single step is not a history.
     set.records.retain(|r| r.step == Some(3));
     write_run(dir.path(), &set).unwrap();
     assert_eq!(render(dir.path(), &dir.path().join("one")).unwrap().files.len(), 1);
 }
 
-/// A report as text: its files with their contents, of figures the words and the number of shapes. `name` is left out of both.
+/// A report as text: its files with their contents, and for figures the words and the number of shapes.
+/// `name` is replaced in both.
 fn contents(set: &RunSet, name: &str) -> Vec<(String, String)> {
     let dir = tempfile::tempdir().unwrap();
     write_run(dir.path(), set).unwrap();
@@ -313,7 +314,7 @@ fn contents(set: &RunSet, name: &str) -> Vec<(String, String)> {
     for file in rendered.files.iter().filter(|f| f.extension().is_some_and(|e| e == "md" || e == "svg")) {
         let mut content = text(file);
         if file.extension().is_some_and(|e| e == "svg") {
-            // Places on paper follow the width of a name; what is drawn does not.
+            // Positions on paper depend on the width of a name; the content does not.
             let words: Vec<&str> =
                 content.split('<').filter_map(|tag| tag.split_once('>')).map(|t| t.1.trim()).collect();
             content = format!("{} {}", words.join(" "), content.matches(" d=\"").count());
@@ -322,8 +323,8 @@ fn contents(set: &RunSet, name: &str) -> Vec<(String, String)> {
         all.push((path.replace(name, "NAME"), content.replace(name, "NAME")));
     }
     let page = inside(&rendered.page);
-    // The look of a label goes by the label, which may be the name of a case; places in a picture follow the width of a name.
-    // The id of a run holds the name of its case.
+    // The look of a label depends on the label, which may be the name of a case. Positions in a picture
+    // depend on the width of a name. The id of a run contains the name of its case.
     let left_out = ["looks", "pictures", "scenes", "cases", "runs"];
     for (part, value) in
         page.as_object().unwrap().iter().filter(|(part, _)| !left_out.contains(&part.as_str()))
@@ -367,7 +368,8 @@ fn no_name_of_a_case_means_anything() {
 fn a_study_at_other_sizes_keeps_one_name() {
     let dir = tempfile::tempdir().unwrap();
     let mut set = common::study();
-    // `efg-wendland-c2-83` run again at 332 nodes by a study of sizes: its id must not claim 83 nodes there.
+    // A study of sizes runs `efg-wendland-c2-83` again at 332 nodes, and its label must not claim 83 nodes
+    // there.
     for record in &mut set.records {
         if record.series == "efg-wendland-c2" && record.case == "kidney-paper" {
             record.method = "efg-wendland-c2-83".into();

@@ -1,4 +1,4 @@
-//! A run written to its folder and read back.
+//! A run written to its folder and read again.
 
 mod common;
 
@@ -43,7 +43,7 @@ fn values_carry_no_thread_count_but_times_do() {
     assert!(two[0].ends_with("commit,rustc,profile,cpu,model,instructions,threads"), "{}", two[0]);
     let (mut same, mut other) = (0, 0);
     for (a, b) in one.iter().zip(&two) {
-        // The time of a step is the model's own.
+        // The time of a step is model time.
         let measured = a.contains(",time,") && !a.contains("grasp") || a.contains(",memory,");
         assert_eq!(a != b, measured, "{a}\n{b}");
         if measured { other += 1 } else { same += 1 }
@@ -59,7 +59,7 @@ fn no_number_is_recorded_twice() {
     set.records.push(Record { value: 1.5 * again.value, ..again.clone() });
     let message = write_run(dir.path(), &set).unwrap_err().to_string();
     assert!(message.contains("was recorded twice") && message.contains(&again.quantity), "{message}");
-    // Of another run, step or repeat it is another number.
+    // The same number of another run, step, mode or repeat is not a duplicate.
     let last = set.records.len() - 1;
     for other in [
         Record { run: "another".into(), ..again.clone() },
@@ -113,7 +113,7 @@ fn a_folder_that_is_no_run_is_named() {
     assert!(message.contains("checks.json"), "{message}");
 }
 
-/// Whatever text a record has, a spreadsheet runs none of it, and it is read back as it was.
+/// A spreadsheet evaluates no text of any record, and every text is read back unchanged.
 #[test]
 fn texts_that_are_formulas_are_guarded_in_every_column() {
     let dir = tempfile::tempdir().unwrap();
@@ -123,7 +123,7 @@ fn texts_that_are_formulas_are_guarded_in_every_column() {
         for text in ["=1+1", "+a", "-a", "@a", "'=1+1", "a"] {
             let mut value = names.clone();
             value[name] = text.into();
-            // A number takes no text.
+            // A numeric field accepts no text.
             let Ok(record) = serde_json::from_value::<Record>(value) else { continue };
             let set = RunSet { records: vec![record], ..common::study() };
             write_run(dir.path(), &set).unwrap();

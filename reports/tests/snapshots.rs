@@ -1,4 +1,5 @@
-//! Tables against their stored form: words equal, numbers within one percent, never a NaN. Times are never stored.
+//! Tables compared with stored snapshots: equal words, numbers within one per cent, and no NaN. Times are
+//! never stored.
 
 mod common;
 #[path = "../../tests/common/one_percent.rs"]

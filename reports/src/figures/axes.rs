@@ -1,9 +1,9 @@
-//! Axes: where a value goes on paper, its ticks and its frame.
+//! Axes: mapping from values to paper, ticks and frame.
 
 use super::canvas::{Anchor, BLACK_INK, Canvas, GREY, PALE, text_width};
 use crate::text::{power, tick};
 
-/// Size of every ordinary text, points.
+/// Size of ordinary text, points.
 pub(crate) const TEXT: f64 = 9.0;
 
 /// One axis.
@@ -19,7 +19,7 @@ pub(crate) struct Axis {
 }
 
 impl Axis {
-    /// A logarithmic axis around positive values, a little wider than they are.
+    /// Creates a logarithmic axis that is slightly wider than its positive values.
     pub(crate) fn log(label: &str, values: impl Iterator<Item = f64>) -> Axis {
         let (mut low, mut high) = range(values.filter(|v| *v > 0.0 && v.is_finite())).unwrap_or((0.1, 1.0));
         let margin = (high / low).powf(0.06).max(1.15);
@@ -28,7 +28,7 @@ impl Axis {
         Axis { label: label.into(), log: true, low, high, ticks, minor }
     }
 
-    /// A linear axis around values; `from_zero` starts it at zero.
+    /// Creates a linear axis around values, starting at zero if `from_zero`.
     pub(crate) fn linear(label: &str, values: impl Iterator<Item = f64>, from_zero: bool) -> Axis {
         let (mut low, mut high) = range(values.filter(|v| v.is_finite())).unwrap_or((0.0, 1.0));
         if from_zero {
@@ -46,7 +46,7 @@ impl Axis {
         let decimals = (0..6)
             .find(|d| ((step * 10f64.powi(*d)).round() - step * 10f64.powi(*d)).abs() < 1e-6)
             .unwrap_or(6);
-        // Zeros behind the point take more room than an axis has.
+        // Trailing decimals would take more room than an axis has.
         let text = |v: f64| if decimals < 5 { format!("{v:.*}", decimals as usize) } else { power(v) };
         let ticks = ((low / step).ceil() as i64..=(high / step).floor() as i64)
             .map(|i| (i as f64 * step, text(i as f64 * step)))
@@ -60,7 +60,7 @@ impl Axis {
         self
     }
 
-    /// Drops the label, where a neighbour already has it.
+    /// Removes the label, for an axis whose neighbour already has it.
     pub(crate) fn without_label(mut self) -> Axis {
         self.label.clear();
         self
@@ -88,7 +88,8 @@ impl Axis {
     }
 }
 
-/// The coarsest of decades, 1-3, 1-2-5 and ever finer steps that gives three ticks; at most seven decades are named.
+/// Ticks with the coarsest steps that give three of them: decades, 1-3, 1-2-5 and ever finer. At most seven
+/// decades are labelled.
 fn log_ticks(low: f64, high: f64) -> Vec<(f64, String)> {
     const STEPS: [&[f64]; 6] = [
         &[1.0],
@@ -112,12 +113,12 @@ fn log_ticks(low: f64, high: f64) -> Vec<(f64, String)> {
             break;
         }
     }
-    // One way of writing on an axis: plain numbers, or powers of ten where one of them would be long.
+    // Labels of an axis are all plain numbers, or all powers of ten if a plain number would be long.
     let plain = ticks.iter().all(|v| (0.9e-3..1.1e3).contains(v));
     ticks.into_iter().map(|v| (v, if plain { tick(v) } else { power(v) })).collect()
 }
 
-/// Two to nine times every power of ten, or the powers themselves on an axis too long for that.
+/// Minor ticks at two to nine times every power of ten, or only at the powers on a long axis.
 fn minor(low: f64, high: f64) -> Vec<f64> {
     let steps = if high < 1e5 * low { 1..10 } else { 1..2 };
     let powers = low.log10().floor() as i32..=high.log10().ceil() as i32;
@@ -125,7 +126,8 @@ fn minor(low: f64, high: f64) -> Vec<f64> {
     all.filter(|v| (low..=high).contains(v)).collect()
 }
 
-/// Which of some texts on a line, by middle and width, have room: where two would touch, the longer gives way.
+/// Whether each text on a line has room, given its centre and width. If two would touch, the longer is
+/// dropped.
 fn apart(texts: &[(f64, f64)]) -> Vec<bool> {
     let mut order: Vec<usize> = (0..texts.len()).collect();
     order.sort_by(|&a, &b| texts[a].1.total_cmp(&texts[b].1));
@@ -155,14 +157,14 @@ pub(crate) struct Panel {
 }
 
 impl Panel {
-    /// Where a pair of values goes on paper; beyond an axis it stays on the frame.
+    /// Position on paper of a pair of values. Values beyond an axis are placed on the frame.
     pub(crate) fn at(&self, x: f64, y: f64) -> (f64, f64) {
         let (left, top, right, bottom) = self.frame;
         let (fx, fy) = (self.x.fraction(x).clamp(0.0, 1.0), self.y.fraction(y).clamp(0.0, 1.0));
         (left + fx * (right - left), bottom - fy * (bottom - top))
     }
 
-    /// Grid, frame, ticks, axis labels and title.
+    /// Draws grid, frame, ticks, axis labels and title.
     pub(crate) fn draw(&self, canvas: &mut Canvas, title: &str) {
         let (left, top, right, bottom) = self.frame;
         let across = |(value, text): &(f64, String)| (self.at(*value, self.y.low).0, text_width(text, TEXT));

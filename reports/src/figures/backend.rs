@@ -1,8 +1,8 @@
-//! The backend that plotters draws on: SVG, written shortly. Neighbours that look the same become one path, in relative
-//! coordinates; order, and so what covers what, stays.
+//! Compact SVG backend for plotters. Consecutive shapes of equal appearance become one path in relative
+//! coordinates. The drawing order is preserved, and with it the overlaps.
 //!
-//! A dashed curve is dozens of short lines and a surface thousands of triangles: this is five times less text than one element for
-//! each.
+//! A dashed curve consists of dozens of short lines and a surface of thousands of triangles. The output is
+//! five times smaller than one element for each.
 
 use std::convert::Infallible;
 use std::fmt::Write as _;
@@ -15,15 +15,15 @@ use plotters_backend::{
     FontTransform,
 };
 
-/// Verdana has the same widths where DejaVu Sans isn't installed.
+/// Font families. Verdana has the same widths if DejaVu Sans is not installed.
 const FAMILIES: &str = "'DejaVu Sans', Verdana, sans-serif";
-/// SVG text is given its em size, plotters takes the line height.
+/// Ratio of the line height, which plotters uses, to the em size, which SVG text uses.
 pub(super) const LINE_HEIGHT: f64 = 1.24;
 
-/// Width of the line around a facet, and of the one that closes a seam: half a point.
+/// Width of the line around a facet and of a line that closes a seam, in tenths of a point: half a point.
 const SEAM: u32 = 5;
 
-/// A part of a surface: filled, with a line of its own colour around it. (A polygon of plotters has no line.)
+/// A filled facet of a surface with an outline of the same colour. (A polygon of plotters has no outline.)
 pub(super) struct Facet {
     pub(super) points: Vec<BackendCoord>,
     pub(super) colour: RGBColor,
@@ -51,11 +51,11 @@ impl Drawable<Paths<'_>> for Facet {
 
 type Drawn = Result<(), DrawingErrorKind<Infallible>>;
 
-/// SVG elements in the order they are drawn.
+/// SVG elements in drawing order.
 pub(super) struct Paths<'a> {
     out: &'a mut String,
     size: (u32, u32),
-    /// What the path being written looks like, and its steps so far.
+    /// Appearance of the path being written, and its steps so far.
     open: Option<(String, String)>,
 }
 
@@ -134,7 +134,7 @@ impl DrawingBackend for Paths<'_> {
         let points: Vec<BackendCoord> = path.into_iter().collect();
         if points.len() > 1 {
             let colour = hexadecimal(style.color());
-            // Round: at a sharp corner a mitre would stand out.
+            // The joins are round, because a mitre at a sharp corner would stand out.
             let line = match style.stroke_width() {
                 SEAM => format!(" stroke=\"{colour}\" stroke-width=\"{SEAM}\" stroke-linejoin=\"round\""),
                 _ => String::new(),
@@ -169,7 +169,7 @@ fn hexadecimal(color: BackendColor) -> String {
     format!("#{r:02X}{g:02X}{b:02X}")
 }
 
-/// Text as it stands between tags and quotes.
+/// Text escaped for use between tags and quotes.
 pub(super) fn escaped(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for c in text.chars() {
@@ -185,11 +185,12 @@ pub(super) fn escaped(text: &str) -> String {
     out
 }
 
-/// `M` to the first point, then steps; a filled shape is closed, and its last point dropped where it repeats the first.
+/// Writes `M` to the first point, followed by steps. A filled shape is closed, without a last point that
+/// repeats the first.
 fn steps(path: &mut String, points: &[BackendCoord], filled: bool) {
     let ends = points.len() - usize::from(filled && points.len() > 2 && points.first() == points.last());
     let mut points = points[..ends].to_vec();
-    // Inside one path two overlapping shapes of opposite turn would cut a hole.
+    // In one path, two overlapping shapes of opposite orientation would cut a hole.
     if filled && area(&points) < 0 {
         points.reverse();
     }
@@ -209,7 +210,7 @@ fn steps(path: &mut String, points: &[BackendCoord], filled: bool) {
     }
 }
 
-/// Twice the signed area.
+/// Twice the signed area of a polygon.
 fn area(points: &[BackendCoord]) -> i64 {
     let next = points.iter().cycle().skip(1);
     let wide = |v: i32| i64::from(v);

@@ -1,4 +1,4 @@
-//! RMS errors by direction: a row for every run, one scale for all columns.
+//! RMS errors by direction: one row per run, and one scale for all columns.
 
 use super::axes::TEXT;
 use super::canvas::{Anchor, BLACK_INK, Canvas, Colour, GREY, text_width};
@@ -16,13 +16,14 @@ const ROW: f64 = 16.0;
 const TOP: f64 = 42.0;
 const DIRECTIONS: [(&str, &str); 4] =
     [("rms-x", "RMS x [mm]"), ("rms-y", "RMS y [mm]"), ("rms-z", "RMS z [mm]"), ("rms", "RMS |u| [mm]")];
-/// Millimetres below which a difference is rounding.
+/// Error in mm below which a difference is rounding.
 const NOTHING: f64 = 1e-9;
 
-/// A row: its name, its four values in millimetres, and its colour.
+/// A row: name, four values (mm) and colour.
 type Row = (String, [Option<f64>; 4], Colour);
 
-/// One figure per case that isn't a patch test: every run of the usual kernel, or the finest of each series where those are too many.
+/// One figure per case except patch tests: every run of the usual kernel, or only the finest of each series
+/// if there are too many.
 pub(super) fn rms(runs: &[Run]) -> Vec<Figure> {
     competing(runs).filter_map(|case| figure(representative(case, 0.495))).collect()
 }
@@ -37,7 +38,7 @@ fn figure(group: &[Run]) -> Option<Figure> {
         let runs = if many { std::slice::from_ref(series.finest()) } else { &series.runs[..] };
         for run in runs {
             let values = DIRECTIONS.map(|(q, _)| run.value(q).map(|v| v * 1e3));
-            // An error of exactly nothing is the reference itself.
+            // An error of exactly zero belongs to the reference itself.
             if values.iter().flatten().any(|v| *v > 0.0) {
                 let colour = Look::of(&name, run.is.family).colour;
                 rows.push((format!("{name}, {} nodes", run.is.nodes), values, colour));
@@ -92,7 +93,7 @@ fn draw(title: &str, rows: &[Row]) -> Canvas {
     let mut canvas = Canvas::new(WIDTH, bottom + 8.0);
     canvas.bold((6.0, 12.0), title, TEXT, Anchor::Start);
     let largest = rows.iter().flat_map(|r| r.1).flatten().fold(NOTHING, f64::max);
-    // Room for the number behind the longest bar.
+    // Room for the number after the longest bar.
     let scale = (width - 46.0) / largest;
     for (column, (_, head)) in DIRECTIONS.iter().enumerate() {
         let x = left + column as f64 * (width + 8.0);

@@ -1,4 +1,4 @@
-//! A drawing in points (1/72 inch), drawn by plotters as SVG and by resvg as PNG.
+//! A drawing in points (1/72 inch), rendered by plotters as SVG and by resvg as PNG.
 
 use std::sync::{Arc, OnceLock};
 
@@ -15,19 +15,20 @@ use crate::error::ReportError;
 const REGULAR: &[u8] = include_bytes!("../../assets/fonts/DejaVuSans.ttf");
 const BOLD: &[u8] = include_bytes!("../../assets/fonts/DejaVuSans-Bold.ttf");
 const FONT: &str = "DejaVu Sans";
-/// plotters draws on whole numbers; ten of them to a point keep curves smooth.
+/// Units per point. plotters draws in whole numbers; ten per point keep curves smooth.
 const UNITS: f64 = 10.0;
-/// Ascent and descent of DejaVu Sans over its em: plotters measures a font whose whole height is the size asked for.
+/// Ascent plus descent of DejaVu Sans over its em size. plotters measures a font whose total height is the
+/// given size.
 const FONT_HEIGHT: f64 = 1.164;
 
-/// A colour, red, green and blue.
+/// A colour: red, green and blue.
 pub(crate) type Colour = [u8; 3];
 
 pub(crate) const BLACK_INK: Colour = [0x20, 0x20, 0x20];
 pub(crate) const GREY: Colour = [0x75, 0x75, 0x75];
 pub(crate) const PALE: Colour = [0xe4, 0xe4, 0xe4];
 
-/// Which end of a text stands at its point.
+/// End of a text that is placed at its point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Anchor {
     Start,
@@ -45,7 +46,7 @@ enum Shape {
     Fill {
         points: Vec<(f64, f64)>,
         colour: Colour,
-        /// Of a surface: no hairline may show beside its neighbours.
+        /// Whether the shape is a facet of a surface, without hairlines between neighbours.
         facet: bool,
     },
     Text {
@@ -59,7 +60,7 @@ enum Shape {
     },
 }
 
-/// Shapes in the order they are drawn.
+/// Shapes in drawing order.
 #[derive(Clone, Debug)]
 pub(crate) struct Canvas {
     width: f64,
@@ -78,7 +79,8 @@ impl Canvas {
         self.shapes.push(Shape::Line { points: points.to_vec(), colour, width });
     }
 
-    /// A line of dashes: lengths drawn and left out in turn, in points; no pattern is a full line.
+    /// Draws a dashed line. The pattern alternates drawn and omitted lengths in points; an empty pattern
+    /// gives a solid line.
     pub(crate) fn dashed(&mut self, points: &[(f64, f64)], colour: Colour, width: f64, pattern: &[f64]) {
         if pattern.is_empty() {
             return self.line(points, colour, width);
@@ -113,7 +115,8 @@ impl Canvas {
         self.shapes.push(Shape::Fill { points: points.to_vec(), colour, facet: false });
     }
 
-    /// A part of a surface, with a line of its own colour around it: neighbours close up, and an outline is as smooth as the surface.
+    /// Draws a facet of a surface with an outline of its own colour. This closes gaps between neighbours and
+    /// smooths the silhouette of the surface.
     pub(crate) fn facet(&mut self, points: &[(f64, f64)], colour: Colour) {
         self.shapes.push(Shape::Fill { points: points.to_vec(), colour, facet: true });
     }
@@ -126,7 +129,7 @@ impl Canvas {
         self.push_text(at, text, size, BLACK_INK, anchor, true, false);
     }
 
-    /// Text that reads upwards, centred.
+    /// Draws a centred text that reads upwards.
     pub(crate) fn vertical(&mut self, at: (f64, f64), text: &str, size: f64) {
         self.push_text(at, text, size, BLACK_INK, Anchor::Middle, false, true);
     }
@@ -145,13 +148,13 @@ impl Canvas {
         self.shapes.push(Shape::Text { at, text, size, colour, anchor, bold, vertical });
     }
 
-    /// The SVG text; `title` names it for those who can't see it.
+    /// Returns the SVG text; `title` is its accessible name.
     pub(crate) fn svg(&self, name: &str, title: &str) -> Result<String, ReportError> {
         let wrong = |reason: String| ReportError::Figure { name: name.into(), reason };
         fonts().map_err(|e| wrong(e.into()))?;
         let size = ((self.width * UNITS).round() as u32, (self.height * UNITS).round() as u32);
         let (width, height) = (self.width, self.height);
-        // For those who can't see it.
+        // The accessible name.
         let title = escaped(title);
         let mut svg = format!(
             "<svg width=\"{width}pt\" height=\"{height}pt\" role=\"img\" viewBox=\"0 0 {} {}\" \
@@ -205,7 +208,7 @@ fn draw(area: &DrawingArea<Paths, plotters::coord::Shift>, shape: &Shape) -> Res
     }
 }
 
-/// Width of a text in points.
+/// Width of a text, points.
 pub(crate) fn text_width(text: &str, size: f64) -> f64 {
     if fonts().is_err() {
         return 0.6 * size * text.chars().count() as f64;
@@ -223,7 +226,7 @@ fn fonts() -> Result<(), &'static str> {
     if *done { Ok(()) } else { Err("the built-in fonts can't be read") }
 }
 
-/// The picture in pixels and as PDF.
+/// Renders the picture as PNG and as PDF.
 pub(crate) fn png_and_pdf(name: &str, title: &str, svg: &str) -> Result<(Vec<u8>, Vec<u8>), ReportError> {
     static FONTS: OnceLock<Arc<usvg::fontdb::Database>> = OnceLock::new();
     let wrong = |reason: String| ReportError::Figure { name: name.into(), reason };

@@ -1,4 +1,4 @@
-//! Conditioning and neighbours of the meshfree methods against the scale of supports.
+//! Conditioning and neighbours of the meshfree methods as a function of the support scale.
 
 use super::axes::Axis;
 use super::grid::{Content, multiples};
@@ -8,7 +8,7 @@ use crate::plot::{Curve, Plot, Scale};
 use crate::record::Family;
 use crate::select::{Run, by_case};
 
-/// A kernel or case as `(label, (support scale, value, low, high))`.
+/// A kernel or case as `(label, points)`, each point as `(support scale, value, low, high)`.
 type Line = (String, Vec<(f64, f64, f64, f64)>);
 
 /// Condition number of the moment matrix: one panel per case, one line per kernel and basis.
@@ -61,9 +61,9 @@ pub(super) fn neighbours(runs: &[Run]) -> Vec<Figure> {
     }]
 }
 
-/// What must not change along a line besides the support scale: all that the rows of a cloud depend on. What is usual goes unsaid:
-/// the linear basis, supports that are balls, and a cloud that is not coupled to finite elements. How else displacements are
-/// prescribed leaves the rows as they are.
+/// Settings that are constant along a line, apart from the support scale: all that the rows of a cloud depend
+/// on. Default settings are omitted: the linear basis, spherical supports, and a cloud without coupling to
+/// finite elements. Other ways to prescribe displacements do not affect the rows.
 fn settings(run: &Run) -> Vec<String> {
     let is = run.is;
     let basis = is.basis.clone().filter(|basis| basis != "linear");
@@ -75,10 +75,11 @@ fn settings(run: &Run) -> Vec<String> {
         .collect()
 }
 
-/// Support scales that make a sweep: a single one, or two that come from different methods, say nothing about it.
+/// Smallest number of support scales in a sweep. One, or two from different methods, show no trend.
 const SWEEP: usize = 3;
 
-/// By case, then by label: at the Poisson's ratio and node count with most support scales; one run for each.
+/// Panels by case and lines by label, at the Poisson's ratio and node count with the most support scales;
+/// each scale has one run.
 fn panels(
     runs: &[Run],
     point: impl Fn(&Run) -> Option<(f64, f64, f64)>,
@@ -124,7 +125,7 @@ fn panels(
     out
 }
 
-/// The panels as numbers: the title of one that is of a case is its name.
+/// The panels as data; the title of a panel of a case is the case name.
 fn plotted(panels: &[(String, Vec<Line>)], y: &str, log: bool) -> Vec<Plot> {
     let curve = |(label, at): &Line| Curve {
         band: at.iter().map(|p| (p.0, p.2, p.3)).collect(),
@@ -158,7 +159,7 @@ fn canvas(panels: &[(String, Vec<Line>)], y: &str, log: bool, note: &str) -> sup
                 plot: Box::new(move |canvas, panel| {
                     for (i, (label, points)) in lines.iter().enumerate() {
                         let Some(style) = find(styles, label) else { continue };
-                        // Side by side, or the bars hide each other.
+                        // Bars are placed side by side, because they would hide each other.
                         let aside = 2.4 * (i as f64 - 0.5 * (lines.len() as f64 - 1.0));
                         let place = |x: f64, y: f64| {
                             let at = panel.at(x, y);
@@ -177,7 +178,7 @@ fn canvas(panels: &[(String, Vec<Line>)], y: &str, log: bool, note: &str) -> sup
     multiples(contents, &styles, note)
 }
 
-/// Ticks at the scales themselves.
+/// Ticks at the support scales.
 fn ticks(mut values: Vec<f64>) -> Vec<(f64, String)> {
     values.sort_by(f64::total_cmp);
     let span = values.last().zip(values.first()).map_or(0.0, |(high, low)| high - low);
@@ -223,7 +224,7 @@ mod tests {
             [(1.2, 31.0), (1.6, 23.0), (2.0, 24.0)].map(|(d, v)| (d, v, v, v)).to_vec(),
         );
         assert_eq!(lines(&records), std::slice::from_ref(&plain));
-        // A sweep of their own is a line of its own.
+        // A sweep of coupled clouds is a separate line.
         records.extend([1.2, 2.0].map(|scale| cloud("a-coupled", scale, "coupling", 9e4)));
         let both = lines(&records);
         assert_eq!(

@@ -1,4 +1,4 @@
-//! Values as colours, and the bar that explains them.
+//! Colour scales and their colour bar.
 
 use super::axes::{Axis, TEXT};
 use super::canvas::{Anchor, BLACK_INK, Canvas, Colour};
@@ -18,7 +18,8 @@ const VIRIDIS: [Colour; 11] = [
     [253, 231, 37],
 ];
 
-/// Blue over white to red, told apart by the colour-blind (ColorBrewer RdBu turned round; Harrower and Brewer, 2003).
+/// Diverging from blue over white to red, safe for colour-blind readers (reversed ColorBrewer RdBu; Harrower
+/// and Brewer, 2003).
 const BLUE_RED: [Colour; 11] = [
     [5, 48, 97],
     [33, 102, 172],
@@ -33,15 +34,15 @@ const BLUE_RED: [Colour; 11] = [
     [103, 0, 31],
 ];
 
-/// Shades told apart on a body: more than an eye can, few enough for neighbours to share one.
+/// Number of shades on a body: more than an eye distinguishes, and few enough for neighbours to share one.
 const SHADES: f64 = 48.0;
 
-/// What colour a value has.
+/// Map from values to colours.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Scale {
-    /// From zero to a largest value.
+    /// From zero to a maximum.
     Rising(f64),
-    /// About zero, as far to either side; what lies beyond has the colour of the end.
+    /// Symmetric about zero; values beyond the ends have the colours of the ends.
     Signed(f64),
 }
 
@@ -53,7 +54,7 @@ impl Scale {
         }
     }
 
-    /// The colour, one of the shades.
+    /// Colour of a value, quantised to the shades.
     pub(super) fn colour(self, value: f64) -> Colour {
         let (low, high) = self.ends();
         self.shade((((value - low) / (high - low)).clamp(0.0, 1.0) * SHADES).round() / SHADES)
@@ -72,7 +73,7 @@ impl Scale {
         })
     }
 
-    /// A bar with its top left corner at a point, its label above.
+    /// Draws a colour bar with its top left corner at a point and its label above.
     pub(super) fn bar(self, canvas: &mut Canvas, at: (f64, f64), height: f64, label: &str) {
         let (low, high) = self.ends();
         let steps = 64;
@@ -85,7 +86,7 @@ impl Scale {
             );
         }
         if let Scale::Signed(_) = self {
-            // Points at both ends: there is more beyond them.
+            // The points at both ends indicate values beyond them.
             let (bottom, middle, end) = (at.1 + height, at.0 + 6.0, at.0 + 12.0);
             canvas.fill(&[(at.0, at.1), (middle, at.1 - 7.0), (end, at.1)], self.shade(1.0));
             canvas.fill(&[(at.0, bottom), (end, bottom), (middle, bottom + 7.0)], self.shade(0.0));

@@ -1,4 +1,4 @@
-//! Error against spacing, with the slopes that theory promises.
+//! Error as a function of spacing, with the theoretical slopes.
 
 use super::axes::{Axis, Panel, TEXT};
 use super::canvas::{Anchor, Canvas, GREY};
@@ -12,7 +12,7 @@ use crate::select::{Run, Series, labels, series};
 
 const SPACING: &str = "node spacing h [mm]";
 
-/// One figure (or more pages) per error: L2, energy, pressure.
+/// Figures of each error (L2, energy, pressure), on one or more pages.
 pub(super) fn figures(runs: &[Run]) -> Vec<Figure> {
     let mut out = Vec::new();
     for quantity in ["l2", "energy", "pressure"] {
@@ -30,7 +30,7 @@ pub(super) fn figures(runs: &[Run]) -> Vec<Figure> {
     out
 }
 
-/// A series with the order that theory promises it.
+/// A series with its theoretical order.
 type Line = (Curve, Option<f64>);
 
 fn lines(runs: &[Run], quantity: &str) -> Vec<Line> {
@@ -102,7 +102,7 @@ fn plotted((title, case, lines): &Paned, quantity: &str) -> Plot {
     }
 }
 
-/// A fan of theoretical slopes in the lower right corner, which converging data leave free.
+/// Draws a fan of theoretical slopes in the lower right corner, which converging data leave free.
 fn slopes(canvas: &mut Canvas, panel: &Panel, lines: &[Line]) {
     let mut orders: Vec<f64> = lines.iter().filter_map(|l| l.1).collect();
     orders.sort_by(f64::total_cmp);
@@ -118,7 +118,7 @@ fn slopes(canvas: &mut Canvas, panel: &Panel, lines: &[Line]) {
     for order in &orders {
         let top = panel.at(right, foot * (run * order).exp());
         canvas.line(&[base, top], GREY, 1.0);
-        // Labels at least a line apart.
+        // Labels are at least one line apart.
         lowest = top.1.min(lowest - TEXT);
         canvas.text((top.0 + 3.0, lowest), &format!("{order}"), TEXT, GREY, Anchor::Start);
     }

@@ -1,4 +1,4 @@
-//! Run time against error: what the project is about.
+//! Run time against error, the main result of a benchmark.
 
 use super::axes::{Axis, Panel, TEXT};
 use super::canvas::{Canvas, GREY};
@@ -13,10 +13,10 @@ use crate::seconds::Seconds;
 use crate::select::Run;
 use crate::text::list;
 
-/// The error of the dashed line.
+/// Error of the dashed line.
 const PERCENT: f64 = 0.01;
 
-/// For each kind of time a figure per question, with a panel per case that answers it.
+/// Figures for each kind of time and each question, with a panel for each case that answers the question.
 pub(super) fn figures(runs: &[Run]) -> Vec<Figure> {
     let asks = asks(runs);
     let same = asks.chunk_by(|a, b| (a.clock, a.question.ending) == (b.clock, b.question.ending));
@@ -50,7 +50,7 @@ fn figure(question: &Question, clock: Clock, page: usize, panels: &[Ask]) -> Fig
     }
 }
 
-/// A panel as numbers, in seconds.
+/// Data of a panel, with times in seconds.
 fn plotted(ask: &Ask) -> Plot {
     let curve = |line: &Line| {
         let points = line.runs.iter().map(|r| (r.seconds, r.error)).collect();
@@ -66,7 +66,7 @@ fn plotted(ask: &Ask) -> Plot {
     }
 }
 
-/// The runs of all lines.
+/// Runs of all lines.
 fn all(lines: &[Line]) -> impl Iterator<Item = &Timed> {
     lines.iter().flat_map(|line| &line.runs)
 }
@@ -117,7 +117,7 @@ fn content<'a>(panel: &'a Ask, clock: Clock, styles: &'a [Style]) -> Content<'a>
                 for run in line.runs.iter().filter(|r| r.counts > r.error) {
                     canvas.line(&[at(run), counted(run)], style.look.colour, 0.6);
                 }
-                // Of several rules of integration a kernel has no line.
+                // A kernel with several integration rules has no line.
                 match panel_of_kernels {
                     true => line.runs.iter().for_each(|r| style.mark(canvas, at(r))),
                     false => style.curve(canvas, &line.runs.iter().map(at).collect::<Vec<_>>()),
@@ -127,22 +127,23 @@ fn content<'a>(panel: &'a Ask, clock: Clock, styles: &'a [Style]) -> Content<'a>
     }
 }
 
-/// Times by which a line may lie beyond the runs: one decade, or it would squeeze them into a corner.
+/// Largest ratio between a deadline and the nearest run of a panel. A line farther away would squeeze the
+/// runs into a corner.
 const REACH: f64 = 10.0;
 
-/// The least and the largest time of a panel.
+/// Smallest and largest time of a panel, s.
 fn range(lines: &[Line]) -> (f64, f64) {
     all(lines).map(|r| r.seconds).fold((f64::INFINITY, 0.0), |(low, high), t| (t.min(low), t.max(high)))
 }
 
-/// The deadlines among the runs of a panel or near them.
+/// Deadlines among the runs of a panel, or close to them.
 fn near(lines: &[Line]) -> Vec<Deadline> {
     let (low, high) = range(lines);
     DEADLINES.into_iter().filter(|d| (low / REACH..=high * REACH).contains(&d.seconds)).collect()
 }
 
-/// What is said of the deadlines that are not drawn, with the panels: of all that every run keeps, the hardest; of all that none
-/// keeps, the easiest.
+/// Texts about deadlines that are not drawn, with the titles of their panels: the hardest that every run
+/// meets, and the easiest that no run meets.
 fn beyond(panels: &[Ask]) -> Vec<String> {
     let mut said: Vec<(String, Vec<String>)> = Vec::new();
     for panel in panels {
@@ -164,7 +165,7 @@ fn beyond(panels: &[Ask]) -> Vec<String> {
     said.into_iter().map(|(text, titles)| text + &place(&titles)).collect()
 }
 
-/// Errors with as many around them as make a decade: closer ones would need digits that have no room beside an axis.
+/// Extends a range of errors to a decade; on a shorter axis the tick labels would need too many digits.
 fn decade(mut errors: Vec<f64>) -> Vec<f64> {
     let low = errors.iter().copied().fold(f64::INFINITY, f64::min);
     let high = errors.iter().copied().fold(0.0, f64::max);
@@ -220,14 +221,15 @@ fn note(question: &Question, clock: Clock, panels: &[Ask]) -> String {
     note
 }
 
-/// Vertical lines where a frame must be done.
+/// Draws vertical lines at the deadlines of a frame.
 fn deadlines(canvas: &mut Canvas, panel: &Panel, scale: f64, lines: &[Line]) {
     let (_, top, _, bottom) = panel.frame;
     let markers: Vec<_> = all(lines).map(|r| panel.at(scale * r.seconds, r.error)).collect();
     for deadline in near(lines) {
         let (x, _) = panel.at(scale * deadline.seconds, panel.y.low());
         canvas.dashed(&[(x, top), (x, bottom)], GREY, 0.7, &[3.0, 2.0]);
-        // Along its line: beside it there is no room where that is near an end of the axis. At the end with fewer markers.
+        // The label runs along the line, because there may be no room next to it, and is placed at the end
+        // with fewer markers.
         let covered =
             |y: f64| markers.iter().filter(|m| (m.0 - x - 6.0).abs() < 9.0 && (m.1 - y).abs() < 20.0).count();
         let (low, high) = (bottom - 18.0, top + 18.0);
@@ -236,7 +238,7 @@ fn deadlines(canvas: &mut Canvas, panel: &Panel, scale: f64, lines: &[Line]) {
     }
 }
 
-/// Along the best runs, on paper: from the first time an error is reached to the next smaller one, and on.
+/// Draws a staircase along the best runs, from each time to the next smaller error.
 fn front(canvas: &mut Canvas, panel: &Panel, best: &[(f64, f64)]) {
     let (Some(first), Some(last)) = (best.first(), best.last()) else { return };
     let (_, top, right, _) = panel.frame;

@@ -1,24 +1,25 @@
-//! Small multiples: panels in rows and columns over one legend.
+//! Small multiples: rows and columns of panels with one legend.
 
 use super::axes::{Axis, Panel, TEXT};
 use super::canvas::{Anchor, Canvas, GREY, text_width};
 use super::style::{Style, fillings, legend, legend_height};
 
-/// Full page width of a journal, 178 mm, in points.
+/// Page width of a journal, 178 mm, in points.
 pub(crate) const WIDTH: f64 = 504.0;
-/// One column of a journal, 85 mm: the width of a figure with one panel, so that its text prints at the size it has here.
+/// Column width of a journal, 85 mm, in points. Figures with one panel have this width, so that their text is
+/// printed at its nominal size.
 pub(crate) const COLUMN: f64 = 241.0;
 const LEFT: f64 = 60.0;
-/// Room for a short label behind the frame.
+/// Room for a short label beyond the frame.
 const RIGHT: f64 = 24.0;
 const GAP: f64 = 66.0;
 const HEIGHT: f64 = 150.0;
 const STEP: f64 = 206.0;
 
-/// Draws into a frame.
+/// A closure that draws into a frame.
 pub(crate) type Plot<'a> = Box<dyn Fn(&mut Canvas, &Panel) + 'a>;
 
-/// What one panel shows.
+/// Content of one panel.
 pub(crate) struct Content<'a> {
     pub(crate) title: String,
     pub(crate) x: Axis,
@@ -27,7 +28,7 @@ pub(crate) struct Content<'a> {
     pub(crate) plot: Plot<'a>,
 }
 
-/// Panels of lines, two to a row, a legend and a note below.
+/// Draws panels of lines, two to a row, with a legend and a note below.
 pub(crate) fn multiples(panels: Vec<Content>, styles: &[Style], note: &str) -> Canvas {
     let columns = panels.len().clamp(1, 2);
     let rows = panels.len().div_ceil(columns);
@@ -52,7 +53,7 @@ pub(crate) fn multiples(panels: Vec<Content>, styles: &[Style], note: &str) -> C
     canvas
 }
 
-/// A note in lines that fit a width.
+/// Wraps a note into lines of a given width.
 pub(crate) fn wrapped(note: &str, width: f64) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for word in note.split_whitespace() {

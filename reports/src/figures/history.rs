@@ -1,5 +1,5 @@
-//! What happens while a tool closes, its force over the closure and over time and where the energy is; and
-//! how frequencies go wrong from mode to mode.
+//! Histories of a closing tool (force against travel and time, and energies over time), and frequency errors
+//! by mode.
 
 use super::axes::Axis;
 use super::canvas::{Canvas, Colour};
@@ -11,9 +11,9 @@ use crate::plot::{self, Curve, Plot, Scale};
 use crate::record::Family;
 use crate::select::{Run, by_case, labels, series};
 
-/// Grey of an uncertainty, light enough for every line over it.
+/// Grey of an uncertainty band, light enough for every line on it.
 const UNCERTAIN: Colour = [0xd6, 0xd6, 0xd6];
-/// Markers on one line: more would hide it.
+/// Largest number of markers on a line; more would hide it.
 const MARKS: usize = 12;
 const ENERGIES: [(&str, &str); 9] = [
     ("external-work", "work of loads and tools"),
@@ -27,13 +27,13 @@ const ENERGIES: [(&str, &str); 9] = [
     ("scheme-dissipation", "lost in the scheme"),
 ];
 
-/// Tool force of the finest run of every method: over the closure, over time where that went on, and minus
-/// the reference's at the same closure with its uncertainty.
+/// Figures of the tool force for the finest run of every method: against travel, against time in dynamics,
+/// and as the difference from the reference at the same travel, with its uncertainty.
 pub(super) fn forces(runs: &[Run]) -> Vec<Figure> {
     let mut panels = Vec::new();
     for case in by_case(runs) {
         let mut all = series(case);
-        // The reference lies below what is compared with it.
+        // The reference is drawn below the methods compared with it.
         all.sort_by_key(|s| s.is().family != Family::Reference);
         let names = labels(all.iter().map(|s| s.is()));
         let each = |x: &str, scale: f64| -> Vec<Curve> {
@@ -61,7 +61,8 @@ pub(super) fn forces(runs: &[Run]) -> Vec<Figure> {
     )
 }
 
-/// Forces over the closure minus that of the reference, which is left with its uncertainty around nothing.
+/// Differences between forces and the reference at equal travel. The reference itself becomes zero with its
+/// uncertainty.
 fn against(case: &[Run], closing: &[Curve]) -> Vec<Curve> {
     let Some(known) = reference(case) else { return Vec::new() };
     let scaled = curve(known, "closure", "tool-force").into_iter().map(|p| (p.0 * 1e3, p.1));
@@ -73,11 +74,11 @@ fn against(case: &[Run], closing: &[Curve]) -> Vec<Curve> {
         ..line.clone()
     });
     let off: Vec<Curve> = off.filter(drawn).collect();
-    // The reference alone differs from nothing.
+    // Without another method, the reference only differs from itself by zero.
     if off.iter().all(|line| line.points.iter().all(|p| p.1 == 0.0)) { Vec::new() } else { off }
 }
 
-/// Energies over time: one panel for the finest run of every method that recorded them.
+/// Figures of energies over time: one panel for the finest run of every method that recorded them.
 pub(super) fn energies(runs: &[Run]) -> Vec<Figure> {
     let mut panels = Vec::new();
     for case in by_case(runs) {
@@ -89,7 +90,7 @@ pub(super) fn energies(runs: &[Run]) -> Vec<Figure> {
                 let ids = vec![s.finest().is.run.clone()];
                 Curve::new(label.to_string(), Family::Reference, points.collect(), ids)
             });
-            // What stays nothing has no line: it would only lie on the axis.
+            // An energy that remains zero has no line, which would only lie on the axis.
             let lines = lines.filter(drawn).filter(|l| l.points.iter().any(|p| p.1 != 0.0));
             let of = format!(", {name}");
             panels.push(Pane::new(&s.is().case, &of, ("time [s]", "energy [mJ]"), lines.collect()));
@@ -103,7 +104,8 @@ pub(super) fn energies(runs: &[Run]) -> Vec<Figure> {
     )
 }
 
-/// Computed over exact frequency, mode by mode: one panel for each mass of a case, the finest run of every method.
+/// Figures of computed over exact frequency by mode: one panel for each mass of a case, with the finest run
+/// of every method.
 pub(super) fn spectra(runs: &[Run]) -> Vec<Figure> {
     let mut panels = Vec::new();
     for case in by_case(runs) {
@@ -138,12 +140,12 @@ fn line(name: String, run: &Run, points: Vec<(f64, f64)>) -> Curve {
     Curve::new(name, run.is.family, points, vec![run.is.run.clone()])
 }
 
-/// A single step is no history.
+/// Whether a line has more than one step.
 fn drawn(line: &Curve) -> bool {
     line.points.len() > 1
 }
 
-/// Quantity of a panel.
+/// Data of a panel.
 struct Pane {
     case: String,
     /// Part of the title after the case.

@@ -1,4 +1,4 @@
-//! Error against Poisson's ratio at one size: who locks.
+//! Error against Poisson's ratio at one size, which shows locking.
 
 use super::axes::Axis;
 use super::canvas::GREY;
@@ -12,10 +12,10 @@ use crate::quantity::label;
 use crate::record::Family;
 use crate::select::{Run, competing, labels};
 
-/// A method as `(label, family, runs of one size by rising Poisson's ratio)`.
+/// A method as `(label, family, runs of one size by ascending Poisson's ratio)`.
 pub(crate) type Sweep<'r> = (String, Family, Vec<Run<'r>>);
 
-/// Every solver of a case that was run at two or more Poisson's ratios, at its middle size.
+/// Solvers of a case that ran at two or more Poisson's ratios, at their middle size.
 pub(crate) fn sweeps<'r>(case: &[Run<'r>]) -> Vec<Sweep<'r>> {
     let mut found: Vec<Vec<Run<'r>>> = Vec::new();
     for run in case {
@@ -47,7 +47,7 @@ pub(crate) fn sweeps<'r>(case: &[Run<'r>]) -> Vec<Sweep<'r>> {
     labels.into_iter().zip(picked).map(|(label, s)| (label, s[0].is.family, s)).collect()
 }
 
-/// Displacement error, pressure error and tip deflection of every case with such sweeps.
+/// Figures of displacement error, pressure error and tip deflection for every case with such sweeps.
 pub(super) fn figures(runs: &[Run]) -> Vec<Figure> {
     let mut panels = Vec::new();
     for case in competing(runs) {
@@ -70,7 +70,7 @@ fn usable(run: &Run, quantity: &str) -> Option<f64> {
     }
 }
 
-/// Grows without bound as the material becomes incompressible.
+/// A measure that grows without bound as the material becomes incompressible.
 fn stiffness(poisson: f64) -> f64 {
     1.0 / (1.0 - 2.0 * poisson)
 }
@@ -132,7 +132,7 @@ fn figure(page: usize, panels: &[(String, &'static str, Vec<Sweep>)]) -> Figure 
     }
 }
 
-/// A panel as numbers, over 1/(1 - 2 nu).
+/// Data of a panel, as a function of 1/(1 - 2 nu).
 fn plotted((case, quantity, sweeps): &(String, &'static str, Vec<Sweep>)) -> Plot {
     let curve = |(name, family, runs): &Sweep| {
         let own = runs.iter().filter_map(|r| Some((r, usable(r, quantity)?)));
@@ -153,7 +153,7 @@ fn plotted((case, quantity, sweeps): &(String, &'static str, Vec<Sweep>)) -> Plo
     }
 }
 
-/// Ticks at the ratios themselves, leaving out those too close to the one before.
+/// Ticks at the ratios, omitting those too close to the previous tick.
 fn spread_out(ratios: &[f64]) -> Vec<(f64, String)> {
     let mut ticks: Vec<(f64, String)> = Vec::new();
     let whole = ratios.last().map_or(1.0, |r| stiffness(*r).ln().max(1.0));

@@ -1,4 +1,4 @@
-//! Which figures there are, and what they share.
+//! Figures of a report, and their common parts.
 
 mod axes;
 mod backend;
@@ -32,7 +32,7 @@ use crate::run_set::RunSet;
 use crate::select::{Run, competing, groups, solved};
 use crate::text::ratio;
 
-/// Panels on one figure.
+/// Largest number of panels on a figure.
 const PAGE: usize = 6;
 
 /// A named drawing.
@@ -44,18 +44,18 @@ pub(crate) struct Figure {
     pub(crate) data: Data,
 }
 
-/// What a figure shows, to be read and drawn again.
+/// Data of a figure, so that it can be read and redrawn.
 pub(crate) enum Data {
     /// Curves over axes.
     Plots(Vec<Plot>),
     /// Rows of CSV.
     Rows(String),
-    /// A picture of the body of a case, whose numbers are in the folder `fields` of the results.
+    /// Case of a picture of its body, whose numbers are in the folder `fields` of the results.
     Picture(String),
 }
 
 impl Data {
-    /// As CSV.
+    /// The data as CSV, `None` for a picture.
     pub(crate) fn csv(&self) -> Option<String> {
         match self {
             Data::Plots(plots) => Some(csv(plots)),
@@ -65,13 +65,13 @@ impl Data {
     }
 }
 
-/// A triangle on paper, and its value.
+/// A triangle on paper with its value.
 struct Pictured {
     corners: [[f64; 2]; 3],
     value: f64,
 }
 
-/// Every figure that has something to show, in the order of the report.
+/// Every figure with content, in the order of the report.
 pub(crate) fn all(set: &RunSet, runs: &[Run], trends: &[Trend]) -> Vec<Figure> {
     let solved = solved(runs);
     let mut figures = efficiency::figures(&solved);
@@ -92,7 +92,8 @@ pub(crate) fn all(set: &RunSet, runs: &[Run], trends: &[Trend]) -> Vec<Figure> {
     figures
 }
 
-/// Solver runs of every case that isn't a patch test, titled, at the Poisson's ratios nearest 0.3 and 0.495.
+/// Solver runs of every case except patch tests, with titles, at the Poisson's ratios closest to 0.3 and
+/// 0.495.
 pub(crate) fn chosen<'a, 'r>(runs: &'a [Run<'r>]) -> Vec<(String, &'a [Run<'r>])> {
     let mut out = Vec::new();
     for case in competing(runs) {
@@ -111,7 +112,7 @@ pub(crate) fn chosen<'a, 'r>(runs: &'a [Run<'r>]) -> Vec<(String, &'a [Run<'r>])
     out
 }
 
-/// The runs of a case at the Poisson's ratio nearest to one.
+/// Runs of a case at the Poisson's ratio closest to the given one.
 fn representative<'a, 'r>(case: &'a [Run<'r>], poisson: f64) -> &'a [Run<'r>] {
     let off = |g: &&[Run]| (g[0].is.poisson - poisson).abs();
     groups(case, |r| r.is.poisson.to_bits())
@@ -120,12 +121,12 @@ fn representative<'a, 'r>(case: &'a [Run<'r>], poisson: f64) -> &'a [Run<'r>] {
         .unwrap_or(case)
 }
 
-/// Titles of further pages say so.
+/// Title of a page; further pages have their number.
 fn continued(title: &str, page: usize) -> String {
     if page == 0 { title.into() } else { format!("{title}, page {}", page + 1) }
 }
 
-/// Further pages of a figure carry a number.
+/// Name of a page; further pages have their number.
 fn paged(name: &str, page: usize) -> String {
     if page == 0 { name.into() } else { format!("{name}-{}", page + 1) }
 }

@@ -1,4 +1,4 @@
-//! Errors and processor seconds of a study from commit to commit.
+//! Errors and CPU seconds of a study over commits.
 
 use super::axes::Axis;
 use super::canvas::Canvas;
@@ -12,7 +12,7 @@ use crate::table::csv_line;
 /// Title of the figure.
 pub(crate) const TITLE: &str = "Errors and processor seconds over commits";
 
-/// The figure of a report; none without a history.
+/// Figure of the report, `None` without a history.
 pub(super) fn figure(trends: &[Trend]) -> Option<Figure> {
     (!trends.is_empty()).then(|| Figure {
         name: "over-commits".into(),
@@ -54,11 +54,11 @@ fn csv(trends: &[Trend]) -> String {
     out
 }
 
-/// Commits named below an axis.
+/// Largest number of commits labelled on an axis.
 const NAMED: usize = 6;
 
-/// Two panels over the commits of each trend, both as ratios to the first: errors, and processor seconds. A step outside of noise has
-/// its marker, others have none.
+/// Draws two panels over the commits of each trend, as ratios to the first commit: errors and CPU seconds.
+/// Only steps outside of the noise have markers.
 pub(crate) fn over_commits(trends: &[Trend]) -> Canvas {
     let labels: Vec<(String, Family)> = trends.iter().map(|trend| (trend.label(), Family::Fem)).collect();
     let styles = styles(&labels);
@@ -86,7 +86,7 @@ fn panel<'a>(
     let longest = trends.iter().max_by_key(|trend| trend.points.len());
     let names: Vec<(f64, String)> = longest.map_or(Vec::new(), |trend| {
         let every = trend.points.len().div_ceil(NAMED).max(1);
-        // Of a commit seven digits tell it from the others.
+        // Seven digits identify a commit.
         let digits = |point: &Point| if point.label.is_empty() { 7 } else { 16 };
         let name = |point: &Point| point.name().chars().take(digits(point)).collect();
         trend.points.iter().enumerate().step_by(every).map(|(at, point)| (at as f64, name(point))).collect()

@@ -1,4 +1,4 @@
-//! A drawing as PDF: one page, its letters as outlines, so that no font need be there or be embedded.
+//! PDF output: one page with letters as outlines, which needs no font, installed or embedded.
 
 use std::io::Write as _;
 
@@ -8,21 +8,21 @@ use pdf_writer::{Content, Filter, Finish, Pdf, Rect, Ref, TextStr};
 use resvg::tiny_skia::{Point, Transform};
 use resvg::{tiny_skia, usvg};
 
-/// Points of paper in a pixel of a tree, of which there are 96 in an inch.
+/// Points per pixel of a tree, which has 96 pixels per inch.
 const PAPER: f32 = 0.75;
 
-/// A page of a drawing's lines and plain colours.
+/// Renders the lines and plain colours of a drawing as a page.
 ///
 /// # Errors
-/// Names what else is in the drawing.
+/// An element of any other kind, by name.
 pub(super) fn pdf(tree: &usvg::Tree, title: &str) -> Result<Vec<u8>, String> {
     let (width, height) = (PAPER * tree.size().width(), PAPER * tree.size().height());
     let mut content = Content::new();
-    // Round: at a sharp corner a mitre would stand out.
+    // The joins are round, because a mitre at a sharp corner would stand out.
     content.set_line_join(pdf_writer::types::LineJoinStyle::RoundJoin);
-    // On paper the second coordinate goes up.
+    // The second coordinate of PDF points upwards.
     group(&mut content, tree.root(), Transform::from_row(PAPER, 0.0, 0.0, -PAPER, 0.0, height))?;
-    // The default level took a quarter of a report's time to make its pages a quarter smaller.
+    // The default level takes a quarter of a report's time and makes its pages only a quarter smaller.
     let mut packed = ZlibEncoder::new(Vec::new(), Compression::fast());
     packed.write_all(&content.finish()).expect("memory takes all");
     let packed = packed.finish().expect("memory takes all");
@@ -87,7 +87,7 @@ fn path(content: &mut Content, shape: &usvg::Path, paper: Transform) -> Result<(
                 content.line_to(x, y);
                 last = to;
             }
-            // PDF has cubic curves alone.
+            // PDF supports only cubic curves.
             QuadTo(control, to) => {
                 let part = |end: f32, control: f32| end + (control - end) * 2.0 / 3.0;
                 let towards = |end: Point| Point::from_xy(part(end.x, control.x), part(end.y, control.y));
@@ -116,7 +116,7 @@ fn cubic(content: &mut Content, [one, two, to]: [(f32, f32); 3]) {
     content.cubic_to(one.0, one.1, two.0, two.1, to.0, to.1);
 }
 
-/// A plain colour that hides what is below.
+/// Returns the components of an opaque plain colour.
 fn rgb(paint: &usvg::Paint, opacity: usvg::Opacity) -> Result<[f32; 3], String> {
     match paint {
         usvg::Paint::Color(c) if opacity.get() == 1.0 => {
@@ -126,7 +126,7 @@ fn rgb(paint: &usvg::Paint, opacity: usvg::Opacity) -> Result<[f32; 3], String> 
     }
 }
 
-/// Three decimals: a thousandth of a point can't be seen.
+/// Rounds to three decimals: a thousandth of a point is invisible.
 fn rounded(value: f32) -> f32 {
     (value * 1e3).round() / 1e3
 }
@@ -150,7 +150,7 @@ mod tests {
         let begin = made.windows(7).position(|w| w == b"stream\n").unwrap() + 7;
         let mut drawn = String::new();
         flate2::read::ZlibDecoder::new(&made[begin..]).read_to_string(&mut drawn).unwrap();
-        // From the top left corner to the middle, two points wide; the curve by its cubic form.
+        // A line from the top left corner to the middle, two points wide, and the curve in its cubic form.
         assert!(drawn.contains("1 0 0 RG\n2 w\n0 36 m\n36 18 l\nS"), "{drawn}");
         assert!(drawn.contains("0 0 1 rg\n10 26 m\n16.667 26 20 22.667 20 16 c\nh\nf"), "{drawn}");
     }

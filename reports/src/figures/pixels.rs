@@ -1,11 +1,11 @@
-//! A drawing as PNG.
+//! PNG output.
 
 use resvg::{tiny_skia, usvg};
 
-/// The picture in pixels, twice the size a screen shows it.
+/// Renders the picture at twice its size on a screen.
 ///
 /// # Errors
-/// Says that it is too large.
+/// A picture that is too large.
 pub(super) fn png(tree: &usvg::Tree) -> Result<Vec<u8>, String> {
     let size = tree.size().to_int_size().scale_by(2.0).ok_or("it is too large")?;
     let (width, height) = (size.width(), size.height());
@@ -13,13 +13,14 @@ pub(super) fn png(tree: &usvg::Tree) -> Result<Vec<u8>, String> {
         .ok_or_else(|| format!("{width} x {height} pixels can't be held"))?;
     pixels.fill(tiny_skia::Color::WHITE);
     resvg::render(tree, tiny_skia::Transform::from_scale(2.0, 2.0), &mut pixels.as_mut());
-    // On a white sheet nothing is clear: three bytes of four are needed.
+    // Every pixel of a white sheet is opaque, so three of its four bytes suffice.
     let mut colours = Vec::with_capacity(pixels.data().len() / 4 * 3);
     pixels.data().chunks_exact(4).for_each(|pixel| colours.extend_from_slice(&pixel[..3]));
     packed(width, height, &colours).map_err(|e| e.to_string())
 }
 
-/// tiny-skia's own encoder took a third of a report's time. The lowest level takes a sixth of it and makes files a third larger.
+/// Encodes the pixels as PNG. The encoder of tiny-skia took a third of a report's time; the lowest level
+/// takes a sixth of this and makes files a third larger.
 fn packed(width: u32, height: u32, colours: &[u8]) -> Result<Vec<u8>, png::EncodingError> {
     let mut file = Vec::new();
     let mut encoder = png::Encoder::new(&mut file, width, height);

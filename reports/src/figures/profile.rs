@@ -1,5 +1,5 @@
-//! The performance profile: on which part of its cases a method is within an error, in how many times the
-//! least time of any method.
+//! Performance profile: the fraction of its cases on which a method is within an error, as a function of its
+//! time over the smallest time of any method.
 
 use super::axes::Axis;
 use super::grid::{Content, multiples};
@@ -10,10 +10,10 @@ use crate::plot::{self, Curve, Plot, Scale};
 use crate::select::Run;
 use crate::within::{methods, problems, ratios};
 
-/// Fewest cases that a method has a profile over.
+/// Smallest number of cases for a profile of a method.
 const CASES: usize = 3;
 
-/// One panel over all cases; none where no method was run on enough of them.
+/// Panel over all cases; `None` if no method ran on enough of them.
 pub(super) fn figure(runs: &[Run]) -> Option<Figure> {
     let problems = problems(runs);
     let all: Vec<Curve> = methods(&problems)
@@ -27,7 +27,7 @@ pub(super) fn figure(runs: &[Run]) -> Option<Figure> {
     let last = all.iter().flat_map(|c| &c.points).map(|p| p.0).fold(1.0, f64::max);
     let mut curves = all;
     for curve in &mut curves {
-        // Its last share holds to the end of the axis.
+        // The last value holds to the end of the axis.
         curve.points.extend(
             curve.points.last().map(|p| (last, p.1)).filter(|p| p.0 > curve.points[curve.points.len() - 1].0),
         );
@@ -60,7 +60,7 @@ pub(super) fn figure(runs: &[Run]) -> Option<Figure> {
     })
 }
 
-/// Both corners of every step up.
+/// Both corners of every step.
 fn stairs(ratios: &[f64], of: usize) -> Vec<(f64, f64)> {
     let share = |solved: usize| solved as f64 / of as f64;
     let corners =
@@ -79,7 +79,7 @@ fn content<'a>(plot: &'a Plot, styles: &'a [super::style::Style]) -> Content<'a>
                 let Some(style) = find(styles, &curve.label) else { continue };
                 let at: Vec<_> = curve.points.iter().map(|p| panel.at(p.0, p.1)).collect();
                 canvas.dashed(&at, style.look.colour, 1.3, style.look.dash);
-                // The upper corner of each step.
+                // The upper corner of each step has a marker.
                 at.iter().skip(1).step_by(2).for_each(|corner| style.mark(canvas, *corner));
             }
         }),

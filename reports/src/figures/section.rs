@@ -1,5 +1,5 @@
-//! A section between the tools, deformed, every cell in the colour of its own pressure: nothing is smoothed, so that the
-//! checkerboards of a locked or unstable method are seen.
+//! A deformed section between the tools, with every cell in the colour of its own pressure. Nothing is
+//! smoothed, so that checkerboards of a locking or unstable method remain visible.
 
 use super::axes::TEXT;
 use super::canvas::{Anchor, Canvas, GREY};
@@ -13,7 +13,7 @@ use crate::select::Run;
 use crate::store::slug;
 use crate::text::significant;
 
-/// Part of a section's cells whose pressure lies within the colours, in the middle one of the methods.
+/// Fraction of a section's cells whose pressures lie within the colour scale, for the median method.
 const SHOWN: f64 = 0.98;
 
 /// One figure per case with sections.
@@ -34,8 +34,9 @@ pub(super) fn figures(fields: &[SurfaceField], runs: &[Run]) -> Vec<Figure> {
         .collect()
 }
 
-/// The largest pressure that has a colour of its own, Pa: of each method the one that 98 % of its cells stay below, of these
-/// the middle one. A method whose pressures alternate without bound would leave the others without colours.
+/// Largest pressure of the colour scale, Pa: the median over the methods of the pressure that 98 % of the
+/// method's cells do not exceed. A method with unbounded alternating pressures would leave no colours for the
+/// others.
 fn limit(fields: &[&SurfaceField]) -> f64 {
     let mut each: Vec<f64> = fields.iter().filter_map(|f| f.section.as_ref()).map(percentile).collect();
     each.sort_by(f64::total_cmp);
@@ -85,7 +86,7 @@ fn figure(case: &str, chosen: &[Chosen], runs: &[Run]) -> Figure {
             tools(field).iter().map(|o| o.iter().map(|c| pose.place(i, c)).collect()).collect();
         outlines.iter().for_each(|o| silhouette::fill(&mut canvas, o));
         let mut cells: Vec<_> = section.cells.iter().collect();
-        // Cells of a section don't cover each other: those of one colour may share a path in the file.
+        // Cells of a section do not overlap, so those of equal colour may share a path in the file.
         cells.sort_by(|a, b| a.pressure.total_cmp(&b.pressure));
         for cell in cells {
             let at: Vec<(f64, f64)> = cell.corners.iter().map(|c| pose.place(i, &on(c))).collect();

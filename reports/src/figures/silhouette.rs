@@ -1,4 +1,4 @@
-//! Outlines of the tools on paper.
+//! Outlines of the tools in figures.
 
 use super::canvas::{Canvas, Colour};
 use crate::run_set::ToolHull;
@@ -6,18 +6,18 @@ use crate::run_set::ToolHull;
 const METAL: Colour = [0xdd, 0xdd, 0xdd];
 const EDGE: Colour = [0x45, 0x45, 0x45];
 
-/// The outline of a tool seen with these axes to the right and upwards, metres: the convex hull of its points on paper.
+/// Outline (m) of a tool: the convex hull of its points projected on the axes `right` and `up`.
 pub(super) fn outline(tool: &ToolHull, right: &[f64; 3], up: &[f64; 3]) -> Vec<[f64; 2]> {
     let on = |p: &[f64; 3], axis: &[f64; 3]| (0..3).map(|i| p[i] * axis[i]).sum::<f64>();
     hull(tool.points.iter().map(|p| [on(p, right), on(p, up)]).collect())
 }
 
-/// The tool as a body of metal, to be covered by what is drawn later.
+/// Fills a tool with the colour of metal; later shapes may cover it.
 pub(super) fn fill(canvas: &mut Canvas, at: &[(f64, f64)]) {
     canvas.fill(at, METAL);
 }
 
-/// Its edge, closed.
+/// Draws the closed edge of a tool.
 pub(super) fn edge(canvas: &mut Canvas, at: &[(f64, f64)]) {
     let closed: Vec<_> = at.iter().chain(at.first()).copied().collect();
     canvas.line(&closed, EDGE, 0.8);

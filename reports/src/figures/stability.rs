@@ -1,4 +1,4 @@
-//! Stability maps: a row for each method, a column for each value of an axis, a colour for how the method fares there.
+//! Stability maps: a row for each method, a column for each value of an axis, and a colour for each verdict.
 
 use super::axes::TEXT;
 use super::canvas::{Anchor, BLACK_INK, Canvas, Colour, GREY, text_width};
@@ -14,7 +14,7 @@ const ROW: f64 = 15.0;
 const TOP: f64 = 34.0;
 const WHITE_INK: Colour = [0xff, 0xff, 0xff];
 
-/// One figure for each axis.
+/// One figure per axis.
 pub(super) fn maps(axes: &[Axis]) -> Vec<Figure> {
     let each = axes.iter().filter(|axis| !axis.trials.is_empty()).map(|axis| Figure {
         name: format!("stability-{}-{}", slug(&axis.case), slug(&axis.name)),
@@ -37,12 +37,12 @@ fn value(axis: &Axis, v: f64) -> String {
     if axis.unit.is_empty() { short(v) } else { format!("{} {}", short(v), axis.unit) }
 }
 
-/// Colours of results that are wrong or none: warned, refused, silent.
+/// Colours of wrong or missing results: warned, refused, silent.
 const BAD: [Colour; 3] = [[0xf0, 0xa2, 0x4a], [0xd8, 0xd8, 0xd8], [0xa5, 0x0f, 0x15]];
 /// Colours of results that are not wrong, the best last.
 const GOOD: [Colour; 3] = [[0xf7, 0xec, 0xb0], [0xd4, 0xe7, 0xf2], [0xa4, 0xcc, 0xe3]];
 
-/// The colour of a class, by its place among so many.
+/// Colour of a class, by its index and the number of classes.
 fn colour(class: usize, classes: usize) -> Colour {
     let good = classes - BAD.len();
     if class < good { GOOD[good - 1 - class] } else { BAD[class - good] }
@@ -121,7 +121,7 @@ fn fill(canvas: &mut Canvas, (x, y, width, height): (f64, f64, f64, f64), colour
     canvas.fill(&[(x, y), (x + width, y), (x + width, y + height), (x, y + height)], colour);
 }
 
-/// The error in per cent, as short as it can be told.
+/// The error in per cent, in as few characters as possible.
 fn number(trial: &Trial) -> String {
     match trial.error.map(|error| 100.0 * error) {
         None => "—".into(),

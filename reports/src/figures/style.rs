@@ -1,18 +1,18 @@
-//! The look of a method drawn on paper: its marker, its line, and the legend.
+//! Appearance of a method in figures: marker, line and legend.
 
 use super::axes::TEXT;
 use super::canvas::{Anchor, BLACK_INK, Canvas, text_width};
 use crate::look::{Look, distinct};
 use crate::record::Family;
 
-/// The look of one label.
+/// Style of a label.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Style {
     pub(crate) label: String,
     pub(crate) look: Look,
 }
 
-/// Styles of labels, each once, in the order given; no two look alike.
+/// Distinct styles of the labels, without duplicates, in the given order.
 pub(crate) fn styles(labels: &[(String, Family)]) -> Vec<Style> {
     let mut once: Vec<(String, Family)> = Vec::new();
     for (label, family) in labels {
@@ -24,13 +24,13 @@ pub(crate) fn styles(labels: &[(String, Family)]) -> Vec<Style> {
     once.into_iter().zip(looks).map(|((label, _), look)| Style { label, look }).collect()
 }
 
-/// The style of a label.
+/// Style of a label.
 pub(crate) fn find<'a>(styles: &'a [Style], label: &str) -> Option<&'a Style> {
     styles.iter().find(|s| s.label == label)
 }
 
 impl Style {
-    /// The marker, 2.7 points in radius: filled for elements, open for clouds.
+    /// Draws the marker with a radius of 2.7 points: filled for elements, open for clouds.
     pub(crate) fn mark(&self, canvas: &mut Canvas, at: (f64, f64)) {
         let r = 2.7;
         let ring = |n: usize, turn: f64, r: f64| -> Vec<(f64, f64)> {
@@ -59,7 +59,7 @@ impl Style {
         );
     }
 
-    /// The line through its points, and the points.
+    /// Draws the line through the points, and their markers.
     pub(crate) fn curve(&self, canvas: &mut Canvas, points: &[(f64, f64)]) {
         if points.len() > 1 {
             canvas.dashed(points, self.look.colour, 1.3, self.look.dash);
@@ -70,26 +70,26 @@ impl Style {
     }
 }
 
-/// Where each legend entry goes: `(column, row)` counts that fit a width.
+/// Number of columns of a legend that fit a width, and the width of a column.
 fn layout(styles: &[Style], width: f64) -> (usize, f64) {
     let widest = styles.iter().map(|s| text_width(&s.label, TEXT)).fold(0.0, f64::max) + 44.0;
     let columns = ((width / widest).floor() as usize).clamp(1, styles.len().max(1));
     (columns, widest)
 }
 
-/// What filled and open markers mean, where a legend has both.
+/// Note on filled and open markers, for a legend that has both.
 pub(crate) fn fillings(styles: &[Style]) -> &'static str {
     let both = styles.iter().any(|s| s.look.open) && styles.iter().any(|s| !s.look.open);
     if both { "Filled: elements, open: clouds. " } else { "" }
 }
 
-/// Height a legend needs, points.
+/// Height of a legend, points.
 pub(crate) fn legend_height(styles: &[Style], width: f64) -> f64 {
     let (columns, _) = layout(styles, width);
     styles.len().div_ceil(columns) as f64 * 14.0
 }
 
-/// Draws a legend with its top left corner at a point; `lines` where the figure joins its markers.
+/// Draws a legend with its top left corner at a point, with lines if the figure connects its markers.
 pub(crate) fn legend(canvas: &mut Canvas, styles: &[Style], at: (f64, f64), width: f64, lines: bool) {
     let (columns, step) = layout(styles, width);
     let rows = styles.len().div_ceil(columns);

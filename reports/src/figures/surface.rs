@@ -1,4 +1,4 @@
-//! Bodies seen from outside, deformed and coloured by displacement.
+//! Bodies seen from outside, deformed and coloured by displacement magnitude.
 
 use super::axes::TEXT;
 use super::canvas::{Anchor, BLACK_INK, Canvas, GREY, text_width};
@@ -12,12 +12,12 @@ use crate::select::Run;
 use crate::store::slug;
 use crate::text::significant;
 
-/// Bodies in one figure, and in a row of one.
+/// Largest number of bodies in a figure and in a row.
 const SHOWN: usize = 4;
-/// Bodies between tools in one figure: what they do there is what such a case is about.
+/// Largest number of bodies between tools in a figure, whose shapes are the subject of such cases.
 pub(super) const GRASPED: usize = 8;
 
-/// One figure per case: fields side by side under one colour scale, true deformation.
+/// One figure per case: fields side by side with one colour scale, at true scale of deformation.
 pub(super) fn figures(fields: &[SurfaceField], runs: &[Run]) -> Vec<Figure> {
     let mut cases: Vec<&str> = fields.iter().map(|f| f.case.as_str()).collect();
     cases.sort();
@@ -35,16 +35,16 @@ pub(super) fn figures(fields: &[SurfaceField], runs: &[Run]) -> Vec<Figure> {
         .collect()
 }
 
-/// A body in a figure, and why it was chosen where there is no room for all.
+/// A body in a figure, with the reason for its choice if there is no room for all.
 pub(super) type Chosen<'f> = (&'f SurfaceField, &'static str);
 
-/// All bodies in the order of the report if there is room for so many, else some of them.
+/// Bodies in the order of the report, or a selection if there is no room for all.
 pub(super) fn pictured<'f>(mut fields: Vec<&'f SurfaceField>, runs: &[Run], room: usize) -> Vec<Chosen<'f>> {
     fields.sort_by_key(|f| runs.iter().position(|r| r.is.case == f.case && r.is.method == f.method));
     if fields.len() <= room { fields.into_iter().map(|f| (f, "")).collect() } else { chosen(fields, runs) }
 }
 
-/// What a method that ended early had carried, in words; nothing of one that came to the end.
+/// The fraction of the load reached by a method that ended early, in words; empty for a complete run.
 pub(super) fn carried(field: &SurfaceField, runs: &[Run]) -> String {
     let own = |r: &&Run| r.is.case == field.case && r.is.method == field.method;
     match runs.iter().filter(own).find_map(|r| r.value("load-carried")) {
@@ -53,8 +53,8 @@ pub(super) fn carried(field: &SurfaceField, runs: &[Run]) -> String {
     }
 }
 
-/// Elements beside clouds: of each family the run farthest from the reference, then the nearest. What lies between them can't be
-/// told from either by eye.
+/// Selects elements and clouds: for each family the run farthest from the reference, then the nearest.
+/// Intermediate runs are visually indistinguishable from these.
 fn chosen<'f>(fields: Vec<&'f SurfaceField>, runs: &[Run]) -> Vec<Chosen<'f>> {
     let of = |family: Family| -> Vec<(&'f SurfaceField, f64)> {
         let error = |f: &SurfaceField| {
@@ -71,7 +71,7 @@ fn chosen<'f>(fields: Vec<&'f SurfaceField>, runs: &[Run]) -> Vec<Chosen<'f>> {
     for (field, error) in families.iter().filter(|f| f.len() > 1).filter_map(|f| f.last()) {
         picked.push((field, if *error == 0.0 { "reference" } else { "nearest" }));
     }
-    // Without a reference there is no distance to choose by.
+    // Without a reference there is no distance, so the first fields are chosen.
     for field in fields.iter().take(SHOWN) {
         if picked.len() < 2 && !picked.iter().any(|p| p.0.method == field.method) {
             picked.push((field, ""));
@@ -80,7 +80,7 @@ fn chosen<'f>(fields: Vec<&'f SurfaceField>, runs: &[Run]) -> Vec<Chosen<'f>> {
     picked
 }
 
-/// A field's title, `tet4 (405 nodes)`, with why it was chosen.
+/// Title of a field, `tet4 (405 nodes)`, with the reason for its choice.
 pub(super) fn titled((field, why): &Chosen) -> String {
     match field.title.strip_suffix(')') {
         Some(open) if !why.is_empty() => format!("{open}, {why})"),
@@ -92,7 +92,7 @@ fn magnitude(u: &[f64; 3]) -> f64 {
     (u[0] * u[0] + u[1] * u[1] + u[2] * u[2]).sqrt()
 }
 
-/// Where bodies of one size stand on a page, side by side, and the colour bar beside them.
+/// Layout of bodies of one scale side by side on a page, with the colour bar.
 pub(super) struct Pose {
     columns: usize,
     rows: usize,
@@ -107,12 +107,12 @@ const BAR: f64 = 54.0;
 const GAP: f64 = 6.0;
 /// Width of bold text over that of regular text.
 const BOLD: f64 = 1.12;
-/// Room for the title above a body, and with the margin below it.
+/// Room for the title above a body, and with the margin below it, points.
 const HEAD: f64 = 58.0;
 const ROOM: f64 = 66.0;
 
 impl Pose {
-    /// For so many bodies that reach as far as these points, metres.
+    /// Lays out `count` bodies whose extent is given by the points (m).
     pub(super) fn new(count: usize, points: impl Iterator<Item = [f64; 2]>) -> Pose {
         let (mut low, mut high) = ([f64::MAX; 2], [f64::MIN; 2]);
         for c in points {
@@ -132,7 +132,7 @@ impl Pose {
         self.size[1] * self.scale + ROOM
     }
 
-    /// Below the last row.
+    /// Position below the last row.
     pub(super) fn bottom(&self) -> f64 {
         self.height() * self.rows as f64
     }
@@ -142,7 +142,7 @@ impl Pose {
         (GAP + column * (self.width + GAP), (index / self.columns) as f64 * self.height())
     }
 
-    /// Where a point of a body goes on paper.
+    /// Position on paper of a point of a body.
     pub(super) fn place(&self, index: usize, at: &[f64; 2]) -> (f64, f64) {
         let (left, top) = self.corner(index);
         let foot = top + HEAD + self.size[1] * self.scale;
@@ -150,12 +150,13 @@ impl Pose {
         (start + (at[0] - self.low[0]) * self.scale, foot - (at[1] - self.low[1]) * self.scale)
     }
 
-    /// Name, size in brackets and two more lines above a body.
+    /// Draws the name, the size in brackets and two more lines above a body.
     pub(super) fn title(&self, canvas: &mut Canvas, index: usize, title: &str, first: &str, second: &str) {
         let (left, top) = self.corner(index);
         let middle = left + self.width / 2.0;
         let (name, rest) = title.split_once(" (").unwrap_or((title, ""));
-        // The number of nodes stands below; what is still wider than the body's column is set smaller.
+        // The number of nodes is on the next line. A name that is still wider than the column is set in a
+        // smaller size.
         let count = rest.split(' ').next().unwrap_or_default();
         let name = name.strip_suffix(count).and_then(|n| n.strip_suffix('-')).unwrap_or(name);
         let size = TEXT * (self.width / (BOLD * text_width(name, TEXT))).min(1.0);
@@ -234,10 +235,11 @@ fn caption(tools: bool, chosen: &[Chosen]) -> String {
     text
 }
 
-/// Right, up and towards the viewer.
+/// Axes of a view: right, up and towards the viewer.
 type View = [[f64; 3]; 3];
 
-/// Seen from the front and a little from the right and above: z points up, or y where the body is longest along it.
+/// View from the front, slightly from the right and above. The z axis points up, or the y axis if the body is
+/// longest along y.
 fn view(fields: &[&SurfaceField]) -> View {
     let extent = |axis: usize| {
         let values = || fields.iter().flat_map(|f| f.points.iter().map(move |p| p[axis]));
@@ -251,7 +253,8 @@ fn view(fields: &[&SurfaceField]) -> View {
     turned(front, 35.0, 18.0)
 }
 
-/// Almost square to the section between the tools: they stand on either side of the body, not before it.
+/// View almost normal to the section between the tools, which then stand on either side of the body and not
+/// in front.
 fn beside(fields: &[&SurfaceField]) -> View {
     let [right, up] = match fields.iter().find_map(|f| f.section.as_ref()) {
         Some(section) => [section.right, section.up],
@@ -260,7 +263,7 @@ fn beside(fields: &[&SurfaceField]) -> View {
     turned([right, up, cross(right, up)], -12.0, 10.0)
 }
 
-/// A view turned to the right about its vertical axis and then tilted upwards, degrees.
+/// A view turned to the right about its vertical axis and then tilted upwards, by angles in degrees.
 fn turned([right, up, towards]: View, turn: f64, tilt: f64) -> View {
     let (turn, tilt) = (turn.to_radians(), tilt.to_radians());
     let mixed = |a: [f64; 3], c: f64, b: [f64; 3], s: f64| -> [f64; 3] {
@@ -282,14 +285,16 @@ fn dot(a: &[f64; 4], b: &[f64; 3]) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-/// Slabs of depth that are drawn one after the other, the farthest first.
+/// Number of depth slabs, which are drawn one after the other from the farthest.
 const SLABS: f64 = 16.0;
 
-/// How many triangles a body, and all bodies of a figure (33 bytes a triangle in the file), may be cut into for the sake of smooth colours.
+/// Largest number of triangles for smooth colours, of a body and of all bodies of a figure (33 bytes per
+/// triangle).
 const FINEST: usize = 4000;
 const FINEST_OF_ALL: usize = 11_000;
 
-/// Cuts every triangle into four, its values linear between the corners, as often as the count stays moderate.
+/// Divides every triangle into four, with linear values between the corners, as long as their number is at
+/// most `finest`.
 fn refined(mut triangles: Vec<Corners>, finest: usize) -> Vec<Corners> {
     while !triangles.is_empty() && triangles.len() * 4 <= finest {
         let half = |a: &[f64; 4], b: &[f64; 4]| std::array::from_fn(|i| 0.5 * (a[i] + b[i]));
@@ -304,7 +309,7 @@ fn refined(mut triangles: Vec<Corners>, finest: usize) -> Vec<Corners> {
     triangles
 }
 
-/// Deformed position and value at three corners.
+/// Deformed position and value at each of three corners.
 type Corners = [[f64; 4]; 3];
 
 /// Triangles that face the viewer, farthest first.
@@ -327,18 +332,19 @@ fn project(field: &SurfaceField, finest: usize, [right, up, towards]: &View) -> 
     };
     let mut seen: Vec<(f64, Pictured)> = refined(visible, finest).into_iter().map(picture).collect();
     let (near, far) = seen.iter().fold((f64::MIN, f64::MAX), |(n, f), s| (n.max(s.0), f.min(s.0)));
-    // Inside a slab faces to the front don't hide each other, and sorted by value neighbours on paper share a colour in the file.
+    // Within a slab, front faces do not hide each other. Sorting them by value lets neighbours share a colour
+    // in the file.
     let slab = |depth: f64| ((depth - far) / (near - far).max(1e-12) * SLABS).floor();
     seen.sort_by(|a, b| slab(a.0).total_cmp(&slab(b.0)).then(a.1.value.total_cmp(&b.1.value)));
     seen.into_iter().map(|(_, t)| t).collect()
 }
 
-/// The three axes as the viewer sees them.
+/// Draws the three axes in the view.
 fn axes(canvas: &mut Canvas, at: (f64, f64), [right, up, _]: &View) {
     for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
         let (dx, dy) = (right[axis] * 18.0, -up[axis] * 18.0);
         canvas.line(&[at, (at.0 + dx, at.1 + dy)], BLACK_INK, 1.0);
-        // Behind the arrow's head, also of an arrow that is short in this view.
+        // The name is placed beyond the end of the arrow, even if the arrow is short in this view.
         let beyond = 1.0 + 8.0 / dx.hypot(dy).max(1.0);
         canvas.text((at.0 + dx * beyond, at.1 + dy * beyond), name, TEXT, BLACK_INK, Anchor::Middle);
     }
@@ -391,7 +397,7 @@ mod tests {
                 "efg (100 nodes, nearest)"
             ]
         );
-        // As in the tables.
+        // The names are those of the tables.
         let names = ["tet4", "tet10", "hex8", "efg", "efg-smoothed"];
         assert_eq!(titles(5), names.map(|name| format!("{name} (100 nodes)")));
     }

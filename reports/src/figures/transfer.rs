@@ -1,4 +1,4 @@
-//! Transfer schemes: a row for each, a marker for every field or source.
+//! Transfer schemes: one row each, with a marker for every field or source.
 
 use std::collections::BTreeSet;
 
@@ -31,7 +31,7 @@ fn transfer_figure(runs: &[Run]) -> Option<Figure> {
     .into_iter()
     .find(|(q, _, _)| runs.iter().any(|r| r.value(q).is_some()))?;
     let scheme = |r: &Run| {
-        // The kernel is that of the method whose field is carried.
+        // The kernel is that of the method whose field is transferred.
         let own = r.is.settings().into_iter().filter(|(name, _)| !["from", "kernel"].contains(name));
         let settings: Vec<String> = own.map(|(name, value)| format!("{name} {value}")).collect();
         if settings.is_empty() {

@@ -1,4 +1,4 @@
-//! Locking, patch tests and orders of convergence.
+//! Findings on locking, patch tests and orders of convergence.
 
 use std::collections::BTreeMap;
 
@@ -9,17 +9,17 @@ use crate::record::Purpose;
 use crate::select::{Run, by_case, competing, labels, series};
 use crate::text::{list, percent, plural, significant};
 
-/// An error that grows more than this from the most compressible to the least compressible material counts as locking.
+/// Ratio of the errors of the least and the most compressible material above which a method locks.
 const LOCKS: f64 = 2.0;
 
-/// Which methods lock, the worst first, how far each is off, and which do not.
+/// Sentences on the methods that lock, the worst first with their errors, and on those that do not.
 pub(super) fn locking(runs: &[Run]) -> Vec<String> {
     let mut out = Vec::new();
     for case in competing(runs) {
         let (mut locked, mut free) = (Vec::new(), Vec::new());
         let mut span = None;
         for (label, _, sweep) in sweeps(case) {
-            // 0.495 is tissue; beyond it is a stress test.
+            // 0.495 represents tissue; larger ratios are a stress test.
             let usable: Vec<&Run> =
                 sweep.iter().filter(|r| r.is.poisson <= 0.4951 && r.value("l2").is_some()).collect();
             let [first, .., last] = usable.as_slice() else { continue };
@@ -60,10 +60,10 @@ pub(super) fn locking(runs: &[Run]) -> Vec<String> {
     out
 }
 
-/// Rounding in a patch test, relative.
+/// Largest relative error in a passed patch test, due to rounding.
 const EXACT: f64 = 1e-12;
 
-/// How many methods pass each patch test.
+/// Sentences on the number of methods that pass each patch test.
 pub(super) fn patch(runs: &[Run]) -> Vec<String> {
     let mut out = Vec::new();
     let patches = by_case(runs).filter(|c| c[0].is.purpose == Purpose::Patch);
@@ -103,10 +103,10 @@ pub(super) fn patch(runs: &[Run]) -> Vec<String> {
     out
 }
 
-/// An order this far below theory is worth a sentence.
+/// Shortfall of an order from theory above which it is mentioned.
 const SLACK: f64 = 0.15;
 
-/// How many observed orders meet theory, and which do not.
+/// Sentences on the observed orders that agree with theory and those that do not.
 pub(super) fn orders(runs: &[Run]) -> Vec<String> {
     let (mut held, mut below, mut short) = (0, Vec::new(), 0);
     for (name, group) in cases(runs) {

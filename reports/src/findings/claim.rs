@@ -1,6 +1,7 @@
-//! The publication's claim, that EFG is about as accurate as finite elements at a small part of their cost, against the cases that test it.
+//! Test of the publication's claim that EFG is about as accurate as finite elements at a small fraction of
+//! their cost.
 //!
-//! The claim is of contact with jaws: a case without contact says nothing about it.
+//! The claim concerns contact with jaws, so cases without contact do not test it.
 
 use crate::figures::chosen;
 use crate::fronts::{Clock, QUESTIONS, judged};
@@ -12,7 +13,7 @@ use crate::text::{list, percent, significant};
 /// A run's `(seconds, relative error)`.
 type Point = (f64, f64);
 
-/// One sentence per case that tests a publication and whose errors are known.
+/// One sentence for each case that tests a publication and has known errors.
 pub(super) fn claim(runs: &[Run]) -> Vec<String> {
     let claim = |(case, group): (String, &[Run])| {
         let publication = tested(group[0].is).filter(|_| group.iter().any(Run::has_contact))?;
@@ -22,7 +23,7 @@ pub(super) fn claim(runs: &[Run]) -> Vec<String> {
     chosen(runs).into_iter().filter_map(claim).collect()
 }
 
-/// Seconds of the published whole run.
+/// Total time of the published run, s.
 fn seconds(publication: &Publication, family: Family) -> f64 {
     let phases = ["total", "prepare", "assemble+factor+solve", "transfer"];
     phases.iter().filter_map(|phase| publication.number(family, phase)).sum()
@@ -74,17 +75,18 @@ fn verdict(group: &[Run], share: f64) -> Option<String> {
     ))
 }
 
-/// Times of clouds over those of elements at equal errors, as far as both go.
+/// Ratios of times of clouds to times of elements at equal errors, over the range that both reach.
 #[derive(Debug, PartialEq)]
 pub(crate) struct Matched {
-    /// Least and most.
+    /// Smallest and largest ratio.
     pub(crate) ratio: (f64, f64),
-    /// Least errors of elements and of clouds.
+    /// Smallest error of elements and of clouds.
     pub(crate) least: (f64, f64),
 }
 
 impl Matched {
-    /// The least time within an error falls at the errors of the runs only: between them no ratio is other than at them.
+    /// Compares two sets of runs. The smallest time within an error changes only at errors of the runs, so
+    /// all ratios occur there.
     pub(crate) fn of(fem: &[Point], efg: &[Point]) -> Option<Matched> {
         let within =
             |runs: &[Point], error: f64| runs.iter().filter(|p| p.1 <= error).map(|p| p.0).reduce(f64::min);
@@ -112,7 +114,7 @@ impl Matched {
         )
     }
 
-    /// 0 where the share holds at every error, 1 at some, 2 at none.
+    /// 0 if the published fraction holds at every error, 1 if at some, 2 if at none.
     fn side(&self, share: f64) -> usize {
         usize::from(self.ratio.1 > share) + usize::from(self.ratio.0 > share)
     }
@@ -139,7 +141,8 @@ mod tests {
     fn ratios_are_those_of_the_least_times_at_equal_errors() {
         let fem = [(1.0, 0.2), (4.0, 0.1), (3.0, 0.15), (9.0, 0.15)];
         let efg = [(2.0, 0.3), (30.0, 0.12), (5.0, 0.16), (90.0, 0.05)];
-        // At 0.3: 2 / 1. At 0.2 and 0.16: 5 / 1, 5 / 3. At 0.15: 30 / 3. At 0.12 and 0.1: 30 / 4, 90 / 4. Below, nothing to match.
+        // At 0.3: 2 / 1. At 0.2 and 0.16: 5 / 1, 5 / 3. At 0.15: 30 / 3. At 0.12 and 0.1: 30 / 4, 90 / 4.
+        // Smaller errors have no match.
         let matched = Matched::of(&fem, &efg).unwrap();
         assert_eq!(matched, Matched { ratio: (5.0 / 3.0, 22.5), least: (0.1, 0.05) });
         assert_eq!(Matched::of(&fem, &[]), None);
@@ -189,7 +192,7 @@ mod tests {
                 ["total", "prepare", "max-x"].map(|q| runs.iter().any(|run| of(q).is_of(run))),
             )
         };
-        // Contact, but quasi-static: the two hours were of explicit dynamics.
+        // A quasi-static case with contact: the published two hours were for explicit dynamics.
         assert_eq!(times(&records), (1, [false, true, true]));
         let is = ("jaws", "tet4", Family::Fem);
         let explicit = [&records[..], &[record(is, 1331, ("time-steps", ""), 37000.0)]].concat();

@@ -1,10 +1,10 @@
-//! Where a cloud loses more by how it is integrated than by its nodes.
+//! Findings on clouds whose integration error exceeds their discretisation error.
 
 use crate::select::{Run, groups};
 use crate::tables::{ErrorParts, error_parts};
 use crate::text::{list, ratio, significant};
 
-/// A sentence for every case whose clouds were solved with a fine rule too.
+/// One sentence for every case whose clouds were also solved with a fine rule.
 pub(super) fn integration(runs: &[Run]) -> Vec<String> {
     let parts = error_parts(runs);
     let mut out = Vec::new();

@@ -1,4 +1,4 @@
-//! What the records say, in sentences. A sentence whose numbers aren't there isn't written.
+//! Findings of the records in sentences. A sentence without its numbers is omitted.
 
 mod accuracy;
 mod claim;
@@ -22,7 +22,7 @@ pub(crate) struct Topic {
     pub(crate) sentences: Vec<String>,
 }
 
-/// Every topic with something to say.
+/// Topics that have sentences.
 pub(crate) fn all(set: &RunSet, runs: &[Run], clouds: &[Clouds]) -> Vec<Topic> {
     let solved = solved(runs);
     let topics = [
@@ -40,7 +40,7 @@ pub(crate) fn all(set: &RunSet, runs: &[Run], clouds: &[Clouds]) -> Vec<Topic> {
     topics.into_iter().filter(|t| !t.sentences.is_empty()).collect()
 }
 
-/// `case` or `case at ν = 0.3`, with its runs; patch tests left out.
+/// Runs of each case, named `case` or `case at ν = 0.3`, without patch tests.
 fn cases<'a, 'r>(runs: &'a [Run<'r>]) -> Vec<(String, &'a [Run<'r>])> {
     let mut out = Vec::new();
     for case in competing(runs) {

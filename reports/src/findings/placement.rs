@@ -1,14 +1,14 @@
-//! How far a result depends on where the nodes of a cloud happen to stand.
+//! Findings on the sensitivity of results to node placement.
 
 use crate::clouds::{Clouds, Spread};
 use crate::record::Family;
 use crate::text::significant;
 
-/// The error that a sentence is about, the first that a method has: with words, unit and factor.
+/// Candidate errors, of which a method's first is reported, each with its words, unit and scale factor.
 const ERRORS: [(&str, &str, &str, f64); 2] =
     [("rms", "the RMS error", " mm", 1e3), ("l2", "the relative L2 error", " %", 1e2)];
 
-/// A sentence for every method that ran on many clouds.
+/// One sentence for every method that ran on many clouds.
 pub(super) fn placement(clouds: &[Clouds]) -> Vec<String> {
     let mut out = Vec::new();
     for group in clouds.iter().filter(|g| g[0].is.family != Family::Interp) {

@@ -1,4 +1,4 @@
-//! Our numbers against the published ones.
+//! Comparison with published numbers.
 
 use std::collections::BTreeMap;
 
@@ -8,7 +8,7 @@ use crate::select::Run;
 use crate::tables::{PublishedPair as Pair, PublishedSplit as Split, published_pairs, published_splits};
 use crate::text::{duration, percent, significant};
 
-/// Speed-ups and RMS differences beside the publication.
+/// Sentences on speed-ups and RMS differences compared with the publication.
 pub(super) fn published(runs: &[Run]) -> Vec<String> {
     let pairs = published_pairs(runs);
     let mut out = Vec::new();
@@ -50,7 +50,7 @@ fn directions(run: &Run, quantity: &str) -> Option<[f64; 3]> {
     Some([x?, y?, z?])
 }
 
-/// Largest displacements at the whole load, with what part of the published ones they are.
+/// Sentences on the largest displacements at the whole load, with their ratio to the published ones.
 fn maxima(pairs: &[Pair]) -> Vec<String> {
     let mut out = Vec::new();
     for pair in pairs.iter().filter(|p| p.paper.quantity == "max-x" && p.run.whole()) {
@@ -85,7 +85,7 @@ fn maxima(pairs: &[Pair]) -> Vec<String> {
     out
 }
 
-/// What the RMS difference of cloud and elements is made of.
+/// Sentence on the components of the RMS difference between cloud and elements.
 fn parts(split: &Split) -> Option<String> {
     let numbers = split.parts().map(|(_, [x, y, z, all])| Some([x?, y?, z?, all?]));
     let [total, own, transfer, cloud, elements] = numbers;
@@ -123,7 +123,7 @@ fn parts(split: &Split) -> Option<String> {
     ))
 }
 
-/// Up to where a static path was stable, how long it took there, and how it went on.
+/// Sentences on the load up to which a static path was stable, the time it took, and its continuation.
 fn limits(runs: &[Run]) -> Vec<String> {
     let mut out = Vec::new();
     for run in runs.iter().filter(|r| read_as(r.is).is_some()) {
@@ -162,7 +162,7 @@ fn limits(runs: &[Run]) -> Vec<String> {
     out
 }
 
-/// The same method at the same force, quasi-static and at the end of a ramp.
+/// Sentences that compare a method at the same force in a quasi-static run and at the end of a ramp.
 fn ramps(runs: &[Run]) -> Vec<String> {
     let reading = |r: &&Run| read_as(r.is).is_some() && r.is.family == Family::Fem && r.whole();
     let readings = || runs.iter().filter(reading);

@@ -1,10 +1,11 @@
-//! Where methods bend and break along the axes of a study.
+//! Findings on the limits of methods along the axes of a study.
 
 use crate::axis::{Axis, Verdict};
 use crate::run_set::RunSet;
 use crate::text::{list, short};
 
-/// A sentence for each axis: what holds over all of it, what breaks, and what is wrong without a word.
+/// One sentence per axis: the methods that hold over the whole axis, those that fail, and those wrong without
+/// a warning.
 pub(super) fn stability(set: &RunSet) -> Vec<String> {
     set.axes.iter().filter(|axis| !axis.trials.is_empty()).map(sentence).collect()
 }
@@ -33,7 +34,7 @@ fn sentence(axis: &Axis) -> String {
     text + "."
 }
 
-/// `tet4 from 0.45 on` or `tet4 below 0.1`, with both where both are.
+/// `tet4 from 0.45 on` or `tet4 up to 0.1`, or both ranges.
 fn breaks(axis: &Axis, method: &str) -> Option<String> {
     let at = |up: bool| axis.first(method, Verdict::Warned, up).map(short);
     match (at(false), at(true)) {

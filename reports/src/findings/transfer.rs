@@ -1,10 +1,10 @@
-//! What a transfer adds to an error, scheme by scheme.
+//! Findings on the error added by each transfer scheme.
 
 use crate::record::Family;
 use crate::select::{Run, by_case};
 use crate::text::significant;
 
-/// Best, worst and published transfer scheme for every field that is transferred.
+/// Sentences on the best, worst and published transfer scheme for every transferred field.
 pub(super) fn transfer(runs: &[Run]) -> Vec<String> {
     let mut out = Vec::new();
     let schemes: Vec<Run> = runs.iter().filter(|r| r.is.family == Family::Interp).cloned().collect();
@@ -52,7 +52,7 @@ pub(super) fn transfer(runs: &[Run]) -> Vec<String> {
     out
 }
 
-/// What was transferred, in words.
+/// Name of the transferred field, in words.
 pub(crate) fn source(run: &Run) -> String {
     run.is.from.as_ref().map_or_else(|| "transfer".into(), |method| format!("from {method}"))
 }

@@ -1,15 +1,16 @@
-//! What each mass does to the frequencies.
+//! Findings on the effect of the mass matrix on frequencies.
 
 use super::cases;
 use crate::record::Family;
 use crate::select::{Run, labels, series};
 use crate::text::{list, significant};
 
-/// For every case with modes: the error of the first frequency by family and mass, and who has modes that no body has.
+/// Sentences for every case with modes: the error of the first frequency by family and mass, and the methods
+/// with spurious modes.
 pub(super) fn vibrations(runs: &[Run]) -> Vec<String> {
     let mut out = Vec::new();
     for (case, runs) in cases(runs) {
-        // Methods at their finest.
+        // The finest run of each method.
         let all = series(runs);
         let finest: Vec<&Run> = all.iter().map(|s| s.finest()).collect();
         for (family, called) in [(Family::Fem, "elements"), (Family::Efg, "clouds")] {

@@ -1,4 +1,4 @@
-//! Tool force against closure, step by step, beside the reference and its uncertainty.
+//! Tool force against travel, step by step, compared with the reference and its uncertainty.
 
 use crate::history::{band, between, curve, reference};
 use crate::record::Family;
@@ -6,7 +6,7 @@ use crate::select::{Run, by_material, labels, series};
 use crate::table::Column::{Number, Words};
 use crate::table::{Cell, Table};
 
-/// The finest run of every method at every step, in the order of the steps.
+/// Table of the finest run of every method at every step, in the order of the steps.
 pub(super) fn force_closure(runs: &[Run]) -> Table {
     let mut table = Table::new(
         "force-closure",
@@ -37,7 +37,7 @@ pub(super) fn force_closure(runs: &[Run]) -> Table {
         let low: Vec<(f64, f64)> = around.iter().map(|b| (b.0, b.1)).collect();
         let high: Vec<(f64, f64)> = around.iter().map(|b| (b.0, b.2)).collect();
         let curves: Vec<_> = all.iter().map(|s| curve(s.finest(), "closure", "tool-force")).collect();
-        // Step 0 is where every tool starts: no force yet.
+        // Step 0 is the start of every tool, without a force.
         for step in 1..curves.iter().map(Vec::len).max().unwrap_or(0) {
             for ((s, name), points) in all.iter().zip(&names).zip(&curves) {
                 let Some(&(closure, found)) = points.get(step) else { continue };

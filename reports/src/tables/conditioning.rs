@@ -4,7 +4,7 @@ use crate::select::Run;
 use crate::table::Column::{Number, Words};
 use crate::table::{Cell, Table};
 
-/// What the moment matrices went through.
+/// Table of the moment matrices' neighbours, conditioning and fallbacks.
 pub(super) fn conditioning(runs: &[Run]) -> Table {
     let mut table = Table::new(
         "conditioning",
@@ -42,7 +42,7 @@ pub(super) fn conditioning(runs: &[Run]) -> Table {
         let scale = run.is.support_scale.map_or("—".into(), |scale| scale.to_string());
         let (basis, integration) = (words(&run.is.basis), words(&run.is.integration));
         let count = |quantity| Cell::Digits(run.value(quantity), 4);
-        // Poisson's ratio plays no part here: one row for all of them.
+        // Poisson's ratio has no influence here, so all ratios share one row.
         table.row_once(&[
             Cell::Text(&run.is.case),
             Cell::Text(run.name()),
@@ -64,7 +64,7 @@ pub(super) fn conditioning(runs: &[Run]) -> Table {
     table
 }
 
-/// A count that may be absent.
+/// A count that may be missing.
 fn whole<'a>(value: Option<f64>) -> Cell<'a> {
     match value {
         Some(v) if v >= 0.0 && v.fract() == 0.0 => Cell::Count(v as u64),

@@ -1,4 +1,4 @@
-//! How times and memory grow with the number of nodes.
+//! Growth of times and memory with the number of nodes.
 
 use super::orders::labelled;
 use crate::order::{Order, observed};
@@ -7,19 +7,19 @@ use crate::table::Column::{Number, Words};
 use crate::table::{Cell, Table};
 use crate::text::ratio;
 
-/// Told in columns of their own.
+/// Phases with their own columns.
 const PHASES: [&str; 4] = ["prepare", "assemble", "factor", "solve"];
 
-/// Sizes below this span say little about growth.
+/// Smallest ratio of the largest to the smallest size for a meaningful exponent.
 const SPAN: f64 = 4.0;
 
-/// Exponent `p` of `time ~ nodes^p` by least squares over three sizes or more.
+/// Exponent `p` of `time ~ nodes^p` by least squares, from at least three sizes.
 pub(crate) fn growth(series: &Series, phase: &str) -> Option<Order> {
     let points: Vec<(f64, f64)> = (series.runs.iter())
         .filter_map(|run| Some((1.0 / run.is.nodes as f64, run.time(phase, "median")?)))
         .collect();
     let [first, .., last] = points.as_slice() else { return None };
-    // Below a microsecond a clock measures itself.
+    // Below a microsecond, the clock's own time dominates.
     let usable = points.len() > 2 && first.0 >= SPAN * last.0 && points.iter().all(|p| p.1 > 1e-6);
     if !usable {
         return None;
@@ -27,7 +27,8 @@ pub(crate) fn growth(series: &Series, phase: &str) -> Option<Order> {
     observed(&points).map(|order| Order { fit: -order.fit, ..order })
 }
 
-/// Growth of every phase, and what the largest cost per node and per integration point.
+/// Table of the growth of every phase, and of the cost per node and per integration point at the largest
+/// size.
 pub(super) fn cost(runs: &[Run]) -> Table {
     let mut table = Table::new(
         "cost",
@@ -108,7 +109,7 @@ mod tests {
         assert!((exponent(&quadratic).unwrap() - 2.0).abs() < 1e-9);
         let linear = [(1000, 2e-3), (10_000, 2e-2), (100_000, 0.2)];
         assert!((exponent(&linear).unwrap() - 1.0).abs() < 1e-9);
-        // Two sizes, a narrow span, and times that a clock can't tell.
+        // Two sizes, a narrow span, and times below the resolution of a clock.
         assert_eq!(exponent(&linear[..2]), None);
         assert_eq!(exponent(&[(100, 1e-4), (200, 2e-4), (300, 3e-4)]), None);
         assert_eq!(exponent(&[(100, 1e-7), (300, 9e-4), (1000, 1e-2)]), None);

@@ -1,4 +1,4 @@
-//! Errors of clouds taken apart: reference, discretisation, integration, transfer.
+//! Components of the errors of clouds: reference, discretisation, integration, transfer.
 
 use super::{labelled, millimetres};
 use crate::record::Family;
@@ -7,35 +7,38 @@ use crate::table::Column::{Number, Words};
 use crate::table::{Cell, Table};
 use crate::text::ratio;
 
-/// What the error of a cloud is made of, RMS in metres. RMS do not add up, as the fields behind them are no strangers to each other.
+/// Components of the error of a cloud, RMS in m. They do not add up, because the underlying fields are
+/// correlated.
 pub(crate) struct Parts<'a, 'r> {
     pub(crate) run: &'a Run<'r>,
-    /// The run's name, with the settings that tell it from its namesakes.
+    /// Name of the run, with the settings that distinguish it from runs of the same name.
     pub(crate) label: String,
-    /// Of what it is compared with: 0 where that is exact, or else how far the nearest elements of the case are from it.
+    /// Error of the reference: 0 if it is exact, otherwise the distance from it to the closest elements of
+    /// the case.
     reference: Option<f64>,
-    /// The same cloud, finely integrated, from the reference.
+    /// Distance between the finely integrated cloud and the reference.
     pub(crate) discretisation: f64,
-    /// The cloud from itself, finely integrated.
+    /// Distance between the cloud and the same cloud finely integrated.
     pub(crate) integration: f64,
-    /// The cloud carried over by inverse distance, the published scheme, from its own shape functions.
+    /// Distance between the cloud transferred by inverse distance, the published scheme, and its own shape
+    /// functions.
     transfer: Option<f64>,
     total: Option<f64>,
 }
 
 impl Parts<'_, '_> {
-    /// Cells to integrate over for each node.
+    /// Integration cells per node.
     pub(crate) fn cells(&self) -> f64 {
         self.run.is.elements as f64 / self.run.is.nodes as f64
     }
 
-    /// Whether integration is the larger part.
+    /// Whether the integration error is larger than the discretisation error.
     pub(crate) fn badly_integrated(&self) -> bool {
         self.integration > self.discretisation
     }
 }
 
-/// Every cloud that was solved with its own rule and with a fine one.
+/// Components for every cloud that was solved with its own rule and with a fine rule.
 pub(crate) fn parts<'a, 'r>(runs: &'a [Run<'r>]) -> Vec<Parts<'a, 'r>> {
     let clouds = labelled(runs).into_iter().filter(|(run, _)| run.is.family == Family::Efg);
     clouds
@@ -63,7 +66,7 @@ pub(crate) fn parts<'a, 'r>(runs: &'a [Run<'r>]) -> Vec<Parts<'a, 'r>> {
         .collect()
 }
 
-/// The table.
+/// Table of the error components.
 pub(super) fn error_split(runs: &[Run]) -> Table {
     let mut table = Table::new(
         "error-split",
@@ -145,7 +148,7 @@ mod tests {
             records.push(record(who, nodes, "rms", 4.5e-4));
         }
         records.push(record(carried, 83, "transfer-rms", 6e-4));
-        // A cloud that was not integrated twice is none of them.
+        // A cloud that was integrated only once is not included.
         records.push(record(("other", Family::Efg, "cubic-spline", None), 83, "rms", 1e-4));
         let runs = runs(&records);
         let parts = parts(&runs);

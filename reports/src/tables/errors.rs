@@ -1,4 +1,4 @@
-//! Errors and largest displacements of every run.
+//! Tables of errors and largest displacements of every run.
 
 use super::{labelled, millimetres};
 use crate::select::{Run, solved};
@@ -6,7 +6,7 @@ use crate::table::Column::{Number, Words};
 use crate::table::{Cell, Table};
 use crate::text::ratio;
 
-/// Relative L2, energy and pressure errors.
+/// Table of relative L2, energy and pressure errors.
 pub(super) fn relative(runs: &[Run]) -> Table {
     rows(
         runs,
@@ -24,7 +24,7 @@ pub(super) fn relative(runs: &[Run]) -> Table {
     )
 }
 
-/// RMS of the displacement error by direction and of its magnitude.
+/// Table of the RMS of the displacement error, by direction and of its magnitude.
 pub(super) fn rms(runs: &[Run]) -> Table {
     rows(
         runs,
@@ -37,7 +37,7 @@ pub(super) fn rms(runs: &[Run]) -> Table {
     )
 }
 
-/// Largest displacements, and the largest error.
+/// Table of the largest displacements, and of the largest error.
 pub(super) fn maxima(runs: &[Run]) -> Table {
     rows(
         runs,
@@ -58,7 +58,7 @@ pub(super) fn maxima(runs: &[Run]) -> Table {
     )
 }
 
-/// One row for every solver run that has at least one of the quantities; columns nobody fills are left out.
+/// A table with a row for every solver run that has at least one of the quantities, without empty columns.
 fn rows(
     runs: &[Run],
     name: &'static str,
@@ -89,7 +89,7 @@ fn rows(
             Cell::Digits(millimetres(Some(run.is.spacing)).filter(|h| *h > 0.0), 4),
         ];
         cells.extend(filled.iter().zip(&values).map(|((_, quantity), v)| match *quantity {
-            // A ratio near one reads best plain.
+            // A ratio close to one is most readable in plain notation.
             "tip" => Cell::Digits(*v, 4),
             _ if name == "rms" && run.is_reference() => Cell::Named("reference", 0.0),
             _ => cell(v.map(|v| v * scale)),

@@ -1,4 +1,4 @@
-//! Which tables there are, and what they are made of.
+//! Tables of a report, and their common parts.
 
 mod closure;
 mod conditioning;
@@ -66,7 +66,7 @@ pub(crate) fn all(set: &RunSet, runs: &[Run], clouds: &[Clouds], trends: &[Trend
     tables.into_iter().filter(|t| !t.is_empty()).collect()
 }
 
-/// Runs with a label each that tells them apart within their case and Poisson's ratio.
+/// Runs, each with a label that is unique within its case and Poisson's ratio.
 fn labelled<'a, 'r>(runs: &'a [Run<'r>]) -> Vec<(&'a Run<'r>, String)> {
     let mut out = Vec::new();
     for group in by_material(runs) {
@@ -75,7 +75,7 @@ fn labelled<'a, 'r>(runs: &'a [Run<'r>]) -> Vec<(&'a Run<'r>, String)> {
     out
 }
 
-/// Millimetres from metres.
+/// Converts metres to millimetres.
 fn millimetres(value: Option<f64>) -> Option<f64> {
     value.map(|v| v * 1e3)
 }

@@ -1,11 +1,11 @@
-//! Free vibrations: the first frequency, and the modes that no body has.
+//! Free vibrations: the first frequency, and spurious modes.
 
 use super::labelled;
 use crate::select::Run;
 use crate::table::Column::{Number, Words};
 use crate::table::{Cell, Table};
 
-/// Every run that was asked for its modes.
+/// Table of every run with modes.
 pub(super) fn modes(runs: &[Run]) -> Table {
     let mut table = Table::new(
         "modes",

@@ -1,4 +1,4 @@
-//! Observed orders of convergence and the grid convergence index.
+//! Observed orders of convergence and grid convergence indices.
 
 use crate::order;
 use crate::select::{Run, Series, by_material, labels, series, solved};
@@ -8,7 +8,7 @@ use crate::text::ratio;
 
 const ERRORS: [&str; 5] = ["l2", "energy", "pressure", "rms", "max-error"];
 
-/// Observed order by least squares and between the finest levels.
+/// Table of observed orders, by least squares and between the finest levels.
 pub(super) fn observed(runs: &[Run]) -> Table {
     let mut table = Table::new(
         "orders",
@@ -51,7 +51,7 @@ pub(super) fn observed(runs: &[Run]) -> Table {
     table
 }
 
-/// Grid convergence index of plain outcomes.
+/// Table of grid convergence indices of plain outcomes.
 pub(super) fn convergence_index(runs: &[Run]) -> Table {
     let mut table = Table::new(
         "grid-convergence",
@@ -81,7 +81,8 @@ pub(super) fn convergence_index(runs: &[Run]) -> Table {
                 .filter_map(|r| r.value(quantity).map(|v| (r.is.spacing, v)))
                 .filter(|(h, _)| *h > 0.0)
                 .collect();
-            // A direction that hardly moves holds rounding or the mesh's own asymmetry, not a converging outcome.
+            // In a direction that hardly moves, rounding or the asymmetry of the mesh dominates, not a
+            // converging outcome.
             let still = |v: f64| v < 1e-3 * series.finest().value("max").unwrap_or(0.0);
             if quantity.starts_with("max-") && points.last().is_some_and(|p| still(p.1)) {
                 continue;
@@ -114,7 +115,7 @@ pub(super) fn convergence_index(runs: &[Run]) -> Table {
     table
 }
 
-/// Solver series with a label each that tells them apart within their case and Poisson's ratio.
+/// Solver series, each with a label that is unique within its case and Poisson's ratio.
 pub(super) fn labelled<'r>(runs: &[Run<'r>]) -> Vec<(String, Series<'r>)> {
     let solved = solved(runs);
     let mut out = Vec::new();

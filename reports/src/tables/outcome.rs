@@ -1,4 +1,4 @@
-//! Checks, failed runs, and what the plans skipped.
+//! Tables of checks, failed runs and skipped stages.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -6,7 +6,7 @@ use crate::run_set::RunSet;
 use crate::table::Column::{Number, Words};
 use crate::table::{Cell, Table};
 
-/// Every bound: failures first, then known failures, what wasn't run, and what held.
+/// Table of every check: failures first, then known failures, checks that were not run, and passes.
 pub(super) fn checks(set: &RunSet) -> Table {
     let mut table = Table::new(
         "checks",
@@ -39,7 +39,8 @@ pub(super) fn checks(set: &RunSet) -> Table {
     table
 }
 
-/// As many digits as the bound has, four at least: or a value would seem to lie beyond a bound it keeps.
+/// Number of digits of the bound, at least four. With fewer digits, a value could appear to violate a bound
+/// that it meets.
 fn digits(bound: &str) -> usize {
     let mantissa = |word: &str| {
         let number = word.split(['e', 'E']).next().unwrap_or_default();
@@ -48,14 +49,14 @@ fn digits(bound: &str) -> usize {
     bound.split_whitespace().filter_map(mantissa).max().unwrap_or(0).max(4)
 }
 
-/// A method's words without one that repeats the one before: an element's method often bears its name.
+/// The words of a method without repetitions, because the method of an element often has its name.
 fn once(method: &str) -> String {
     let mut words: Vec<&str> = method.split_whitespace().collect();
     words.dedup();
     words.join(" ")
 }
 
-/// Runs that ended early, those without any numbers first.
+/// Table of the runs that ended early, those without numbers first.
 pub(super) fn failures(set: &RunSet) -> Table {
     let mut table = Table::new(
         "failed-runs",
@@ -78,7 +79,7 @@ pub(super) fn failures(set: &RunSet) -> Table {
     table
 }
 
-/// What is to be said against the numbers of runs.
+/// Table of the warnings about the numbers of runs.
 pub(super) fn warnings(set: &RunSet) -> Table {
     let mut table = Table::new(
         "warnings",
@@ -121,7 +122,7 @@ pub(super) fn warnings(set: &RunSet) -> Table {
     table
 }
 
-/// How often each stage ran or was skipped, by reason.
+/// Table of the stages, with the number of runs in which each ran or was skipped, by reason.
 pub(super) fn plan(set: &RunSet) -> Table {
     let mut table = Table::new(
         "plan",
@@ -149,10 +150,11 @@ pub(super) fn plan(set: &RunSet) -> Table {
     table
 }
 
-/// Stands where a reason had its only whole number.
+/// Placeholder for the only whole number of a reason.
 const GAP: char = '\u{fffc}';
 
-/// A reason without its only whole number, and the number: reasons that differ in a count alone become one row.
+/// A reason with a placeholder for its only whole number, and this number. Reasons that differ only in a
+/// count share a row.
 fn pattern(why: &str) -> (String, Option<u64>) {
     let words: Vec<&str> = why.split(' ').collect();
     let numbers: Vec<(usize, u64)> =

@@ -1,10 +1,10 @@
-//! A study from commit to commit.
+//! Table of a study over commits.
 
 use crate::commits::Trend;
 use crate::table::Column::{Number, Words};
 use crate::table::{Cell, Table};
 
-/// A row for each commit of each trend.
+/// Table with a row for each commit of each trend.
 pub(super) fn over_commits(trends: &[Trend]) -> Table {
     let mut table = Table::new(
         "over-commits",

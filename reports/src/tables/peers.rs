@@ -1,4 +1,4 @@
-//! Solvers outside this program over our own elements on the same mesh: times and error.
+//! Times and errors of external solvers relative to this program's elements on the same mesh.
 
 use super::millimetres as milliseconds;
 use crate::fronts::QUESTIONS;
@@ -8,13 +8,13 @@ use crate::table::Column::{Number, Words};
 use crate::table::{Cell, Table};
 use crate::text::ratio;
 
-/// Begins the phases that a solver reports of itself.
+/// Prefix of the phases that a solver reports itself.
 const OWN: &str = "own-";
 
-/// Seconds of processors below which they are not compared: of processes they are counted in hundredths.
+/// Smallest CPU time that is compared, s. CPU times of processes are measured in hundredths of a second.
 const SHORTEST: f64 = 0.1;
 
-/// A row for each run of another solver that has one of ours beside it.
+/// Table with a row for each run of an external solver that has a counterpart of this program.
 pub(super) fn peers(runs: &[Run]) -> Table {
     let mut table = Table::new(
         "solver-times",
@@ -64,7 +64,7 @@ pub(super) fn peers(runs: &[Run]) -> Table {
     table
 }
 
-/// Whether a run of ours is of the same mesh and elements, with nothing done about locking.
+/// Whether a run of this program has the same mesh and elements, without measures against locking.
 fn is_same_problem(ours: &Run, theirs: &Run) -> bool {
     let what = |run: &Run| {
         let is = run.is;
@@ -74,7 +74,7 @@ fn is_same_problem(ours: &Run, theirs: &Run) -> bool {
     ours.is.family == Family::Fem && plain && what(ours) == what(theirs)
 }
 
-/// Median seconds of the processors, of the whole run.
+/// Median CPU time of the whole run, s.
 fn cpu(run: &Run) -> Option<f64> {
     let fits = |quantity: &str, phase: &str, statistic: &str| {
         quantity == "cpu-time" && phase == "total" && statistic == "median"
@@ -82,7 +82,7 @@ fn cpu(run: &Run) -> Option<f64> {
     run.records().iter().find(|r| fits(&r.quantity, &r.phase, &r.statistic)).map(|r| r.value)
 }
 
-/// Seconds of all phases that a solver reports of itself.
+/// Total time of the phases that a solver reports itself, s.
 fn own_phases(run: &Run) -> Option<f64> {
     let own = run
         .records()
@@ -114,7 +114,7 @@ mod tests {
         let mut own = theirs[0].clone();
         (own.phase, own.value) = ("own-solve".into(), 0.15);
         theirs.push(own);
-        // Of a size that we have not.
+        // A size without a run of this program.
         let alone = with_cpu(run(("tet4-ccx", Family::External), 20, 0.3, &[("l2", 0.11)]), 0.5);
         let mut records = [locked, ours, theirs, alone].concat();
         records.iter_mut().for_each(|record| record.variant = "tet4".into());

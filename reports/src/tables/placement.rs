@@ -1,4 +1,4 @@
-//! Results over many clouds of the same nodes in number, placed by different seeds.
+//! Results on clouds with the same number of nodes, placed by different seeds.
 
 use crate::clouds::{Clouds, Spread};
 use crate::quantity::Shown;
@@ -7,10 +7,10 @@ use crate::select::groups;
 use crate::table::Column::{Number, Words};
 use crate::table::{Cell, Table};
 
-/// What is reported where it is recorded.
+/// Quantities reported if they are recorded.
 const QUANTITIES: [&str; 7] = ["rms", "l2", "energy", "pressure", "max", "tool-force", "smallest-j"];
 
-/// Quartiles of every quantity over the clouds of a method.
+/// Table of the quartiles of every quantity over the clouds of a method.
 pub(super) fn placement(clouds: &[Clouds]) -> Table {
     let mut table = Table::new(
         "placement",

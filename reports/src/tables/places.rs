@@ -1,4 +1,4 @@
-//! What people look for besides errors: forces of supports, mean displacements of faces, frequencies.
+//! Results other than errors: support forces, mean displacements of faces, and frequencies.
 
 use crate::history::curve;
 use crate::record::Purpose;
@@ -6,7 +6,8 @@ use crate::select::{Run, Series, by_material, labels, series};
 use crate::table::Column::{Number, Words};
 use crate::table::{Cell, Table};
 
-/// The finest run of every method of a case that is more than a test of exactness, with the label of its series.
+/// The finest run of every method, with the label of its series, for each case that is not only a test of
+/// exactness.
 fn finest<'a>(runs: &[Run<'a>]) -> Vec<(Run<'a>, String)> {
     let mut out = Vec::new();
     for case in by_material(runs).filter(|case| case[0].is.purpose != Purpose::Patch) {
@@ -17,14 +18,15 @@ fn finest<'a>(runs: &[Run<'a>]) -> Vec<(Run<'a>, String)> {
     out
 }
 
-/// A vector of the quantities `NAME-x`, `NAME-y` and `NAME-z`, of the place of this number, from 1; `None` without any of them.
+/// Vector of the quantities `NAME-x`, `NAME-y` and `NAME-z` at the place with this number, from 1; `None`
+/// without any of them.
 fn vector(run: &Run, name: &str, place: usize) -> Option<[Option<f64>; 3]> {
     let ending = if place == 1 { String::new() } else { format!("-{place}") };
     let found = ["x", "y", "z"].map(|axis| run.value(&format!("{name}-{axis}{ending}")));
     found.iter().any(Option::is_some).then_some(found)
 }
 
-/// One row for every place of every run; places are numbered in the order of the scene.
+/// Adds a row for every place of every run; places are numbered in the order of the scene.
 fn of_places(mut table: Table, runs: &[Run], name: &str, scale: f64) -> Table {
     for (run, label) in finest(runs) {
         for (place, found) in (1..).map_while(|place| Some((place, vector(&run, name, place)?))) {
@@ -36,7 +38,7 @@ fn of_places(mut table: Table, runs: &[Run], name: &str, scale: f64) -> Table {
     table
 }
 
-/// The force of every support.
+/// Table of the force of every support.
 pub(super) fn supports(runs: &[Run]) -> Table {
     let header = [
         ("case", Words),
@@ -52,7 +54,7 @@ pub(super) fn supports(runs: &[Run]) -> Table {
     of_places(Table::new("support-forces", "Forces of supports", caption, &header), runs, "reaction", 1.0)
 }
 
-/// The mean displacement of every face that is asked for.
+/// Table of the mean displacement of every requested face.
 pub(super) fn means(runs: &[Run]) -> Table {
     let header = [
         ("case", Words),
@@ -68,7 +70,7 @@ pub(super) fn means(runs: &[Run]) -> Table {
     of_places(Table::new("face-means", "Mean displacement of faces", caption, &header), runs, "mean", 1e3)
 }
 
-/// The frequency of every mode.
+/// Table of the frequency of every mode.
 pub(super) fn frequencies(runs: &[Run]) -> Table {
     let mut table = Table::new(
         "frequencies",

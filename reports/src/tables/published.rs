@@ -1,4 +1,4 @@
-//! Our numbers beside the published ones.
+//! Tables of computed numbers next to the published ones.
 
 use super::millimetres;
 use crate::published::{Publication, Published, read_as};
@@ -7,11 +7,11 @@ use crate::select::{Run, by_case};
 use crate::table::Column::{Number, Words};
 use crate::table::{Cell, Table};
 
-/// A published number and ours.
+/// A published number with the computed one.
 pub(crate) struct Pair<'a, 'r> {
     pub(crate) paper: &'static Published,
     pub(crate) run: &'a Run<'r>,
-    /// SI.
+    /// Computed value, SI.
     pub(crate) ours: Option<f64>,
 }
 
@@ -21,19 +21,20 @@ impl Pair<'_, '_> {
         !["max-", "rms-", "elements"].iter().any(|start| self.paper.quantity.starts_with(start))
     }
 
-    /// How many times faster, for times.
+    /// Ratio of the published to the computed time; `None` for other numbers.
     pub(crate) fn speed_up(&self) -> Option<f64> {
         self.ours.filter(|v| self.is_time() && *v > 0.0).map(|v| self.paper.value / v)
     }
 }
 
-/// The cases that are readings of a published one.
+/// Cases that reproduce a published one.
 fn readings<'a, 'r>(runs: &'a [Run<'r>]) -> impl Iterator<Item = (&'static Publication, &'a [Run<'r>])> {
     by_case(runs).filter_map(|case| Some((read_as(case[0].is)?, case)))
 }
 
-/// Published numbers beside every run that matches the published discretisation best, case by case: finite elements near its number of
-/// nodes, of each method, and a cloud of its number of nodes (of its kernel first).
+/// Published numbers paired, case by case, with the runs that match the published discretisation best: finite
+/// elements of each method with nearly the same number of nodes, and a cloud with the same number of nodes
+/// (preferably with the same kernel).
 pub(crate) fn pairs<'a, 'r>(runs: &'a [Run<'r>]) -> Vec<Pair<'a, 'r>> {
     readings(runs).flat_map(|(publication, case)| of_case(publication, case)).collect()
 }
@@ -65,24 +66,25 @@ fn of_case<'a, 'r>(publication: &'static Publication, case: &'a [Run<'r>]) -> Ve
     out
 }
 
-/// The published difference taken apart: a cloud carried to the finite elements' nodes against these elements.
+/// Components of the published difference between a cloud, transferred to the finite-element nodes, and these
+/// elements.
 pub(crate) struct Split<'a, 'r> {
-    /// The cloud of the published size.
+    /// Cloud of the published size.
     pub(crate) cloud: &'a Run<'r>,
-    /// Its field after inverse distance.
+    /// Field of the cloud after the transfer by inverse distance.
     pub(crate) carried: &'a Run<'r>,
-    /// The finite elements that it is compared with.
+    /// Finite elements that the cloud is compared with.
     pub(crate) elements: &'a Run<'r>,
-    /// The reference of the case, where it is among the runs.
+    /// Reference of the case, if it is among the runs.
     pub(crate) reference: Option<&'a str>,
 }
 
-/// What an RMS difference is of, and its x, y, z and magnitude, m.
+/// Description of an RMS difference, and its x, y, z and magnitude, m.
 pub(crate) type Part = (String, [Option<f64>; 4]);
 
 impl Split<'_, '_> {
-    /// The whole difference, then what it is made of: transfer, discretisation of the cloud, error of the elements. RMS do not add
-    /// up, as the fields behind them are no strangers to each other.
+    /// The whole difference, followed by its components: transfer, discretisation of the cloud, error of the
+    /// elements. RMS values do not add up, because the underlying fields are correlated.
     pub(crate) fn parts(&self) -> [Part; 5] {
         let (cloud, elements) = (&self.cloud.is.method, &self.elements.is.method);
         let reference = self.reference.unwrap_or("the reference");
@@ -104,7 +106,7 @@ impl Split<'_, '_> {
     }
 }
 
-/// Every reading in which a cloud of the published size was compared with the finite elements.
+/// Every reproduced case in which a cloud of the published size was compared with the finite elements.
 pub(crate) fn splits<'a, 'r>(runs: &'a [Run<'r>]) -> Vec<Split<'a, 'r>> {
     let mut out: Vec<Split> = Vec::new();
     for (publication, case) in readings(runs) {
@@ -122,7 +124,7 @@ pub(crate) fn splits<'a, 'r>(runs: &'a [Run<'r>]) -> Vec<Split<'a, 'r>> {
     out
 }
 
-/// The field of a cloud after the published scheme of transfer, compared with the published kind of elements.
+/// The field of a cloud after the published transfer scheme, compared with the published type of elements.
 fn carried_as<'a, 'r>(publication: &Publication, case: &'a [Run<'r>], cloud: &Run) -> Option<&'a Run<'r>> {
     case.iter().find(|r| {
         r.is.family == Family::Interp
@@ -135,7 +137,8 @@ fn carried_as<'a, 'r>(publication: &Publication, case: &'a [Run<'r>], cloud: &Ru
 }
 
 fn ours(publication: &Publication, case: &[Run], run: &Run, quantity: &str) -> Option<f64> {
-    // As published, from the elements and after the transfer; from the reference where that was not asked for.
+    // As published, the difference from the elements after the transfer; without this comparison, the error
+    // against the reference.
     let carried = carried_as(publication, case, run);
     let rms = |q: &str| carried.map_or_else(|| run.value(q), |c| c.value(&format!("beside-{q}")));
     let directions = || ["rms-x", "rms-y", "rms-z"].map(rms).into_iter().collect::<Option<Vec<f64>>>();
@@ -150,7 +153,7 @@ fn ours(publication: &Publication, case: &[Run], run: &Run, quantity: &str) -> O
     }
 }
 
-/// The table: value, place, ours, and how many times faster.
+/// Table of published numbers: value, place, computed value and speed-up.
 pub(super) fn beside_ours(runs: &[Run]) -> Table {
     let caption = "Published numbers with the place where they stand, and ours for the matching discretisation. The RMS compares EFG, carried over by inverse \
                    distance, with linear tetrahedra (with the case's reference where a study left that out). Geometry and supports are a reading of the \
@@ -199,7 +202,7 @@ pub(super) fn beside_ours(runs: &[Run]) -> Table {
     table
 }
 
-/// The table of the published RMS difference and its parts.
+/// Table of the published RMS difference and its components.
 pub(super) fn rms_parts(runs: &[Run]) -> Table {
     let mut table = Table::new(
         "published-rms",
@@ -290,7 +293,7 @@ mod tests {
         for (part, base) in splits[0].parts().iter().zip([1e-4, 2e-4, 3e-4, 4e-4, 5e-4]) {
             assert_eq!(part.1, [1.0, 2.0, 3.0, 4.0].map(|k| Some(base * k)), "{}", part.0);
         }
-        // The published RMS stands beside the carried field's, not beside the cloud's own.
+        // The published RMS is compared with the transferred field, not with the cloud's own.
         let pairs = pairs(&runs);
         let rms = pairs.iter().find(|p| p.paper.quantity == "rms-y").unwrap();
         assert_eq!((rms.run.is.method.as_str(), rms.ours), ("efg-83", Some(2e-4)));

@@ -1,4 +1,4 @@
-//! Solves of a simulator's loop, prepared once: whether they keep up with the eye and with the hand.
+//! Solves in the loop of a simulator after one preparation, and whether they meet visual and haptic rates.
 
 use super::{labelled, millimetres as milliseconds};
 use crate::fronts::{DEADLINES, Frame, RESOLUTION};
@@ -7,7 +7,7 @@ use crate::table::Column::{Number, Words};
 use crate::table::{Cell, Table};
 use crate::text::ratio;
 
-/// Every run that was solved again and again, a row for each thing that its frames gave.
+/// Table of every run with repeated solves, with a row for each kind of result of its frames.
 pub(super) fn repeated(runs: &[Run]) -> Table {
     let mut table = Table::new(
         "repeated",
@@ -67,7 +67,7 @@ pub(super) fn repeated(runs: &[Run]) -> Table {
     table
 }
 
-/// A time in milliseconds, or that it is below what the clock resolves.
+/// A time in milliseconds, or a note that it is below the resolution of the clock.
 fn resolved<'a>(seconds: Option<f64>) -> Cell<'a> {
     match seconds {
         Some(time) if time < RESOLUTION => Cell::Named("< 0.001", 1e3 * time),
@@ -93,10 +93,11 @@ mod tests {
             let is = ("loop", method, Family::Fem);
             records.extend(times.map(|(of, t)| record(is, 100, ("time", of.as_str()), t)));
         }
-        // A run without a loop has no row; what was not measured is not judged.
+        // A run without a loop has no row, and missing times have no verdict.
         records.push(record(("loop", "once", Family::Fem), 100, ("time", "total:median"), 1.0));
         records.push(record(("loop", "unknown", Family::Fem), 100, ("time", "repeated:median"), 1e-4));
-        // A linear problem has two rows: its probes are too fast for the clock, and of all nodes there are few frames.
+        // A linear problem has two rows: its probes are too fast for the clock, and it has few frames of the
+        // whole field.
         for (of, t) in [
             ("condense:median", 0.01),
             ("repeated:median", 3e-7),

@@ -1,4 +1,4 @@
-//! Solvers outside this program: how each ended on each case.
+//! External solvers: the outcome of each on each case.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -7,15 +7,15 @@ use crate::run_set::RunSet;
 use crate::table::Column::Words;
 use crate::table::{Cell, Table};
 
-/// This program among the solvers; it comes first.
+/// This program among the solvers; its column comes first.
 const OURS: &str = "tissuebench (own)";
-/// A run with all of its numbers.
+/// Status of a run with all its numbers.
 const OK: &str = "ok";
 
-/// Of a case and solver, how often each status occurs.
+/// Number of occurrences of each status, by case and solver.
 type Ends<'a> = BTreeMap<(&'a str, &'a str), BTreeMap<&'a str, usize>>;
 
-/// A row for each case that a solver outside this program was asked for, a column for each solver.
+/// Table with a row for each case that was given to an external solver, and a column for each solver.
 pub(super) fn solvers(set: &RunSet) -> Table {
     let ends = ends(set);
     let foreign: BTreeSet<&str> = ends.keys().filter(|key| key.1 != OURS).map(|key| key.1).collect();
@@ -41,7 +41,7 @@ pub(super) fn solvers(set: &RunSet) -> Table {
     table
 }
 
-/// `ok`, or `ok 3, stalled 1`.
+/// Statuses with their counts, as `ok` or `ok 3, stalled 1`.
 fn text(ends: Option<&BTreeMap<&str, usize>>) -> String {
     let Some(ends) = ends else { return "not asked".into() };
     match ends.iter().collect::<Vec<_>>()[..] {
@@ -66,7 +66,7 @@ fn ends(set: &RunSet) -> Ends<'_> {
         let status = if failure.status.is_empty() { "failed" } else { &failure.status };
         let of = ends.entry((&failure.case, name)).or_default();
         *of.entry(status).or_default() += 1;
-        // Its numbers are those of a part of the load.
+        // The numbers of this run belong to a partial load.
         if let Some(ok) = of.get_mut(OK).filter(|_| failure.carried.is_some()) {
             *ok = ok.saturating_sub(1);
         }

@@ -1,4 +1,4 @@
-//! Where methods bend and break along the axes of a study.
+//! Limits of methods along the axes of a study.
 
 use crate::axis::{Axis, Verdict};
 use crate::quantity::label;
@@ -7,7 +7,7 @@ use crate::table::Column::{Number, Words};
 use crate::table::{Cell, Table};
 use crate::text::short;
 
-/// A row for each method of each axis.
+/// Table with a row for each method of each axis.
 pub(super) fn stability(set: &RunSet) -> Table {
     let mut table = Table::new(
         "stability",

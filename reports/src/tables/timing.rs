@@ -1,4 +1,4 @@
-//! What every phase cost.
+//! Cost of every phase.
 
 use super::{labelled, millimetres as milliseconds};
 use crate::provenance::Machine;
@@ -9,7 +9,7 @@ use crate::text::ratio;
 
 const PHASES: [&str; 6] = ["prepare", "assemble", "factor", "solve", "transfer", "total"];
 
-/// Median and spread of every phase, and peak memory.
+/// Table of the median and spread of every phase, and of peak memory.
 pub(super) fn phases(runs: &[Run], machine: &Machine) -> Table {
     let mut table = Table::new(
         "timing",

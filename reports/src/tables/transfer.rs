@@ -1,4 +1,4 @@
-//! Transfer schemes compared.
+//! Comparison of transfer schemes.
 
 use super::millimetres;
 use crate::record::Family;
@@ -6,7 +6,7 @@ use crate::select::Run;
 use crate::table::Column::{Number, Words};
 use crate::table::{Cell, Table};
 
-/// Error and cost of every scheme, by what it carried over.
+/// Table of error and cost of every scheme, by transferred field.
 pub(super) fn schemes(runs: &[Run]) -> Table {
     let caption = "Two numbers at the target points, and the cost. The error is the distance of the transferred displacement from the reference: of a \
          prescribed field it is the transfer's own (rms in the records); of a method's result it holds the method's error too, which own-rows (the method's own shape functions) \
@@ -55,7 +55,7 @@ pub(super) fn schemes(runs: &[Run]) -> Table {
     table
 }
 
-/// The method whose field a scheme carried, and its remaining settings in words.
+/// The method whose field a scheme transfers, and the other settings of the scheme in words.
 fn carried(run: &Run) -> (String, String) {
     let own = run.is.settings().into_iter().filter(|(name, _)| *name != "from");
     let settings: Vec<String> = own.map(|(name, value)| format!("{name} {value}")).collect();

@@ -1,4 +1,4 @@
-//! The least time within an error: a row for each method, a column for each case.
+//! The smallest time within an error: a row for each method, a column for each case.
 
 use crate::fronts::wanted;
 use crate::select::{Run, solved};
@@ -6,7 +6,7 @@ use crate::table::Column::{Number, Words};
 use crate::table::{Cell, Table};
 use crate::within::{methods, problems, ratios};
 
-/// Every method on every case where it was run.
+/// Table of every method on every case that it was run on.
 pub(super) fn within(runs: &[Run]) -> Table {
     let problems = problems(&solved(runs));
     let heads: Vec<String> = problems.iter().map(|p| format!("{} [s]", p.title)).collect();

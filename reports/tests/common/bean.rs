@@ -1,8 +1,8 @@
-//! Made-up surfaces of a kidney, at rest and between jaws.
+//! Artificial surfaces of a kidney, at rest and between jaws.
 
 use reports::{Family, Section, SectionCell, SurfaceField, ToolHull};
 
-/// A ball mapped to a bean, pressed flat in the middle of its length.
+/// A ball mapped to a bean, compressed in the middle of its length.
 pub fn bean((method, family): (&str, Family), title: &str, n: u32, amplitude: f64) -> SurfaceField {
     let (mut points, mut displacement, mut triangles) = (Vec::new(), Vec::new(), Vec::new());
     let around = 2 * n;
@@ -40,7 +40,7 @@ pub fn bean((method, family): (&str, Family), title: &str, n: u32, amplitude: f6
     }
 }
 
-/// The bean between two jaws, and its middle plane cut into squares of alternating pressure.
+/// The bean between two jaws, with its middle plane divided into squares of alternating pressure.
 pub fn grasped(of @ (method, _): (&str, Family), wild: f64) -> SurfaceField {
     let jaw = |side: f64| ToolHull {
         name: "jaw".into(),

@@ -1,4 +1,5 @@
-//! A made-up study that fills every table and every figure: power laws with fixed wiggles, never a random number.
+//! An artificial study that fills every table and every figure, from power laws with fixed perturbations and
+//! without random numbers.
 
 mod bean;
 
@@ -8,7 +9,7 @@ use reports::{
     Status,
 };
 
-/// Basis, support scale, dilation and integration; empty or 0 where there is none.
+/// Basis, support scale, dilation and integration; empty or 0 if absent.
 type Settings = (&'static str, f64, &'static str, &'static str);
 
 const PLAIN: Settings = ("", 0.0, "", "");
@@ -51,7 +52,8 @@ fn push_times(set: &mut RunSet, run: &Record, phases: &[(&str, f64)]) {
     push(set, run, "memory", "B", 4e6 + 900.0 * run.nodes as f64);
 }
 
-/// Method id, family, variant, parameters, displacement order, error at h = 1 mm for nu = 0.3, whether it locks, cost per unknown.
+/// Method id, family, variant, settings, displacement order, error at h = 1 mm for nu = 0.3, whether the
+/// method locks, and cost per unknown.
 type Method = (&'static str, Family, &'static str, Settings, f64, f64, bool, f64);
 
 const METHODS: [Method; 8] = [
@@ -278,7 +280,8 @@ fn kidney(set: &mut RunSet) {
     }
 }
 
-/// A tool closing on a block: two methods step by step, a finer level of one, and a reference with its uncertainty.
+/// Adds a tool closing on a block: two methods step by step, a finer level of one, and a reference with its
+/// uncertainty.
 fn grasp(set: &mut RunSet) {
     for (method, family, nodes, stiffness) in [
         ("hex8", Family::Fem, 225, 1.08),
@@ -343,7 +346,7 @@ fn check(
     }
 }
 
-/// Provenance of its numbers.
+/// Provenance of the artificial numbers.
 fn provenance() -> Provenance {
     Provenance {
         source: "study.toml".into(),

@@ -154,8 +154,8 @@ fn decks_are_read_as_people_write_them() {
     assert_eq!(deck(&sections).unwrap().region_names(), ["Two"]);
 }
 
-/// A part placed twice: the second instance is rotated by a right angle about the z axis, then shifted by 3 along
-/// x.
+/// A part placed twice: the second instance is rotated by a right angle about the z axis, then shifted by 3
+/// along x.
 #[test]
 fn parts_are_placed_and_turned() {
     let text = "*PART, NAME=corner

@@ -25,7 +25,7 @@ pub(super) struct Cells<'a> {
 type Key = (u32, u32);
 
 impl Cells<'_> {
-    /// First cell with the same corners as an earlier cell, as [earlier, later].
+    /// First cell with the same corners as an earlier cell, as `[earlier, later]`.
     pub(super) fn twins(&self) -> Option<[usize; 2]> {
         let mut keys: Vec<Key> = Vec::with_capacity(self.kinds.len());
         self.each(|_, kind, nodes| keys.push(set_key(&nodes[..kind.corner_count()])));
@@ -42,7 +42,7 @@ impl Cells<'_> {
         first(groups)
     }
 
-    /// First cell on the same side of a face as an earlier cell, as [earlier, later].
+    /// First cell on the same side of a face as an earlier cell, as `[earlier, later]`.
     pub(super) fn same_side(&self) -> Option<[usize; 2]> {
         let mut keys: Vec<Key> = Vec::with_capacity(4 * self.kinds.len());
         self.each(|_, kind, nodes| faces(kind, nodes, |_, face| keys.push(face.key())));
