@@ -10,8 +10,7 @@
 //! | `references.json` | references of the runs, with their own errors |
 //! | `axes.json` | outcomes of methods along the axes of the study |
 //! | `fields/CASE--METHOD.json` | surface displacements and states, see below |
-//! | `incomplete.json` | present from the start of a study or run until all files and the report are written
-//! |
+//! | `incomplete.json` | present from the start of a study or run until all files are written |
 //!
 //! A file in `fields` contains the surface displacements, and the surface at some states for a
 //! three-dimensional view. For a case with tools it also contains the tools and a section with its pressure.
