@@ -1,9 +1,10 @@
-//! Build, pack and apply per scheme, at the size of the paper: 83 nodes to about 1330 points of the kidney.
+//! Time to build, pack and apply each scheme, at the size of the paper: 83 nodes to about 1330 points of the
+//! kidney.
 //!
-//! Packed, a full table is 0.88 MB of weights, each used for three components. Read from the second-level cache at 104 GB/s they take
-//! 8.4 us; three products and three sums of eight lanes, on two pipes of 512 bits, take 3 cycles per eight weights, 16 us at
-//! 2.6 GHz. Medians beside busy neighbours, in us, of one thread, of builds the wall's time of two; a full table unpacked takes
-//! 80:
+//! A full packed table has 0.88 MB of weights, each used for three components. From the second-level cache at
+//! 104 GB/s they take 8.4 us. Three products and three sums of eight lanes, on two pipes of 512 bits, take 3
+//! cycles per eight weights: 16 us at 2.6 GHz. The table below gives medians on a busy machine in us: wall
+//! time on two threads for builds, and one thread otherwise. An unpacked full table takes 80 us to apply.
 //!
 //! | scheme | entries | build | pack | apply |
 //! |---|---|---|---|---|
@@ -17,8 +18,8 @@
 //! | natural-neighbour | 13 094 | 880 to 1050 | 128 | 6.3 |
 //! | barycentric | 5 324 | 550 | 42 | 5.2 |
 //!
-//! One thread builds mls-quadratic in 1200 and natural neighbours in 1380. A thread that sleeps is awake after 35 us; some builds
-//! have three loops in parallel.
+//! One thread builds mls-quadratic in 1200 us and natural-neighbour in 1380 us. A sleeping thread takes 35 us
+//! to wake up; some builds have three parallel loops.
 
 use criterion::{Bencher, Criterion, criterion_group, criterion_main};
 use geometry::generate::kidney_mesh;
@@ -27,7 +28,7 @@ use interp::{Barycentric, Scheme};
 use shape::{RowBlocks, Vector3};
 use std::hint::black_box;
 
-/// On a thread of the pool, where a run is.
+/// Measures on a thread of the pool, as in a run.
 fn on_pool<T>(bencher: &mut Bencher, make: impl Fn() -> T + Send + Sync) {
     rayon::scope(|_| bencher.iter(make));
 }
@@ -35,7 +36,7 @@ fn on_pool<T>(bencher: &mut Bencher, make: impl Fn() -> T + Send + Sync) {
 fn transfer(criterion: &mut Criterion) {
     let nodes = cloud(&Kidney, 83, 1, &[]).unwrap().points;
     let targets = cloud(&Kidney, 1331, 2, &[]).unwrap().points;
-    // Barycentric transfer wants a mesh over its nodes: a coarse one, of 321 nodes and 1536 cells.
+    // Barycentric transfer needs a mesh over its nodes: a coarse mesh of 321 nodes and 1536 cells.
     let mesh = kidney_mesh(CellKind::Tet4, 4).unwrap();
     let mut group = criterion.benchmark_group("transfer");
     for scheme in Scheme::all() {

@@ -9,7 +9,7 @@ use crate::neighbours::check_finite;
 use crate::scheme::{SchemeEntry, Source, Transfer};
 use crate::{InterpError, TransferInfo};
 
-/// [`barycentric`] as a scheme.
+/// The scheme of [`barycentric`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Barycentric;
 
@@ -43,13 +43,16 @@ impl Transfer for Barycentric {
     }
 }
 
-/// `u(x) = sum_a lambda_a(x) u_a` over the four corners of the tetrahedron that holds the target, `lambda`
-/// its barycentric coordinates. Exact for linear fields, everywhere; interpolates; continuous within the
-/// mesh.
+/// Builds the table of linear interpolation in tetrahedra, `u(x) = sum_a lambda_a(x) u_a`, with the
+/// barycentric coordinates `lambda` of the tetrahedron that contains the target.
 ///
-/// A target outside the mesh takes the linear field of the closest tetrahedron, extrapolated (a curved body
-/// always has such targets, a small part of a cell away), and is counted in [`TransferInfo::outside`]. Of
-/// quadratic tetrahedra only the corners count; a mesh with other cells is refused.
+/// The scheme is exact for linear fields everywhere, interpolates, and is continuous within the mesh. A
+/// target outside the mesh takes the extrapolated linear field of the closest tetrahedron and is counted in
+/// [`TransferInfo::outside`]. A curved body always has such targets, at a small fraction of a cell. For
+/// quadratic tetrahedra only the corners are used.
+///
+/// # Errors
+/// Coordinates that are not finite, and a mesh with other cells than tetrahedra or with flat cells.
 pub fn barycentric(mesh: &Mesh, targets: &[Point3]) -> Result<(PointRows, TransferInfo), InterpError> {
     check_finite(mesh.points(), targets)?;
     let mut info = TransferInfo::default();
@@ -70,7 +73,7 @@ pub fn barycentric(mesh: &Mesh, targets: &[Point3]) -> Result<(PointRows, Transf
     Ok((PointRows::new(targets.to_vec(), rows)?, info))
 }
 
-/// [`barycentric`] with gradients (1/m), constant in each tetrahedron.
+/// Builds the table of [`barycentric`] with gradients (1/m), which are constant in each tetrahedron.
 pub fn barycentric_gradients(
     mesh: &Mesh,
     targets: &[Point3],
@@ -80,7 +83,7 @@ pub fn barycentric_gradients(
     for corners in rows.rows().nodes().chunks_exact(4) {
         let [o, a, b, c] = [0, 1, 2, 3].map(|k| mesh.points()[corners[k] as usize]);
         let edges = Matrix3::from_columns(&[a - o, b - o, c - o]);
-        // Flat cells are refused where targets are located.
+        // Flat cells are already refused by the location of targets.
         let inverse = edges.try_inverse().unwrap_or_else(Matrix3::zeros);
         let [ga, gb, gc] = [0, 1, 2].map(|k| inverse.row(k).transpose());
         grads.extend([-ga - gb - gc, ga, gb, gc]);
@@ -88,7 +91,7 @@ pub fn barycentric_gradients(
     Ok((GradRows::new(targets.to_vec(), rows.rows().clone(), grads)?, info))
 }
 
-/// Barycentric coordinates of any point; some are negative outside the tetrahedron.
+/// Returns the barycentric coordinates of any point; outside the tetrahedron some are negative.
 fn extrapolated(mesh: &Mesh, cell: usize, x: &Point3) -> Result<[f64; 4], InterpError> {
     let corner = |a: usize| mesh.points()[mesh.cell(cell)[a] as usize];
     let origin = corner(0);

@@ -1,16 +1,17 @@
-//! Delaunay tetrahedralisation of a cloud, by insertion (Bowyer 1981, Watson 1981) with exact predicates (Shewchuk
-//! 1997): lattices, where every sphere passes through more than four nodes, need no care of their own.
+//! Delaunay tetrahedralisation of a cloud, by insertion (Bowyer 1981, Watson 1981) with exact predicates
+//! (Shewchuk 1997). Lattices, in which every sphere passes through more than four nodes, need no special
+//! treatment.
 
 use robust::{Coord3D, insphere, orient3d};
 use shape::Point3;
 
-/// Index of no tetrahedron (beyond the hull) and of the vertex at infinity.
+/// Index for "no tetrahedron" (beyond the hull) and for the vertex at infinity.
 pub(crate) const NONE: u32 = u32::MAX;
 
-/// Corners of the face opposite corner `k`, turned so that corner `k` lies on its positive side.
+/// Corners of the face opposite corner `k`, oriented so that corner `k` lies on its positive side.
 pub(crate) const FACES: [[usize; 3]; 4] = [[1, 3, 2], [0, 2, 3], [0, 3, 1], [0, 1, 2]];
 
-/// Tetrahedra that fill the convex hull of the nodes, none of whose circumspheres holds a node inside.
+/// Tetrahedra that fill the convex hull of the nodes, with no node inside a circumsphere.
 pub(crate) struct Delaunay {
     /// Corners, positive in the sense of `orient3d`.
     pub(crate) cells: Vec<[u32; 4]>,
@@ -18,17 +19,17 @@ pub(crate) struct Delaunay {
     pub(crate) neighbours: Vec<[u32; 4]>,
 }
 
-/// Why there is no tetrahedralisation.
+/// Reason why there is no tetrahedralisation.
 #[derive(Debug, PartialEq, Eq)]
 pub(crate) enum Degenerate {
-    /// Two nodes in one place, lower index first.
+    /// Two nodes at the same place, lower index first.
     Coincident(u32, u32),
     /// All nodes in one plane.
     Flat,
 }
 
 impl Delaunay {
-    /// Of finite positions, four at least.
+    /// Builds the tetrahedralisation of at least four finite positions.
     pub(crate) fn new(nodes: &[Point3]) -> Result<Delaunay, Degenerate> {
         let mut mesh = Insertion::new(nodes)?;
         for node in shuffled(nodes.len()) {
@@ -38,9 +39,9 @@ impl Delaunay {
     }
 }
 
-/// All nodes in a fixed random order, for which the expected work is lowest whatever order they come in.
+/// Returns all nodes in a fixed random order, which minimises the expected work for any input order.
 fn shuffled(n: usize) -> impl Iterator<Item = u32> {
-    // The mixing step of SplitMix64 (Steele, Lea and Flood 2014): a bijection, so that no two keys are the same.
+    // The mixing step of SplitMix64 (Steele, Lea and Flood 2014) is a bijection, so all keys differ.
     let key = |i: u64| {
         let mut z = i.wrapping_add(0x9e37_79b9_7f4a_7c15);
         z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -52,17 +53,17 @@ fn shuffled(n: usize) -> impl Iterator<Item = u32> {
     order.into_iter()
 }
 
-/// The mesh while it grows. Its hull is closed by ghosts, tetrahedra with a corner at infinity ([`NONE`]), so that every
-/// face has a neighbour.
+/// The growing mesh. Its hull is closed by ghosts, i.e. tetrahedra with a corner at infinity ([`NONE`]), so
+/// every face has a neighbour.
 struct Insertion {
     at: Vec<Coord3D<f64>>,
     cells: Vec<[u32; 4]>,
     neighbours: Vec<[u32; 4]>,
-    /// Stamp of the last insertion whose cavity the cell was tested for; odd if it was in conflict.
+    /// Stamp of the last insertion for which the cell was tested; odd if the cell was in conflict.
     seen: Vec<u32>,
     stamp: u32,
     free: Vec<u32>,
-    /// A finite cell, where the next walk starts.
+    /// A finite cell at which the next walk starts.
     last: u32,
     cavity: Vec<u32>,
     rim: Vec<(u32, usize)>,
@@ -70,7 +71,7 @@ struct Insertion {
 }
 
 impl Insertion {
-    /// The first tetrahedron and its four ghosts.
+    /// Builds the first tetrahedron and its four ghosts.
     fn new(nodes: &[Point3]) -> Result<Insertion, Degenerate> {
         let at: Vec<Coord3D<f64>> = nodes.iter().map(|p| Coord3D { x: p.x, y: p.y, z: p.z }).collect();
         let farthest = |size: &dyn Fn(&Point3) -> f64| {
@@ -92,7 +93,7 @@ impl Insertion {
         for k in 0..4 {
             let [p, q, r] = FACES[k].map(|i| first[i]);
             cells.push([p, r, q, NONE]);
-            // The ghost across face `k` touches the one across face `j` where its corner `j` is missing.
+            // The ghost across face `k` touches the ghost across face `j` at the face that lacks corner `j`.
             let beside = [p, r, q].map(|v| 1 + first.iter().position(|&w| w == v).unwrap_or(0) as u32);
             neighbours.push([beside[0], beside[1], beside[2], 0]);
         }
@@ -125,8 +126,9 @@ impl Insertion {
         Ok(())
     }
 
-    /// Walks towards the node, through any face that it lies beyond, to the cell that holds it or to a ghost that sees it.
-    /// The walk ends: circumspheres of a Delaunay mesh are ordered along it (Edelsbrunner 1990).
+    /// Walks towards the node, through any face that separates it from the cell, and returns the cell that
+    /// contains the node or a ghost that sees it. The walk terminates because the circumspheres of a Delaunay
+    /// mesh are ordered along it (Edelsbrunner 1990).
     fn locate(&self, node: u32) -> u32 {
         let mut cell = self.last;
         'walk: loop {
@@ -144,15 +146,17 @@ impl Insertion {
         }
     }
 
-    /// Positive if the node lies on the inner side of face `k`.
+    /// Returns a positive number if the node lies on the inner side of face `k`.
     fn side(&self, corners: [u32; 4], k: usize, node: u32) -> f64 {
         let [a, b, c] = FACES[k].map(|i| self.at[corners[i] as usize]);
         orient3d(a, b, c, self.at[node as usize])
     }
 
-    /// The circumsphere holds the node, inside or on it. As that is told exactly, all faces of the cavity see the node from
-    /// strictly within: of two cells at a face, it is on the side of the one whose sphere it is deeper in.
-    /// The ball of a ghost is the space beyond its face and, in the plane of it, the disc of the face.
+    /// Whether the circumsphere contains the node, inside or on the sphere.
+    ///
+    /// The test is exact, so every face of the cavity has the node strictly on its inner side. Of two cells
+    /// at a face, the node is on the side of the cell whose sphere contains it more deeply. The ball of a
+    /// ghost is the half-space beyond its face and, in the plane of the face, the disc of the face.
     fn conflict(&self, cell: u32, node: u32) -> bool {
         let corners = self.cells[cell as usize];
         match corners.iter().position(|&v| v == NONE) {
@@ -167,7 +171,7 @@ impl Insertion {
         }
     }
 
-    /// Collects the cells in conflict, from one of them on, and the faces around them.
+    /// Collects the cells in conflict, starting from one of them, and the faces around them.
     fn empty(&mut self, start: u32, node: u32) {
         self.stamp += 2;
         let (out, within) = (self.stamp, self.stamp + 1);
@@ -196,7 +200,7 @@ impl Insertion {
         }
     }
 
-    /// Joins every face of the rim to the node.
+    /// Connects every face of the rim with the node.
     fn fill(&mut self, node: u32) {
         self.open.clear();
         let rim = std::mem::take(&mut self.rim);
@@ -236,7 +240,7 @@ impl Insertion {
         self.rim = rim;
     }
 
-    /// Without ghosts and freed cells.
+    /// Returns the mesh without ghosts and freed cells.
     fn finite(self) -> Delaunay {
         let mut kept = vec![true; self.cells.len()];
         self.free.iter().for_each(|&cell| kept[cell as usize] = false);
@@ -269,7 +273,8 @@ mod tests {
             .collect()
     }
 
-    /// Neighbours know each other, cells are positive and fill the volume, and no sphere holds a node.
+    /// Checks that neighbours are mutual, that cells are positive and fill the volume, and that no sphere
+    /// contains a node.
     fn check(nodes: &[Point3], volume: Option<f64>) {
         let mesh = Delaunay::new(nodes).unwrap();
         let at = |v: u32| nodes[v as usize];
@@ -311,10 +316,10 @@ mod tests {
         check(&lattice(2, 1e-3), Some(1e-9));
         check(&lattice(5, 0.7e-3), Some((4.0 * 0.7e-3f64).powi(3)));
         check(&scattered(120), None);
-        // A lattice turned: spheres through many nodes, but for rounding.
+        // A rotated lattice: spheres through many nodes, except for rounding.
         let turn = nalgebra::Rotation3::from_euler_angles(0.3, 0.7, -0.4);
         check(&lattice(4, 1.0).iter().map(|p| turn * p).collect::<Vec<_>>(), Some(27.0));
-        // Nodes in a plane but one.
+        // Nodes in a plane, except one.
         let mut plane = lattice(4, 1.0);
         plane.truncate(16);
         plane.push(Point3::new(1.3, 1.4, 0.7));

@@ -1,8 +1,8 @@
-//! What makes a transfer impossible. Lengths in metres.
+//! Errors of a transfer. Lengths are in metres.
 
 use shape::ShapeError;
 
-/// What makes a transfer impossible.
+/// Reason why a transfer is impossible.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum InterpError {
     /// Fewer nodes than the scheme needs.
@@ -10,9 +10,9 @@ pub enum InterpError {
     TooFewNodes {
         /// Scheme.
         scheme: &'static str,
-        /// Nodes given.
+        /// Number of nodes given.
         found: usize,
-        /// Nodes needed.
+        /// Number of nodes needed.
         needed: usize,
     },
     /// A coordinate that is not a finite number.
@@ -26,14 +26,14 @@ pub enum InterpError {
     /// A parameter outside its range.
     #[error("{what} is {value}; {allowed} is needed")]
     BadParameter {
-        /// Which parameter.
+        /// Name of the parameter.
         what: &'static str,
         /// Its value.
         value: f64,
-        /// What is allowed, in words.
+        /// Description of the allowed values.
         allowed: &'static str,
     },
-    /// Two nodes at (almost) one place: an interpolant has two values to meet there.
+    /// Two nodes at (almost) the same place, at which an interpolant would need two values.
     #[error(
         "{scheme}: nodes {first} and {second} are {distance:e} m apart in a cloud of half-extent {extent:e} m; \
          the system is singular to working precision (pivot ratio {pivot_ratio:e})"
@@ -52,7 +52,7 @@ pub enum InterpError {
         /// Smallest over largest pivot of the factorisation; zero if the distance alone decided.
         pivot_ratio: f64,
     },
-    /// Radial functions so wide that those of neighbouring nodes can't be told apart.
+    /// Radial functions so wide that those of neighbouring nodes cannot be distinguished.
     #[error(
         "{scheme}: {what} {width} (in mean spacings of the nodes) makes a system so nearly singular that values at \
          the nodes are missed by {miss:e} of themselves; take less"
@@ -60,15 +60,15 @@ pub enum InterpError {
     TooWide {
         /// Scheme.
         scheme: &'static str,
-        /// What the width is called.
+        /// Name of the width.
         what: &'static str,
-        /// Width over mean spacing.
+        /// Ratio of width to mean spacing.
         width: f64,
-        /// Largest difference between values of 1 and -1 given at the nodes and those found there; infinite if the
-        /// system is not positive definite.
+        /// Largest error of the values at the nodes for given values of 1 and -1; infinite if the system is
+        /// not positive definite.
         miss: f64,
     },
-    /// Nodes in one plane (or line, or point): they determine no linear field in space.
+    /// Nodes in a plane, on a line or at a point, which do not determine a linear field in space.
     #[error("{scheme}: the nodes lie in one plane (thickness {thickness:e} m, half-extent {extent:e} m)")]
     FlatCloud {
         /// Scheme.
@@ -86,13 +86,13 @@ pub enum InterpError {
     TooLarge {
         /// Scheme.
         scheme: &'static str,
-        /// Nodes given.
+        /// Number of nodes given.
         nodes: usize,
-        /// Targets given.
+        /// Number of targets given.
         targets: usize,
-        /// Entries of system and table.
+        /// Number of entries of system and table.
         entries: usize,
-        /// Most entries allowed.
+        /// Largest allowed number of entries.
         limit: usize,
     },
     /// A scheme without gradients in closed form.
@@ -103,35 +103,35 @@ pub enum InterpError {
         /// Scheme.
         scheme: &'static str,
     },
-    /// A scheme that needs a mesh, without one.
+    /// A scheme that needs a mesh but was given none.
     #[error("{scheme} needs a mesh of tetrahedra over the nodes; none is given")]
     NeedsMesh {
         /// Scheme.
         scheme: &'static str,
     },
-    /// A mesh of other nodes than those given.
+    /// A mesh whose points differ from the nodes.
     #[error("the {nodes} nodes are not the {mesh} points of the mesh: they differ from number {first} on")]
     MeshMismatch {
-        /// Points of the mesh.
+        /// Number of points of the mesh.
         mesh: usize,
-        /// Nodes given.
+        /// Number of nodes given.
         nodes: usize,
         /// First index at which they differ.
         first: usize,
     },
-    /// A mesh in which nothing can be located: other cells than tetrahedra, or flat ones.
+    /// A mesh in which points cannot be located, because it has other cells than tetrahedra or flat cells.
     #[error(transparent)]
     Locate(#[from] geometry::LocateError),
-    /// Nodes without a spacing: two of them in one place.
+    /// Nodes without a spacing, because two of them coincide.
     #[error(transparent)]
     Cloud(#[from] geometry::CloudError),
-    /// More nodes than can be searched.
+    /// More nodes than the search supports.
     #[error(transparent)]
     Search(#[from] geometry::SearchError),
     /// Moving least squares failed.
     #[error(transparent)]
     Mls(#[from] efg::EfgError),
-    /// A table that breaks a promise.
+    /// A table that violates its own conditions.
     #[error(transparent)]
     Shape(#[from] ShapeError),
 }

@@ -1,4 +1,4 @@
-//! Where a cloud is, how large, and how thick.
+//! Position, size and thickness of a cloud.
 
 use nalgebra::Matrix3;
 use shape::{Point3, Vector3};
@@ -6,7 +6,7 @@ use shape::{Point3, Vector3};
 /// Thickness of a cloud relative to its half-extent below which it counts as flat.
 pub(crate) const FLAT: f64 = 1e-7;
 
-/// Centre of the bounding box and half its longest side, m.
+/// Returns the centre of the bounding box and half its longest side, m.
 pub(crate) fn centre_and_half_extent(nodes: &[Point3]) -> (Point3, f64) {
     let (mut low, mut high) = (nodes[0], nodes[0]);
     for x in nodes {
@@ -17,7 +17,7 @@ pub(crate) fn centre_and_half_extent(nodes: &[Point3]) -> (Point3, f64) {
     (low + half, half.max())
 }
 
-/// Root-mean-square distance of the nodes from their best plane.
+/// Returns the root-mean-square distance of the nodes from their best plane, m.
 pub(crate) fn thickness(nodes: &[Point3]) -> f64 {
     let n = nodes.len() as f64;
     let mean = nodes.iter().map(|x| x.coords).sum::<Vector3>() / n;

@@ -1,4 +1,4 @@
-//! The convex hull of a cloud as seen by targets: within, near or beyond.
+//! Convex hull of a cloud, and the position of targets relative to it.
 
 use geometry::closest_on_triangle;
 use shape::{Point3, Vector3};
@@ -6,39 +6,39 @@ use shape::{Point3, Vector3};
 use crate::delaunay::{Delaunay, FACES, NONE};
 use crate::lanes::{LANES, Lanes, dot};
 
-/// Targets nearer to the hull than this (1 is on the hull, 0 the middle of the cloud) are drawn in to here: on the hull itself
-/// cells of the Voronoi diagram are not bounded, and rounding grows with the inverse of the depth, while what is
-/// left out is of the order of the depth.
+/// Relative depth to which targets on or near the hull are moved inwards (distances from 0 at the middle of
+/// the cloud to 1 on the hull). On the hull itself, cells of the Voronoi diagram are unbounded. Rounding
+/// grows with the inverse of the depth, whereas the error of the shift is of the order of the depth.
 pub(crate) const DEPTH: f64 = 1e-6;
-/// Beyond the hull by less than this is rounding.
+/// Distance beyond the hull that counts as rounding.
 const ROUNDING: f64 = 1e-12;
-/// Twice the area of a facet over its longest side squared below which it has no plane to speak of; its neighbours
-/// hide it.
+/// Ratio of twice a facet's area to its longest side squared below which the facet has no well-defined plane.
+/// Its neighbours cover it.
 const THIN: f64 = 1e-10;
 
-/// Facets of the hull, the middle of the nodes within.
+/// Facets of the hull, and the mean position of the nodes, which lies inside.
 pub(crate) struct Hull {
     middle: Point3,
     facets: Vec<Facet>,
-    /// Slopes of the facets by eights, filled up with zeros.
+    /// Slopes of the facets in groups of eight, padded with zeros.
     slopes: Vec<[Lanes; 3]>,
 }
 
 struct Facet {
     corners: [Point3; 3],
-    /// `slope . (x - middle)` is 1 in the plane of the facet.
+    /// Vector for which `slope . (x - middle)` is 1 in the plane of the facet.
     slope: Vector3,
 }
 
-/// A target and the hull.
+/// Position of a target relative to the hull.
 pub(crate) enum Place {
-    /// Well within.
+    /// Well inside.
     Inside,
-    /// Drawn in to here, from the hull or from beyond it.
+    /// On, near or beyond the hull, and moved inwards.
     Near {
-        /// A point within.
+        /// Point inside the hull that replaces the target.
         inner: Point3,
-        /// The target is beyond the hull, by more than rounding.
+        /// Whether the target is beyond the hull by more than rounding.
         outside: bool,
     },
 }
@@ -67,12 +67,14 @@ impl Hull {
         Hull { middle, facets, slopes }
     }
 
-    /// Where a target is, by the facets it lies beyond; the closest point of a convex body is on one of those.
+    /// Returns the position of a target relative to the hull. The closest point of a convex body lies on one
+    /// of the facets that separate the target from the body.
     #[inline(always)]
     pub(crate) fn place(&self, x: &Point3) -> Place {
         let r = x - self.middle;
         let lanes = [r.x, r.y, r.z].map(Lanes::all);
-        // A loop: what a fold is handed would not be inlined, and then not on wide registers.
+        // A loop, because a closure passed to a fold would not be inlined and not be compiled for wide
+        // registers.
         let mut highest = Lanes::all(0.0);
         for slope in &self.slopes {
             highest = highest.max(dot(slope, &lanes));

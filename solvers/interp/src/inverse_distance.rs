@@ -1,4 +1,4 @@
-//! Inverse-distance weighting, the transfer of the paper that this project starts from.
+//! Inverse-distance weighting, the transfer of the paper on which this project is based.
 
 use shape::{Point3, PointRows, Unity};
 
@@ -9,12 +9,12 @@ use crate::neighbours::{Found, Neighbours, check_count, check_finite};
 use crate::scheme::{SchemeEntry, Source, Transfer};
 use crate::table::{Batch, in_chunks};
 
-/// [`inverse_distance`] as a scheme.
+/// The scheme of [`inverse_distance`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct InverseDistance {
-    /// How many nearest nodes count.
+    /// Number of nearest nodes.
     pub neighbours: usize,
-    /// Power `p` of the distance.
+    /// Power `p` of the distance, dimensionless.
     pub power: f64,
 }
 
@@ -55,12 +55,16 @@ impl Transfer for InverseDistance {
     }
 }
 
-/// `u(x) = sum_i u_i / d_i^p / sum_i 1 / d_i^p` over the `neighbours` nearest nodes, `d_i = |x - x_i|`, `p`
-/// the `power` (the paper's Eq. 5; Shepard 1968 over all nodes).
+/// Builds the table of inverse-distance weighting, `u(x) = sum_i u_i / d_i^p / sum_i 1 / d_i^p` over the
+/// `neighbours` nearest nodes, with `d_i = |x - x_i|` and the `power` `p` (the paper's Eq. 5; Shepard 1968
+/// over all nodes).
 ///
-/// Weights are taken relative to the nearest node's, `(d_min / d_i)^p`, so that nothing overflows near a
-/// node; at a node the value is the node's (the mean, where several nodes share the place). Exact for
-/// constants only; interpolates, with zero slope at every node for `p > 1`.
+/// Weights are relative to the weight of the nearest node, `(d_min / d_i)^p`, so nothing overflows near a
+/// node. At a node the value is that of the node (or the mean of coincident nodes). The scheme is exact for
+/// constants only and interpolates, with zero slope at every node for `p > 1`.
+///
+/// # Errors
+/// Invalid parameters, coordinates that are not finite, and fewer nodes than neighbours.
 pub fn inverse_distance(
     nodes: &[Point3],
     neighbours: usize,
@@ -93,7 +97,7 @@ pub fn inverse_distance(
     Ok(rows)
 }
 
-/// `(d_min / d)^p`; where `d_min` is zero, one at the node and zero elsewhere.
+/// Returns `(d_min / d)^p`; for a `d_min` of zero, one at the node and zero elsewhere.
 fn relative_weight(nearest: f64, distance: f64, power: f64) -> f64 {
     if distance == nearest {
         return 1.0;

@@ -1,10 +1,11 @@
-//! Some numbers worked on alike, so that the compiler takes them in one register where the machine has such.
+//! Arrays of numbers with elementwise operations, which the compiler maps to wide registers if the machine
+//! has them.
 
 use std::ops::{Add, Div, Mul, Sub};
 
 pub(crate) use lanes::LANES;
 
-/// `N` numbers.
+/// An array of `N` numbers.
 #[derive(Clone, Copy)]
 pub(crate) struct Lanes<const N: usize = LANES>(pub(crate) [f64; N]);
 
@@ -28,13 +29,13 @@ macro_rules! each_lane {
 each_lane!(Add add +, Sub sub -, Mul mul *, Div div /);
 
 impl<const N: usize> Lanes<N> {
-    /// One number in all lanes.
+    /// Returns the same number in all lanes.
     #[inline(always)]
     pub(crate) fn all(value: f64) -> Lanes<N> {
         Lanes([value; N])
     }
 
-    /// The larger, lane by lane.
+    /// Returns the larger numbers, lane by lane.
     #[inline(always)]
     pub(crate) fn max(self, other: Lanes<N>) -> Lanes<N> {
         let mut result = self;
@@ -45,7 +46,7 @@ impl<const N: usize> Lanes<N> {
     }
 }
 
-/// Scalar products of as many pairs of vectors.
+/// Returns the scalar products of `N` pairs of vectors.
 #[inline(always)]
 pub(crate) fn dot<const N: usize>(a: &[Lanes<N>; 3], b: &[Lanes<N>; 3]) -> Lanes<N> {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]

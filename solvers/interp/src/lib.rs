@@ -1,10 +1,10 @@
-//! Transfer of a nodal field to other points, by the schemes in common use.
+//! Transfer of a nodal field to other points by common schemes.
 //!
-//! A scheme is a table from nodes to targets: built once from positions alone, applied to any field as a
-//! sparse product. What a scheme reproduces and whether it interpolates is stated with it
-//! ([`Scheme::exact_degree`], [`Scheme::interpolates`]) and tested. The transpose of a table carries forces from the
-//! targets back to the nodes ([`shape::Rows::apply_transposed`]); some schemes have gradients, too
-//! ([`Scheme::grad_rows`]).
+//! A scheme is a table from nodes to targets. The table is built once from the positions and applied to any
+//! field as a sparse product. Each scheme states the fields that it reproduces and whether it interpolates
+//! ([`Scheme::exact_degree`], [`Scheme::interpolates`]); both are tested. The transpose of a table transfers
+//! forces from the targets to the nodes ([`shape::Rows::apply_transposed`]). Some schemes also provide
+//! gradients ([`Scheme::grad_rows`]).
 //!
 //! ```
 //! use interp::{InverseDistance, Radial, Scheme};
@@ -47,14 +47,14 @@ scheme::schemes! {
     barycentric::{Barycentric [ENTRY]},
 }
 
-/// What a scheme met on the way; nothing here is an error, and nothing is silent.
+/// Counts of special cases of a transfer; none of them is an error.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct TransferInfo {
-    /// Targets outside the mesh (barycentric) or the convex hull of the nodes (natural neighbour), extrapolated; the
-    /// other schemes know no outside.
+    /// Number of extrapolated targets, outside the mesh (barycentric) or outside the convex hull of the nodes
+    /// (natural neighbour). Other schemes always report 0.
     pub outside: usize,
-    /// Targets that needed another than the plain formula: an enlarged support (Shepard, moving least
-    /// squares), a regularised or reduced basis (moving least squares), the best linear
-    /// field instead of the volumes (natural neighbour).
+    /// Number of targets for which the plain formula was replaced: by an enlarged support (Shepard, moving
+    /// least squares), a regularised or reduced basis (moving least squares), or the best linear field
+    /// instead of the volumes (natural neighbour).
     pub fallbacks: usize,
 }

@@ -1,5 +1,4 @@
-//! Moving least squares, linear and quadratic: the shape functions of element-free Galerkin used as a
-//! transfer.
+//! Moving least squares, linear and quadratic: element-free Galerkin shape functions used as a transfer.
 
 use catalogue::Entry;
 use efg::{Approximation, Basis, CubicSpline, Kernel, MlsInfo, Support};
@@ -10,10 +9,10 @@ use crate::neighbours::{check_count, check_finite};
 use crate::scheme::{SchemeEntry, Source, Transfer, scaled, support_scale};
 use crate::{InterpError, TransferInfo};
 
-/// [`mls`] with the linear basis as a scheme.
+/// The scheme of [`mls`] with the linear basis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MlsLinear {
-    /// Support radius over mean spacing.
+    /// Ratio of support radius to mean spacing.
     pub support_scale: f64,
 }
 
@@ -47,10 +46,10 @@ impl Transfer for MlsLinear {
     }
 }
 
-/// [`mls`] with the quadratic basis as a scheme.
+/// The scheme of [`mls`] with the quadratic basis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MlsQuadratic {
-    /// Support radius over mean spacing.
+    /// Ratio of support radius to mean spacing.
     pub support_scale: f64,
 }
 
@@ -84,10 +83,10 @@ impl Transfer for MlsQuadratic {
     }
 }
 
-/// [`mls_modified`] as a scheme.
+/// The scheme of [`mls_modified`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MlsModified {
-    /// Support radius over mean spacing.
+    /// Ratio of support radius to mean spacing.
     pub support_scale: f64,
 }
 
@@ -124,11 +123,11 @@ impl Transfer for MlsModified {
 /// Regularisation of the quadratic block in [`mls_modified`], relative to the sum of the weights.
 const MODIFIED: f64 = 1e-5;
 
-/// Moving least squares with the cubic-spline kernel (Lancaster and Salkauskas 1981): exact for linear or
-/// quadratic fields, as the basis is; does not interpolate.
+/// Builds the table of moving least squares with the cubic-spline kernel (Lancaster and Salkauskas 1981). The
+/// scheme is exact for linear or quadratic fields, according to the basis, and does not interpolate.
 ///
 /// [`Support::Dilatation`] multiplies the mean distance to a node's 14 nearest neighbours (all others in a
-/// smaller cloud). Fallbacks of the shape functions (supports enlarged, basis regularised or reduced) are
+/// smaller cloud). Fallbacks of the shape functions (enlarged supports, regularised or reduced basis) are
 /// counted in [`TransferInfo::fallbacks`].
 pub fn mls(
     nodes: &[Point3],
@@ -139,7 +138,7 @@ pub fn mls(
     Ok(counted(plain(nodes, basis, support, targets)?.point_rows(targets)?))
 }
 
-/// [`mls`] with gradients (1/m).
+/// Builds the table of [`mls`] with gradients (1/m).
 pub fn mls_gradients(
     nodes: &[Point3],
     basis: Basis,
@@ -149,9 +148,10 @@ pub fn mls_gradients(
     Ok(counted(plain(nodes, basis, support, targets)?.grad_rows(targets)?))
 }
 
-/// Modified moving least squares (Joldes et al. 2015): the quadratic basis, whose second derivatives are penalised by 1e-5 of
-/// the sum of the weights, so that supports need not hold ten nodes in general position. Exact for linear fields,
-/// almost for quadratic ones; does not interpolate. Support and fallbacks as in [`mls`]; the penalty is none of them.
+/// Builds the table of modified moving least squares (Joldes et al. 2015): a quadratic basis whose second
+/// derivatives are penalised by 1e-5 of the sum of the weights. Supports therefore need not contain ten nodes
+/// in general position. The scheme is exact for linear fields, almost exact for quadratic fields, and does
+/// not interpolate. Support and fallbacks are as in [`mls`]; the penalty does not count as a fallback.
 pub fn mls_modified(
     nodes: &[Point3],
     support: Support,
@@ -160,7 +160,7 @@ pub fn mls_modified(
     Ok(counted(modified(nodes, support, targets)?.point_rows(targets)?))
 }
 
-/// [`mls_modified`] with gradients (1/m).
+/// Builds the table of [`mls_modified`] with gradients (1/m).
 pub fn mls_modified_gradients(
     nodes: &[Point3],
     support: Support,

@@ -13,7 +13,7 @@ use crate::sibson::{Voronoi, Workspace};
 use crate::table::{Batch, in_chunks};
 use crate::{InterpError, TransferInfo};
 
-/// [`natural_neighbour`] as a scheme.
+/// The scheme of [`natural_neighbour`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NaturalNeighbour;
 
@@ -45,15 +45,19 @@ impl Transfer for NaturalNeighbour {
 
 const SCHEME: &str = "natural-neighbour";
 
-/// `u(x) = sum_i V_i u_i / sum_i V_i`, `V_i` the volume that the Voronoi cell of the target takes from the cell of node `i`
-/// (Sibson 1980, 1981). Exact for linear fields; interpolates; smooth (C1) but at the nodes, within the convex hull of
-/// the nodes. No parameter: the neighbours of a target are those that its cell touches.
+/// Builds the table of natural neighbour interpolation, `u(x) = sum_i V_i u_i / sum_i V_i`, where `V_i` is
+/// the volume that the Voronoi cell of the target takes from the cell of node `i` (Sibson 1980, 1981).
 ///
-/// Beyond the hull no cell is bounded. A target there (counted in [`TransferInfo::outside`]) takes the linear field that fits
-/// the natural neighbours of the closest point of the hull best, each weighted by its coordinate: still exact for
-/// linear fields, and continuous. The coordinates at the hull are those a millionth of the way to the cloud's middle
-/// beneath it. Where rounding spoils the volumes, the target takes the linear field that fits its natural neighbours best,
-/// all alike, and is counted in [`TransferInfo::fallbacks`].
+/// The scheme is exact for linear fields and interpolates. Within the convex hull of the nodes it is smooth
+/// (C1) except at the nodes. It has no parameter: the neighbours of a target are the nodes whose cells its
+/// cell touches.
+///
+/// Beyond the hull no cell is bounded. A target there (counted in [`TransferInfo::outside`]) takes the linear
+/// field that best fits the natural neighbours of the closest point of the hull, weighted by their
+/// coordinates. This is still exact for linear fields, and continuous. The coordinates at the hull are those
+/// at a depth of a millionth of the distance to the cloud's middle. If rounding spoils the volumes, the
+/// target takes the linear field that best fits its natural neighbours with equal weights, and is counted in
+/// [`TransferInfo::fallbacks`].
 pub fn natural_neighbour(
     nodes: &[Point3],
     targets: &[Point3],
@@ -92,8 +96,8 @@ pub fn natural_neighbour(
 }
 
 on_path! {
-    /// The same arithmetic in the same order on every path, so the same bits; fused multiply-add, which would change them, is
-    /// left off.
+    /// Processes targets with the same arithmetic in the same order on every path, hence with the same bits.
+    /// Fused multiply-add is not used because it would change them.
     fn batch(targets: &[Point3], hull: &Hull, voronoi: &Voronoi) -> Batch = batch_in
 }
 
@@ -127,11 +131,11 @@ fn batch_in<const FMA: bool>(targets: &[Point3], hull: &Hull, voronoi: &Voronoi)
     batch
 }
 
-/// The targets in Z-order (Morton 1966) on a grid of 16 cells along each axis of the cloud, of half-extent 1: the walk to a target
-/// starts close to it, at the cell of the one before.
+/// Returns the targets in Z-order (Morton 1966) on a grid of 16 cells along each axis of the cloud, whose
+/// half-extent is 1. The walk to a target starts at the cell of the previous target, which is close.
 fn along_a_curve(targets: &[Point3]) -> Vec<usize> {
     let key = |&target: &usize| {
-        // The cast saturates: what is beyond the cloud goes to the cells at its border.
+        // The cast saturates: targets beyond the cloud are assigned to the cells at its border.
         let cells = targets[target].coords.map(|c| (((c + 1.0) * 8.0) as u32).min(15));
         (0..4).fold(0, |key, bit| {
             key | (cells.x >> bit & 1 | (cells.y >> bit & 1) << 1 | (cells.z >> bit & 1) << 2) << (3 * bit)

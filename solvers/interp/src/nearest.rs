@@ -9,7 +9,7 @@ use crate::neighbours::{Found, Neighbours, check_count, check_finite};
 use crate::scheme::{SchemeEntry, Source, Transfer};
 use crate::table::{Batch, in_chunks};
 
-/// [`nearest`] as a scheme.
+/// The scheme of [`nearest`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Nearest;
 
@@ -39,8 +39,8 @@ impl Transfer for Nearest {
     }
 }
 
-/// `u(x) = u_i`, `i` the nearest node (of two at one distance, the lower index). Exact for constants;
-/// interpolates; discontinuous.
+/// Builds the table `u(x) = u_i` with the nearest node `i` (the lower index at equal distance). The scheme is
+/// exact for constants, interpolates, and is discontinuous.
 pub fn nearest(nodes: &[Point3], targets: &[Point3]) -> Result<PointRows, InterpError> {
     check_finite(nodes, targets)?;
     check_count("nearest", nodes.len(), 1)?;

@@ -1,4 +1,4 @@
-//! The nearest nodes of a target, by ascending distance, ties by ascending index.
+//! Search for the nearest nodes of a target, by ascending distance, then by ascending index.
 
 use geometry::Search;
 use shape::Point3;
@@ -20,7 +20,7 @@ pub(crate) fn check_count(scheme: &'static str, found: usize, needed: usize) -> 
     if found < needed { Err(InterpError::TooFewNodes { scheme, found, needed }) } else { Ok(()) }
 }
 
-/// From so many nodes on a tree is faster than one vectorised loop over all.
+/// Number of nodes from which a tree is faster than a vectorised loop over all nodes.
 const TREE: usize = 1000;
 
 /// Finds the `count` nearest nodes.
@@ -34,7 +34,7 @@ enum Lookup {
     Tree(Search),
 }
 
-/// What is found, reused from target to target.
+/// Buffers of a search, reused from target to target.
 #[derive(Default)]
 pub(crate) struct Found {
     squares: Vec<f64>,
@@ -42,7 +42,8 @@ pub(crate) struct Found {
 }
 
 impl Neighbours {
-    /// `count` is at least 1 and at most the number of nodes, whose coordinates are finite.
+    /// Prepares a search; `count` is at least 1 and at most the number of nodes, whose coordinates are
+    /// finite.
     pub(crate) fn new(nodes: &[Point3], count: usize) -> Result<Neighbours, InterpError> {
         let lookup = if nodes.len() < TREE {
             Lookup::All(std::array::from_fn(|axis| nodes.iter().map(|p| p[axis]).collect()))
@@ -52,7 +53,7 @@ impl Neighbours {
         Ok(Neighbours { lookup, count })
     }
 
-    /// Distance (m) and index of the nearest nodes, nearest first.
+    /// Returns distance (m) and index of the nearest nodes, nearest first.
     pub(crate) fn of<'a>(&self, x: &Point3, found: &'a mut Found) -> &'a [(f64, u32)] {
         let Found { squares, best } = found;
         best.clear();
@@ -71,7 +72,7 @@ impl Neighbours {
     }
 }
 
-/// Squared distances (m^2) of a point from others, given axis by axis.
+/// Computes the squared distances (m^2) of a point from others, given axis by axis.
 pub(crate) fn squared_distances([xs, ys, zs]: &[Vec<f64>; 3], x: &Point3, squares: &mut [f64]) {
     for (((square, a), b), c) in squares.iter_mut().zip(xs).zip(ys).zip(zs) {
         let (dx, dy, dz) = (a - x.x, b - x.y, c - x.z);
@@ -79,8 +80,8 @@ pub(crate) fn squared_distances([xs, ys, zs]: &[Vec<f64>; 3], x: &Point3, square
     }
 }
 
-/// The `count` smallest, ascending; of two alike the lower index goes first: the sort is stable and the
-/// comparisons are strict.
+/// Returns the `count` smallest numbers in ascending order; of equal numbers the lower index comes first,
+/// because the sort is stable and the comparisons are strict.
 fn smallest(squares: &[f64], count: usize, best: &mut Vec<(f64, u32)>) {
     let (first, rest) = squares.split_at(count);
     best.extend(first.iter().zip(0..).map(|(&square, node)| (square, node)));
@@ -104,7 +105,7 @@ mod tests {
 
     #[test]
     fn the_tree_and_the_loop_agree_to_the_bit() {
-        // A lattice, where most distances are shared by several nodes.
+        // A lattice, in which most distances are shared by several nodes.
         let nodes: Vec<Point3> =
             (0..1000).map(|i| Point3::new((i % 10) as f64, (i / 10 % 10) as f64, (i / 100) as f64)).collect();
         let of = |lookup: Lookup, x: &Point3| {

@@ -1,5 +1,6 @@
-#![allow(clippy::neg_cmp_op_on_partial_ord)] // !(x > 0) refuses a NaN as well
-//! Radial basis functions, with a linear polynomial or without: one dense, positive definite solve for all targets.
+#![allow(clippy::neg_cmp_op_on_partial_ord)] // !(x > 0) also rejects NaN
+//! Radial basis functions, with or without a linear polynomial: a single dense, positive definite system for
+//! all targets.
 
 use algebra::Cholesky;
 use catalogue::{Dimension, Entry, Kind, Parameter, Range};
@@ -13,41 +14,41 @@ use crate::frame::{FLAT, centre_and_half_extent, thickness};
 use crate::neighbours::{check_count, check_finite};
 use crate::scheme::{SchemeEntry, Source, Transfer, support_scale};
 
-/// Radial function, positive definite in space with a linear polynomial beside it (Wendland 2005, theorems 8.5, 8.16 and
-/// 8.17), [`Radial::Gaussian`] and [`Radial::WendlandC2`] without one, too (theorems 6.10 and 9.13). Widths are in
-/// multiples of the cloud's mean spacing, the mean distance to a node's 14 nearest neighbours: units do not matter.
+/// Radial functions, positive definite in space together with a linear polynomial (Wendland 2005, theorems
+/// 8.5, 8.16 and 8.17). [`Radial::Gaussian`] and [`Radial::WendlandC2`] are so even without a polynomial
+/// (theorems 6.10 and 9.13). Widths are multiples of the cloud's mean spacing, the mean distance to a node's
+/// 14 nearest neighbours, so units do not matter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Radial {
-    /// `r^2 ln r`, the function commonly called thin plate. It minimises bending energy in the plane; in
-    /// space, where that minimiser would be `r`, it is still a valid and smoother choice (C1 at the nodes,
-    /// where `r` has a kink). A change of length unit adds a multiple of `r^2`, which the side conditions
-    /// cancel.
+    /// `r^2 ln r`, commonly called thin plate. This function minimises bending energy in the plane. In space
+    /// the minimiser would be `r`, but `r^2 ln r` is still valid and smoother (C1 at the nodes, where `r` has
+    /// a kink). A change of length unit adds a multiple of `r^2`, which the side conditions cancel.
     ThinPlate,
     /// `r^3`: C2 at the nodes.
     Cubic,
     /// `-sqrt(r^2 + c^2)` (Hardy 1971): smooth.
     Multiquadric {
-        /// `c`, in spacings.
+        /// `c`, as a multiple of the mean spacing.
         shape: f64,
     },
     /// `exp(-(r / c)^2)`: smooth.
     Gaussian {
-        /// `c`, in spacings.
+        /// `c`, as a multiple of the mean spacing.
         shape: f64,
-        /// With the linear polynomial; without it not even constants are exact.
+        /// Whether the linear polynomial is included; without it not even constants are exact.
         polynomial: bool,
     },
-    /// `(1 - q)^4 (4q + 1)`, `q = r / R` (Wendland 1995): C2, zero from `R` on.
+    /// `(1 - q)^4 (4q + 1)` with `q = r / R` (Wendland 1995): C2, zero from `R` on.
     WendlandC2 {
-        /// `R`, in spacings.
+        /// `R`, as a multiple of the mean spacing.
         support: f64,
-        /// With the linear polynomial; without it not even constants are exact.
+        /// Whether the linear polynomial is included; without it not even constants are exact.
         polynomial: bool,
     },
 }
 
 impl Radial {
-    /// The function of the squared distance, with `inverse_square` that of its width.
+    /// Returns the function of the squared distance; `inverse_square` is the inverse square of the width.
     #[inline(always)]
     fn eval(self, square: f64, inverse_square: f64) -> f64 {
         match self {
@@ -64,7 +65,8 @@ impl Radial {
         }
     }
 
-    /// Its derivative by the squared distance, which is bounded but for `r^2 ln r` at a node, where the gradient is zero.
+    /// Returns the derivative of the function with respect to the squared distance. It is bounded except for
+    /// `r^2 ln r` at a node, where the gradient is zero.
     #[inline(always)]
     fn slope(self, square: f64, inverse_square: f64) -> f64 {
         match self {
@@ -80,7 +82,7 @@ impl Radial {
         }
     }
 
-    /// The name used in scene files and tables.
+    /// Returns the name used in scene files and tables.
     pub fn name(self) -> &'static str {
         match self {
             Radial::ThinPlate => "thin-plate",
@@ -91,7 +93,7 @@ impl Radial {
         }
     }
 
-    /// True with the linear polynomial.
+    /// Whether the linear polynomial is included.
     pub fn polynomial(self) -> bool {
         match self {
             Radial::Gaussian { polynomial, .. } | Radial::WendlandC2 { polynomial, .. } => polynomial,
@@ -99,7 +101,7 @@ impl Radial {
         }
     }
 
-    /// What the width is called, and the width, in spacings.
+    /// Returns the name of the width, and the width as a multiple of the mean spacing.
     fn width(self) -> Option<(&'static str, f64)> {
         match self {
             Radial::ThinPlate | Radial::Cubic => None,
@@ -184,31 +186,37 @@ pub(crate) const WENDLAND_C2: SchemeEntry = Entry {
     },
 };
 
-/// Entries of system and table together: 1 GiB of values.
+/// Largest number of entries of system and table together: 1 GiB of values.
 const MOST_ENTRIES: usize = 1 << 27;
-/// Targets per parallel task: fixed, so that the bits are the same at any thread count.
+/// Targets per parallel task. The number is fixed, so results have the same bits at any number of threads.
 const CHUNK: usize = 128;
-/// Smallest over largest pivot below which rows are noise between the closest nodes (at 1e-12 some 0.1 of a
-/// value; 1e-5 to 1e-2 in sound clouds of up to 2500 nodes).
+/// Ratio of the smallest to the largest pivot below which rows are noise between the closest nodes (at 1e-12
+/// about 0.1 of a value; 1e-5 to 1e-2 in sound clouds of up to 2500 nodes).
 const SMALLEST_PIVOT: f64 = 1e-12;
-/// Largest miss at the nodes that is let pass of functions with a width, which may be too wide for any nodes: pivots alone do
-/// not tell it (multiquadrics eight spacings wide miss by 1e-4 at a ratio of 1e-9).
+/// Largest accepted error at the nodes for functions with a width, which may be too wide for any nodes.
+/// Pivots alone do not reveal this (multiquadrics eight spacings wide have an error of 1e-4 at a ratio of
+/// 1e-9).
 const LARGEST_MISS: f64 = 1e-6;
-/// Nodes closer than this many spacings are to blame for a singular system, not the functions' width.
+/// Distance, in spacings, below which a singular system is attributed to the closest nodes rather than to the
+/// width.
 const APART: f64 = 1e-2;
 
-/// `u(x) = sum_i c_i phi(|x - x_i|) + d_0 + d . x` with `u(x_i) = u_i` and `sum_i c_i = sum_i c_i x_i = 0`
-/// (Wendland 2005, chapter 8). Exact for linear fields with the polynomial `d`, for nothing without; interpolates; every row
-/// is full. Functions so wide that the system is singular to working precision are refused.
+/// Builds the table of radial basis functions, `u(x) = sum_i c_i phi(|x - x_i|) + d_0 + d . x` with
+/// `u(x_i) = u_i` and `sum_i c_i = sum_i c_i x_i = 0` (Wendland 2005, chapter 8).
 ///
-/// Coordinates are shifted to the centre of the cloud and scaled by its half-extent. After one factorisation all
-/// targets are rows of two triangular solutions, 2 n^2 operations each.
+/// The scheme is exact for linear fields with the polynomial `d`, and for no field without. It interpolates,
+/// and every row is full. Coordinates are shifted to the centre of the cloud and scaled by its half-extent.
+/// After one factorisation all targets are rows of two triangular solutions, 2 n^2 operations each.
+///
+/// # Errors
+/// Functions so wide that the system is singular to working precision, coincident nodes, a flat cloud, and
+/// tables that are too large.
 pub fn radial(nodes: &[Point3], radial: Radial, targets: &[Point3]) -> Result<PointRows, InterpError> {
     let system = System::checked(nodes, radial, targets, 1)?;
     Ok(PointRows::new(targets.to_vec(), system.rows(targets)?)?)
 }
 
-/// [`radial`] with gradients (1/m).
+/// Builds the table of [`radial`] with gradients (1/m).
 pub fn radial_gradients(
     nodes: &[Point3],
     radial: Radial,
@@ -220,26 +228,28 @@ pub fn radial_gradients(
     Ok(GradRows::new(targets.to_vec(), system.rows(targets)?, grads)?)
 }
 
-/// With `P` (n, 4) the polynomial at the nodes, `P = Y R`, `Pi = I - Y Y^T`, `phi` (n) and `p` (4) the
+/// The factored system of a cloud.
+///
+/// With `P` (n, 4) the polynomial at the nodes, `P = Y R`, `Pi = I - Y Y^T`, and `phi` (n) and `p` (4) the
 /// functions at a target, a row is
 ///
 /// `w = Pi K^-1 (phi - Phi B p) + B p`, `B = Y R^-T` (n, 4), `K = Pi Phi Pi + tau Y Y^T` (n, n).
 ///
-/// `K` is positive definite (the bordered system of the textbook is not), so that its Cholesky pivots tell a
-/// singular cloud. `B p` alone carries every linear field, and the worse conditioned part is projected off
-/// them last, so that its rounding never reaches them. Without the polynomial `w = Phi^-1 phi`.
+/// `K` is positive definite (the bordered system of textbooks is not), so its Cholesky pivots reveal a
+/// singular cloud. `B p` alone reproduces every linear field. The worse conditioned part is projected off
+/// linear fields last, so its rounding never affects them. Without the polynomial `w = Phi^-1 phi`.
 struct System {
     radial: Radial,
     inverse_square: f64,
     centre: Point3,
     scale: f64,
     nodes: Vec<Point3>,
-    /// Of `K`.
+    /// Factor of `K`.
     factor: Cholesky,
     tail: Option<Tail>,
 }
 
-/// The polynomial's part.
+/// Terms of the polynomial.
 struct Tail {
     phi_b: MatrixXx4<f64>,
     y: MatrixXx4<f64>,
@@ -247,7 +257,7 @@ struct Tail {
 }
 
 impl System {
-    /// With all that a table of `tables` times the targets needs.
+    /// Checks the input and factors the system, for tables with `tables` times the number of targets as rows.
     fn checked(
         nodes: &[Point3],
         radial: Radial,
@@ -281,7 +291,7 @@ impl System {
             let distance = if extent > 0.0 { square.sqrt() * extent } else { 0.0 };
             InterpError::CoincidentNodes { scheme, first, second, distance, extent, pivot_ratio }
         };
-        // Written so that the NaN of a cloud without extent is refused, too.
+        // The form of the test also rejects the NaN of a cloud without extent.
         if !(square > 0.0) {
             return Err(coincident(0.0));
         }
@@ -333,8 +343,8 @@ impl System {
         Ok(Rows::new(n, offsets, entries, self.table(targets, None), unity)?)
     }
 
-    /// All rows, one after another, or their derivatives along an axis, in scaled coordinates; parallel over chunks of targets,
-    /// each of which makes its own rows.
+    /// Computes all rows, one after another, or their derivatives along an axis, in scaled coordinates.
+    /// Chunks of targets are processed in parallel, each with its own rows.
     fn table(&self, targets: &[Point3], axis: Option<usize>) -> Vec<f64> {
         let n = self.nodes.len();
         let mut table = vec![0.0; n * targets.len()];
@@ -344,7 +354,7 @@ impl System {
         table
     }
 
-    /// The rows of some targets as columns (n, targets).
+    /// Computes the rows of some targets as columns (n, targets).
     fn chunk(&self, targets: &[Point3], axis: Option<usize>) -> DMatrix<f64> {
         let (n, m) = (self.nodes.len(), targets.len());
         let mut polynomial = Matrix4xX::zeros(m);
@@ -368,8 +378,9 @@ impl System {
         if let Some(tail) = &self.tail {
             phi.gemm(-1.0, &tail.phi_b, &polynomial, 1.0);
         }
-        // By the factor and not by K^-1, whose rounding grows with the square of the condition: two nodes a millionth of the
-        // extent apart spoil a smooth field by 1e-9 this way, and by 1e-3 the other.
+        // Solves with the factor instead of K^-1, whose rounding grows with the square of the condition. Two
+        // nodes a millionth of the extent apart cause an error of 1e-9 in a smooth field, instead of 1e-3
+        // with K^-1.
         let mut rows = phi;
         self.factor.solve(rows.as_mut_slice());
         if let Some(tail) = &self.tail {
@@ -380,7 +391,7 @@ impl System {
     }
 }
 
-/// The function of the squared distance of each pair of nodes.
+/// Returns the function of the squared distance for each pair of nodes.
 fn functions(nodes: &[Point3], of: impl Fn(f64) -> f64) -> DMatrix<f64> {
     let mut phi = DMatrix::zeros(nodes.len(), nodes.len());
     for j in 0..nodes.len() {
@@ -392,13 +403,13 @@ fn functions(nodes: &[Point3], of: impl Fn(f64) -> f64) -> DMatrix<f64> {
     phi
 }
 
-/// Mean distance of a node to its nearest neighbours.
+/// Returns the mean distance of the nodes to their nearest neighbours.
 fn spacing(nodes: &[Point3]) -> Result<f64, InterpError> {
     let spacing = Cloud::from_points(nodes.to_vec())?.spacing;
     Ok(spacing.iter().sum::<f64>() / spacing.len() as f64)
 }
 
-/// Squared distance and indices of the closest pair.
+/// Returns the squared distance and the indices of the closest pair.
 fn closest_pair(nodes: &[Point3]) -> (f64, usize, usize) {
     let mut closest = (f64::INFINITY, 0, 1);
     for (j, b) in nodes.iter().enumerate() {
@@ -412,7 +423,8 @@ fn closest_pair(nodes: &[Point3]) -> (f64, usize, usize) {
     closest
 }
 
-/// `Y` (n, 4) of `P = Y R` by modified Gram-Schmidt, twice over; and `B = Y R^-T`, for which `P^T B = I`.
+/// Returns `Y` (n, 4) of `P = Y R` by modified Gram-Schmidt, repeated twice, and `B = Y R^-T`, for which
+/// `P^T B = I`.
 fn polynomial(nodes: &[Point3]) -> (MatrixXx4<f64>, MatrixXx4<f64>) {
     let p = MatrixXx4::from_fn(nodes.len(), |i, term| if term == 0 { 1.0 } else { nodes[i][term - 1] });
     let mut y = p.clone();
@@ -428,13 +440,13 @@ fn polynomial(nodes: &[Point3]) -> (MatrixXx4<f64>, MatrixXx4<f64>) {
         }
     }
     let r: Matrix4<f64> = y.tr_mul(&p).upper_triangle();
-    // R has a positive diagonal: the cloud is not flat.
+    // R has a positive diagonal because the cloud is not flat.
     let inverse = r.solve_upper_triangular(&Matrix4::identity()).unwrap_or_else(Matrix4::zeros);
     let b = &y * inverse.transpose();
     (y, b)
 }
 
-/// `A <- (I - Y Y^T) A`.
+/// Computes `A <- (I - Y Y^T) A`.
 fn project_columns(y: &MatrixXx4<f64>, a: &mut DMatrix<f64>) {
     let share = y.tr_mul(a);
     a.gemm(-1.0, y, &share, 1.0);

@@ -1,6 +1,7 @@
-//! The schemes as values: what a scene file names and a study sweeps.
+//! Transfer schemes as values, as named in a scene file and swept in a study.
 //!
-//! Each scheme is a file with its function, a type that implements [`Transfer`] and its entry, and a line of the list below.
+//! Each scheme is a file with its function, a type that implements [`Transfer`] and its entry, and a line in
+//! the list below.
 
 use catalogue::{Dimension, Entry, Parameter, Problem, Range, Values};
 use efg::Support;
@@ -12,16 +13,16 @@ use crate::{InterpError, SCHEMES, Scheme, TransferInfo};
 /// A transfer scheme that scene files can name.
 pub type SchemeEntry = Entry<fn(&Values) -> Result<Scheme, Problem>>;
 
-/// Where a field is known.
+/// Source of a field: its nodes, with a mesh if there is one.
 #[derive(Clone, Copy)]
 pub(crate) struct Source<'a> {
-    /// Its nodes, m.
+    /// Node positions, m.
     pub nodes: &'a [Point3],
     mesh: Option<&'a Mesh>,
 }
 
 impl<'a> Source<'a> {
-    /// The mesh, if there is one over these nodes.
+    /// Returns the mesh, or an error if there is none or if its points differ from the nodes.
     pub fn mesh(self, scheme: &'static str) -> Result<&'a Mesh, InterpError> {
         let mesh = self.mesh.ok_or(InterpError::NeedsMesh { scheme })?;
         let points = mesh.points();
@@ -33,21 +34,21 @@ impl<'a> Source<'a> {
     }
 }
 
-/// What a scheme does.
+/// Behaviour of a scheme.
 pub(crate) trait Transfer {
-    /// The name of its entry.
+    /// Returns the name of the entry.
     fn name(&self) -> &'static str;
 
-    /// Degree of the polynomials it transfers exactly; none if not even constants.
+    /// Degree of the polynomials that are transferred exactly; `None` if not even constants are.
     fn exact_degree(&self) -> Option<usize>;
 
-    /// True if a target at a node gets that node's value.
+    /// Whether a target at a node takes that node's value.
     fn interpolates(&self) -> bool;
 
-    /// The table from the nodes to `targets` (m).
+    /// Builds the table from the nodes to `targets` (m).
     fn rows(&self, source: Source, targets: &[Point3]) -> Result<(PointRows, TransferInfo), InterpError>;
 
-    /// The table with gradients (1/m); none unless a scheme has them in closed form.
+    /// Builds the table with gradients (1/m), or returns an error if there are none in closed form.
     fn grad_rows(&self, _: Source, _: &[Point3]) -> Result<(GradRows, TransferInfo), InterpError> {
         Err(InterpError::NoGradient { scheme: self.name() })
     }
@@ -75,7 +76,8 @@ macro_rules! schemes {
             $($($scheme($scheme),)*)*
         }
 
-        /// Every scheme, in the order tables list them; defaults as in the transfer study of the kidney.
+        /// Entries of all schemes, in the order of tables. Defaults are those of the transfer study of the
+        /// kidney.
         pub static SCHEMES: &[SchemeEntry] = &[$($($($file::$entry),*),*),*];
 
         impl Scheme {
@@ -91,34 +93,37 @@ macro_rules! schemes {
 pub(crate) use schemes;
 
 impl Scheme {
-    /// Every scheme with its default parameters, in the order tables list them.
+    /// Returns every scheme with its default parameters, in the order of tables.
     pub fn all() -> impl Iterator<Item = Scheme> {
         // No parameter of a scheme is required.
         SCHEMES.iter().filter_map(|entry| (entry.build)(&Values::new(entry.parameters)).ok())
     }
 
-    /// The name used in scene files and tables.
+    /// Returns the name used in scene files and tables.
     pub fn name(&self) -> &'static str {
         self.transfer().name()
     }
 
-    /// The scheme of that name with its default parameters.
+    /// Returns the scheme with this name and default parameters.
     pub fn from_name(name: &str) -> Option<Scheme> {
         Scheme::all().find(|scheme| scheme.name() == name)
     }
 
-    /// Degree of the polynomials it transfers exactly: 0, 1 or 2; none if not even constants.
+    /// Degree of the polynomials that are transferred exactly: 0, 1 or 2; `None` if not even constants are.
     pub fn exact_degree(&self) -> Option<usize> {
         self.transfer().exact_degree()
     }
 
-    /// True if a target at a node gets that node's value.
+    /// Whether a target at a node takes that node's value.
     pub fn interpolates(&self) -> bool {
         self.transfer().interpolates()
     }
 
-    /// The table from `nodes` to `targets` (m). Only [`Barycentric`](crate::Barycentric) reads `mesh`, whose points
-    /// `nodes` must be.
+    /// Builds the table from `nodes` to `targets` (m). Only [`Barycentric`](crate::Barycentric) uses `mesh`,
+    /// whose points must equal `nodes`.
+    ///
+    /// # Errors
+    /// Nodes, parameters or a mesh that the scheme refuses.
     pub fn rows(
         &self,
         nodes: &[Point3],
@@ -128,9 +133,13 @@ impl Scheme {
         self.transfer().rows(Source { nodes, mesh }, targets)
     }
 
-    /// The table with gradients (1/m) of its rows, for strain and stress at `targets` (m): moving least squares, radial bases
-    /// and barycentric interpolation (constant in every tetrahedron) have them in closed form; the others have none, or
-    /// none at the nodes, and say so.
+    /// Builds the table with the gradients (1/m) of its rows, for strain and stress at `targets` (m). Moving
+    /// least squares, radial bases and barycentric interpolation (constant in every tetrahedron) have
+    /// gradients in closed form.
+    ///
+    /// # Errors
+    /// The errors of [`Scheme::rows`], and [`InterpError::NoGradient`] for schemes without gradients in
+    /// closed form or without gradients at the nodes.
     pub fn grad_rows(
         &self,
         nodes: &[Point3],
@@ -141,12 +150,12 @@ impl Scheme {
     }
 }
 
-/// A support radius of a multiple of the mean spacing.
+/// Returns the rule of support radii that are a multiple of the mean spacing.
 pub(crate) fn scaled(factor: f64) -> Support {
     Support::Dilatation { factor }
 }
 
-/// The parameter of that radius.
+/// Returns the parameter of this multiple.
 pub(crate) const fn support_scale(default: f64) -> Parameter {
     Parameter::default("support_scale", Dimension::None, default, "support radius over mean spacing")
         .within(Range::Positive)

@@ -10,17 +10,16 @@ use crate::scheme::{SchemeEntry, Source, Transfer, scaled, support_scale};
 use crate::table::{Batch, in_chunks};
 use crate::{InterpError, TransferInfo};
 
-/// Where no node reaches a target, all supports are enlarged to this multiple of what the first node would
-/// need.
+/// Factor by which all supports are enlarged beyond the nearest node if no node covers a target.
 const ENLARGE: f64 = 1.25;
-/// Relative distance up to which a node counts as covering a target: beyond, its kernel is below 1e-8, and a
-/// row of such weights alone is noise.
+/// Relative distance up to which a node counts as covering a target. Beyond this distance its kernel is below
+/// 1e-8, and a row of such weights alone is noise.
 const RIM: f64 = 0.999;
 
-/// [`shepard`] as a scheme.
+/// The scheme of [`shepard`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shepard {
-    /// Support radius over mean spacing.
+    /// Ratio of support radius to mean spacing.
     pub support_scale: f64,
 }
 
@@ -50,11 +49,12 @@ impl Transfer for Shepard {
     }
 }
 
-/// `u(x) = sum_i w(d_i / R_i) u_i / sum_i w(d_i / R_i)`, `w` the cubic spline, `R_i` the node's support
-/// radius.
+/// Builds the table of Shepard's method, `u(x) = sum_i w(d_i / R_i) u_i / sum_i w(d_i / R_i)` with the cubic
+/// spline `w` and the node's support radius `R_i`.
 ///
-/// Exact for constants; does not interpolate; smooth (C2). A target that no support covers takes all supports
-/// enlarged until 1.25 times past the first node, and is counted in [`TransferInfo::fallbacks`].
+/// The scheme is exact for constants, does not interpolate, and is smooth (C2). For a target outside all
+/// supports, all supports are enlarged to 1.25 times the relative distance of the first node. Such targets
+/// are counted in [`TransferInfo::fallbacks`].
 pub fn shepard(
     nodes: &[Point3],
     support: Support,
@@ -67,7 +67,7 @@ pub fn shepard(
     let axes: [Vec<f64>; 3] = std::array::from_fn(|axis| nodes.iter().map(|p| p[axis]).collect());
     in_chunks(nodes.len(), targets, Unity::Within(1e-12), |targets| {
         let mut batch = Batch::default();
-        // Squares of d / R: roots are taken of those that count, a third of all.
+        // Squares of d / R: roots are computed only for the nodes that contribute, a third of all.
         let mut squares = vec![0.0; nodes.len()];
         for x in targets {
             squared_distances(&axes, x, &mut squares);
@@ -93,12 +93,12 @@ pub fn shepard(
 }
 
 impl Batch {
-    /// Appends the nodes whose numbers are below one, with these.
+    /// Appends the nodes whose numbers are below one, with these numbers.
     fn keep_below_one(&mut self, numbers: &[f64]) {
         let mut n = self.nodes.len();
         self.nodes.resize(n + numbers.len(), 0);
         self.values.resize(n + numbers.len(), 0.0);
-        // Written always, counted if below: a branch would be mispredicted.
+        // Every entry is written and counted only if it is below one, because a branch would be mispredicted.
         for (node, &number) in numbers.iter().enumerate() {
             (self.nodes[n], self.values[n]) = (node as u32, number);
             n += usize::from(number < 1.0);

@@ -1,10 +1,12 @@
 //! Sibson coordinates in a Delaunay mesh.
 //!
-//! A point put into the cloud takes from the Voronoi cell of each natural neighbour `i` the volume `V_i` (Sibson 1980).
-//! That is the cell before less the cell after, and a Voronoi cell is made of one share of every tetrahedron at its
-//! node: what is nearer to the node than the tetrahedron's other corners, cut along the perpendiculars from the
-//! circumcentre, with a sign. So `V_i` is the shares of the tetrahedra whose circumsphere holds the point, known before,
-//! less those of the tetrahedra that the point makes with the faces around them. No Voronoi cell is ever built.
+//! A point inserted into the cloud takes the volume `V_i` from the Voronoi cell of each natural neighbour `i`
+//! (Sibson 1980). `V_i` is the volume of the cell before minus the volume after the insertion. A Voronoi cell
+//! is the sum of one share of every tetrahedron at its node: the signed part of the tetrahedron that is
+//! closer to the node than to the other corners, bounded by the perpendiculars from the circumcentre. `V_i`
+//! is therefore a difference of two sums of shares. The first sum is over the tetrahedra whose circumsphere
+//! contains the point, and is known in advance. The second is over the tetrahedra that the point forms with
+//! the faces around them. No Voronoi cell is ever built.
 
 use nalgebra::Matrix3;
 use shape::{Point3, Vector3};
@@ -14,37 +16,39 @@ use crate::delaunay::{Delaunay, FACES, NONE};
 use crate::hull::DEPTH;
 use crate::lanes::{LANES, Lanes};
 
-/// A circumsphere holds a point up to half of this much of the tetrahedron's size beyond it. What is taken from a cell then is
-/// wrong by the third power of that, and a point that lattices put on many spheres is constrained by all of them, in spite of
-/// rounding.
+/// Tolerance of circumspheres: a sphere also contains points beyond it by up to half of this fraction of the
+/// tetrahedron's size. The error of the resulting volumes is of third order in this tolerance. A point of a
+/// lattice that lies on many spheres is then inside all of them, despite rounding.
 const CLOSED: f64 = 1e-9;
-/// Largest distance from a point to the mean of its neighbours, relative to the half-extent of the cloud, that is put right
-/// as rounding.
+/// Largest distance from a point to the mean of its neighbours, relative to the half-extent of the cloud,
+/// that is corrected as rounding.
 const PRECISION: f64 = 1e-6;
-/// Smaller ones are left.
+/// Distance below which no correction is needed.
 const EXACT: f64 = 1e-14;
-/// Coordinates much below this count as little, those much above it alike, where a linear field is fitted: beneath the hull
-/// all but those of its own nodes are of the order of the depth.
+/// Coordinate scale of the weights of a linear fit. Coordinates far below it have proportional weights,
+/// coordinates far above it have equal weights. Beneath the hull, all coordinates except those of its own
+/// nodes are of the order of the depth.
 const FADE: f64 = DEPTH;
 
-/// A cloud of half-extent 1 about the origin, meshed, with all that does not depend on a target.
+/// A tetrahedralised cloud of half-extent 1 around the origin, with all data that do not depend on a target.
 pub(crate) struct Voronoi {
     nodes: Vec<Point3>,
     cells: Vec<Cell>,
-    /// Four of each cell, one after another.
+    /// Faces, four per cell.
     faces: Vec<Face>,
 }
 
 /// A tetrahedron.
 struct Cell {
     corners: [u32; 4],
-    /// Across each face; the number of cells, where there is none.
+    /// Cell across each face, or the number of cells if there is none.
     neighbours: [u32; 4],
-    /// Circumspheres of the neighbours: all are asked when a cell is, side by side.
+    /// Circumspheres of the neighbours, which are tested together.
     around: Spheres<4>,
-    /// Planes of the faces, `n . x - d`, positive on the cell's side; always on the hull.
+    /// Planes of the faces, `n . x - d`, positive on the side of the cell; always positive for faces on the
+    /// hull.
     walls: [Lanes<4>; 4],
-    /// Three times the volume that is each corner's.
+    /// Three times the share of each corner in the volume.
     shares: [f64; 4],
 }
 
@@ -53,40 +57,43 @@ struct Cell {
 struct Spheres<const N: usize> {
     /// First corners.
     origin: [Lanes<N>; 3],
-    /// Twice the circumcentres from there.
+    /// Twice the circumcentres, relative to the first corners.
     centre: [Lanes<N>; 3],
-    /// [`CLOSED`] times size and circumradius.
+    /// [`CLOSED`] times size times circumradius.
     reach: Lanes<N>,
 }
 
 /// A face, in the order of its corners in [`FACES`].
-#[repr(align(64))] // one line of the cache
+#[repr(align(64))] // one cache line
 struct Face {
     nodes: [u32; 3],
-    /// Normal, twice the area long; the cell is on its positive side.
+    /// Normal with the length of twice the area; the cell is on its positive side.
     normal: Vector3,
-    /// Areas of the triangle that are each corner's, over `|normal|`: times a circumcentre's height along the normal, what
-    /// they make of three times a corner's share of the tetrahedron.
+    /// Shares of the corners in the triangle's area, divided by `|normal|`. Multiplied by the height of a
+    /// circumcentre along the normal, they give the contribution to three times a corner's share of the
+    /// tetrahedron.
     shares: [f64; 3],
 }
 
-/// What one target needs, reused from target to target.
+/// Buffers for a target, reused from target to target.
 pub(crate) struct Workspace {
     /// Natural neighbours.
     pub(crate) nodes: Vec<u32>,
-    /// Their coordinates.
+    /// Coordinates of the natural neighbours.
     pub(crate) values: Vec<f64>,
-    /// Rounding spoilt the volumes: the coordinates are those of the linear field that fits the neighbours best.
+    /// Whether rounding spoiled the volumes. The coordinates are then those of the linear field that best
+    /// fits the neighbours.
     pub(crate) fallback: bool,
     weights: Vec<f64>,
     volumes: Vec<f64>,
     listed: Vec<bool>,
     seen: Vec<u32>,
     stamp: u32,
-    /// Cells that are opened, the first `cells` of a list that only grows: the next target writes over it.
+    /// Opened cells: the first `cells` entries of a list that never shrinks and is overwritten for the next
+    /// target.
     cavity: Vec<u32>,
     cells: usize,
-    /// Faces around them, likewise.
+    /// Faces around the opened cells, in the same form.
     rim: Vec<u32>,
     faces: usize,
     last: u32,
@@ -102,7 +109,7 @@ impl Workspace {
             weights: Vec::new(),
             volumes: vec![0.0; nodes],
             listed: vec![false; nodes],
-            // One more for what is beyond the hull.
+            // An additional entry for the outside of the hull.
             seen: vec![0; cells + 1],
             stamp: 0,
             cavity: vec![0; 64],
@@ -115,7 +122,7 @@ impl Workspace {
 }
 
 impl Voronoi {
-    /// Of nodes with the origin amid them and coordinates of the order of 1.
+    /// Prepares a cloud whose nodes surround the origin and have coordinates of order 1.
     pub(crate) fn new(nodes: Vec<Point3>, mesh: &Delaunay) -> Voronoi {
         let count = mesh.cells.len();
         let (mut spheres, mut faces) = (Vec::with_capacity(count + 1), Vec::with_capacity(4 * count));
@@ -134,7 +141,7 @@ impl Voronoi {
             let size = at.iter().map(|x| (x - at[0]).norm()).fold(0.0, f64::max);
             spheres.push((at[0].coords, 2.0 * centre, CLOSED * size * centre.norm()));
         }
-        // Beyond the hull there is no sphere.
+        // There is no sphere beyond the hull.
         spheres.push((Vector3::zeros(), Vector3::zeros(), f64::NEG_INFINITY));
         let cells = (mesh.cells.iter().zip(&mesh.neighbours).zip(shares).zip(faces.as_chunks::<4>().0))
             .map(|(((&corners, neighbours), shares), faces)| {
@@ -158,8 +165,8 @@ impl Voronoi {
         Voronoi { nodes, cells, faces }
     }
 
-    /// The coordinates of a point within the hull, and of `inner` in its stead if that is given: the point then takes the
-    /// linear field that fits the neighbours of `inner` best.
+    /// Computes the coordinates of a point inside the hull. If `inner` is given, its coordinates are computed
+    /// instead, and the point takes the linear field that best fits the neighbours of `inner`.
     #[inline(always)]
     pub(crate) fn coordinates(&self, x: &Point3, inner: Option<&Point3>, at: &mut Workspace) {
         let inside = inner.unwrap_or(x);
@@ -179,7 +186,7 @@ impl Voronoi {
         let total: f64 = at.values.iter().sum();
         at.values.iter_mut().for_each(|v| *v /= total);
         let gap = self.gap(inside, at);
-        // Written so that a NaN is no sound coordinate, either.
+        // The form of the test also rejects NaN.
         if !(gap.norm() < PRECISION) {
             at.values.fill(1.0 / at.nodes.len() as f64);
             at.fallback = true;
@@ -187,10 +194,12 @@ impl Voronoi {
         self.extend(x, at);
     }
 
-    /// From the point to the mean of the neighbours by their coordinates: zero but for rounding (Sibson 1980).
+    /// Returns the vector from the point to the weighted mean of its neighbours, which is zero except for
+    /// rounding (Sibson 1980).
     #[inline(always)]
     fn gap(&self, x: &Point3, at: &Workspace) -> Vector3 {
-        // Loops here and below: closures of sums would not be inlined, and then not on wide registers.
+        // Loops here and below, because closures of sums would not be inlined and not be compiled for wide
+        // registers.
         let mut gap = Vector3::zeros();
         for (&node, &value) in at.nodes.iter().zip(&at.values) {
             gap += (self.nodes[node as usize] - x) * value;
@@ -198,8 +207,8 @@ impl Voronoi {
         gap
     }
 
-    /// The cell that holds the point, by walking towards it, each time through the face beyond which the point is farthest: its
-    /// circumsphere does, too.
+    /// Returns the cell that contains the point, by a walk that always crosses the face beyond which the
+    /// point is farthest. The circumsphere of this cell then also contains the point.
     #[inline(always)]
     fn locate(&self, x: &Point3, start: u32) -> u32 {
         let mut cell = start;
@@ -215,7 +224,7 @@ impl Voronoi {
             }
             cell = deepest.1;
         }
-        // A flat cell may seem to hold any point of its plane, or turn the walk in a circle.
+        // A flat cell may seem to contain any point of its plane, or make the walk circular.
         let sphere_holds = |cell: &u32| {
             let across = self.cells[*cell as usize].neighbours;
             let seen_from = across.into_iter().find(|&n| (n as usize) < self.cells.len());
@@ -230,11 +239,12 @@ impl Voronoi {
         (0..self.cells.len() as u32).find(sphere_holds).unwrap_or(cell)
     }
 
-    /// Collects the cells whose circumsphere holds the point, and the rim of faces around them, all of which see the
-    /// point from within: of the two cells at a face it is on the side of the one whose sphere it is deeper in.
+    /// Collects the cells whose circumsphere contains the point, and the rim of faces around them. All rim
+    /// faces have the point on their inner side: of two cells at a face, the point is on the side of the cell
+    /// whose sphere contains it more deeply.
     ///
-    /// Every neighbour is written to either list and counted in one: as many are within as without, and a branch would be
-    /// mispredicted.
+    /// Every neighbour is written to both lists and counted in one, because inside and outside are equally
+    /// frequent and a branch would be mispredicted.
     #[inline(always)]
     fn open(&self, x: &Point3, start: u32, at: &mut Workspace) {
         at.stamp = match at.stamp.checked_add(1) {
@@ -274,7 +284,7 @@ impl Voronoi {
         (at.cells, at.faces) = (cells, faces);
     }
 
-    /// Three times the volumes that the point takes from its neighbours.
+    /// Computes three times the volumes that the point takes from its neighbours.
     #[inline(always)]
     fn volumes(&self, x: &Point3, at: &mut Workspace) {
         for &cell in &at.cavity[..at.cells] {
@@ -290,7 +300,7 @@ impl Voronoi {
             at.nodes.truncate(listed + new);
         }
         for group in at.rim[..at.faces].chunks(LANES) {
-            // Lanes beyond the last face repeat it, and are not read.
+            // Lanes beyond the last face repeat it and are not read.
             let mut tets = Tetrahedra::new();
             let mut nodes = [[0; 3]; LANES];
             for lane in 0..LANES {
@@ -311,13 +321,17 @@ impl Voronoi {
         }
     }
 
-    /// Carries the coordinates on to a point apart from the mean of the neighbours, by the linear field that fits their values best,
-    /// each weighted by `omega_i = lambda_i / (lambda_i + FADE)`: `lambda_i + omega_i (x - sum_j lambda_j x_j) . M^-1 (x_i - m)`,
-    /// `m` and `M` mean and second moment of the neighbours so weighted. Twice, so that linear fields are exact to the last
-    /// digits however far the point is, and however rounding left the volumes.
+    /// Extends the coordinates to a point away from the mean of the neighbours, by the linear field that best
+    /// fits their values.
     ///
-    /// Sibson (1981) weights by `lambda_i / |x_i - x|^2`; on a hull that is almost flat this leaves the slope across it to
-    /// the neighbours just beneath, and weights of 37 at a tenth of the kidney beyond its hull, where these stay below 8.
+    /// The fit has the weights `omega_i = lambda_i / (lambda_i + FADE)`:
+    /// `lambda_i + omega_i (x - sum_j lambda_j x_j) . M^-1 (x_i - m)`, with the weighted mean `m` and second
+    /// moment `M` of the neighbours. The extension is repeated twice, so linear fields are exact to the last
+    /// digits for any distance of the point and any rounding of the volumes.
+    ///
+    /// Sibson (1981) uses the weights `lambda_i / |x_i - x|^2`. On an almost flat hull the slope across the
+    /// hull is then determined by the neighbours just beneath it. At a tenth of the kidney's size beyond its
+    /// hull this gives coordinates of 37; with the weights used here they stay below 8.
     #[inline(always)]
     fn extend(&self, x: &Point3, at: &mut Workspace) {
         at.weights.clear();
@@ -350,7 +364,7 @@ impl Voronoi {
     }
 }
 
-/// Room for so many, and for as many again.
+/// Grows a list to twice `length` if it is shorter than `length`.
 #[inline(always)]
 fn grow(list: &mut Vec<u32>, length: usize) {
     if list.len() < length {
@@ -359,7 +373,7 @@ fn grow(list: &mut Vec<u32>, length: usize) {
 }
 
 impl<const N: usize> Spheres<N> {
-    /// From origins, centres and reaches.
+    /// Builds spheres from origins, centres and tolerances.
     fn new(each: [&(Vector3, Vector3, f64); N]) -> Spheres<N> {
         Spheres {
             origin: [0, 1, 2].map(|axis| Lanes(each.map(|sphere| sphere.0[axis]))),
@@ -368,7 +382,8 @@ impl<const N: usize> Spheres<N> {
         }
     }
 
-    /// Which hold the point: `|x - c|^2 <= R^2`, without the difference of two large squares.
+    /// Returns for each sphere whether it contains the point: `|x - c|^2 <= R^2`, without the difference of
+    /// two large squares.
     #[inline(always)]
     fn hold(&self, x: &Point3) -> [bool; N] {
         let mut beyond = [0.0; N];
@@ -383,12 +398,13 @@ impl<const N: usize> Spheres<N> {
 
 impl Face {
     fn new(nodes: [u32; 3], [a, b, c]: [Point3; 3]) -> Face {
-        // `orient3d` is positive on the side from which the corners turn clockwise.
+        // `orient3d` is positive on the side from which the corners appear clockwise.
         let normal = (c - a).cross(&(b - a));
         let square = normal.norm_squared();
         let dots = [(b - a).dot(&(c - a)), (c - b).dot(&(a - b)), (a - c).dot(&(b - c))];
         let sides = [(c - b).norm_squared(), (a - c).norm_squared(), (b - a).norm_squared()];
-        // The triangle's share of corner 0 is (|01|^2 cot 2 + |02|^2 cot 1) / 8, a cotangent the dot over |normal|.
+        // The share of corner 0 in the triangle is (|01|^2 cot 2 + |02|^2 cot 1) / 8, with a cotangent equal
+        // to the dot product divided by |normal|.
         let shares = std::array::from_fn(|i| {
             let (j, k) = ((i + 1) % 3, (i + 2) % 3);
             (sides[k] * dots[k] + sides[j] * dots[j]) / (8.0 * square)
@@ -397,11 +413,11 @@ impl Face {
     }
 }
 
-/// The tetrahedra that eight faces make with the origin, which is on their positive side.
+/// The tetrahedra formed by eight faces with the origin, which is on their positive side.
 struct Tetrahedra {
     normal: [Lanes; 3],
     shares: [Lanes; 3],
-    /// Of the faces, from the origin.
+    /// Corners of the faces, relative to the origin.
     corners: [[Lanes; 3]; 3],
 }
 
@@ -423,8 +439,8 @@ impl Tetrahedra {
         }
     }
 
-    /// Three times the volumes that are the faces' corners'. Lane by lane: sums and products of whole lanes the compiler takes
-    /// apart, a loop over lanes it puts together.
+    /// Returns three times the shares of the faces' corners in the volumes. The code goes lane by lane: the
+    /// compiler scalarises sums and products of whole lanes, but vectorises a loop over lanes.
     #[inline(always)]
     fn shares(&self) -> [Lanes; 3] {
         let mut shares = [[0.0; LANES]; 3];
@@ -438,23 +454,24 @@ impl Tetrahedra {
     }
 }
 
-/// Three times the volumes that are the corners' of a face, of the tetrahedron that it makes with the origin.
+/// Returns three times the shares of the corners of a face in the volume of the tetrahedron that the face
+/// forms with the origin.
 #[inline(always)]
 fn corner_shares(normal: &[f64; 3], areas: &[f64; 3], [a, b, c]: &[[f64; 3]; 3]) -> [f64; 3] {
     let dot = |a: &[f64; 3], b: &[f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
     let (aa, bb, cc) = (dot(a, a), dot(b, b), dot(c, c));
     let (ab, bc, ca) = (dot(a, b), dot(b, c), dot(c, a));
-    // Products of the normals b x c, c x a and a x b: cofactors of the matrix of products above.
+    // Products of the normals b x c, c x a and a x b: cofactors of the matrix of the products above.
     let (naa, nbb, ncc) = (bb * cc - bc * bc, cc * aa - ca * ca, aa * bb - ab * ab);
     let (nab, nbc, nca) = (bc * ca - ab * cc, ca * ab - bc * aa, ab * bc - ca * bb);
-    // Heights of the circumcentre over the four faces, times their normals, inwards.
+    // Heights of the circumcentre over the four faces, times the inward normals.
     let height = -dot(normal, a);
     let scale = 0.5 / height;
     let ha = (aa * naa + bb * nab + cc * nca) * scale;
     let hb = (aa * nab + bb * nbb + cc * nbc) * scale;
     let hc = (aa * nca + bb * nbc + cc * ncc) * scale;
     let top = height - (ha + hb + hc);
-    // Over eight times its product each; one division for three.
+    // Division by eight times each product; one division serves all three.
     let each = 0.125 / (naa * nbb * ncc);
     let (ha, hb, hc) = (ha * (nbb * ncc * each), hb * (ncc * naa * each), hc * (naa * nbb * each));
     // Share of a in the triangle (0, a, b): |b|^2 (|a|^2 + a.b) - 2 (a.b)^2 over 8 |a x b|.

@@ -1,17 +1,17 @@
-//! Tables made in chunks of targets, side by side.
+//! Tables built in parallel from chunks of targets.
 
 use rayon::prelude::*;
 use shape::{Point3, PointRows, Rows, Unity};
 
 use crate::{InterpError, TransferInfo};
 
-/// Targets per parallel task: fixed, so that the bits are the same at any thread count.
+/// Targets per parallel task. The number is fixed, so results have the same bits at any number of threads.
 const CHUNK: usize = 128;
 
 /// Rows of one chunk of targets.
 #[derive(Debug, Default, PartialEq)]
 pub(crate) struct Batch {
-    /// Ends of the rows among the entries below.
+    /// Ends of the rows in `nodes` and `values`.
     ends: Vec<usize>,
     pub(crate) nodes: Vec<u32>,
     pub(crate) values: Vec<f64>,
@@ -19,7 +19,7 @@ pub(crate) struct Batch {
 }
 
 impl Batch {
-    /// Room for the rows of some targets, with about so many entries in all.
+    /// Reserves room for the rows of `targets` targets with about `entries` entries in total.
     pub(crate) fn with_capacity(targets: usize, entries: usize) -> Batch {
         Batch {
             ends: Vec::with_capacity(targets),
@@ -29,17 +29,17 @@ impl Batch {
         }
     }
 
-    /// Where the row of the next target starts.
+    /// Returns the start of the row of the next target.
     pub(crate) fn start(&self) -> usize {
         self.ends.last().map_or(0, |&end| end)
     }
 
-    /// Ends the row of the next target, whose entries are there.
+    /// Ends the row of the next target, whose entries are already appended.
     pub(crate) fn close(&mut self) {
         self.ends.push(self.nodes.len());
     }
 
-    /// The same, of weights to be taken over their sum.
+    /// Ends the row like [`Batch::close`], after division of its weights by their sum.
     pub(crate) fn close_over_sum(&mut self) {
         let start = self.start();
         let weights = &mut self.values[start..];
@@ -49,7 +49,7 @@ impl Batch {
     }
 }
 
-/// The table of all targets, by what `make` makes of each chunk.
+/// Builds the table of all targets from the batches that `make` returns for each chunk.
 pub(crate) fn in_chunks(
     node_count: usize,
     targets: &[Point3],

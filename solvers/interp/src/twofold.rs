@@ -1,8 +1,9 @@
-//! Twofold precision: an unevaluated sum of two numbers, for the few places where double precision cancels out.
+//! Twofold precision: an unevaluated sum of two numbers, for the few computations in which double precision
+//! cancels.
 
 use std::ops::{Add, Mul, Sub};
 
-/// `high + low`, `|low|` at most half a unit in the last place of `high` (Dekker 1971).
+/// `high + low`, with `|low|` at most half a unit in the last place of `high` (Dekker 1971).
 #[derive(Clone, Copy)]
 pub(crate) struct Twofold {
     high: f64,
@@ -10,25 +11,25 @@ pub(crate) struct Twofold {
 }
 
 impl Twofold {
-    /// `a - b`, exact.
+    /// Returns `a - b` exactly.
     pub(crate) fn difference(a: f64, b: f64) -> Twofold {
         sum(a, -b)
     }
 
-    /// The ratio of two, rounded to a number; its error is that of a few roundings.
+    /// Returns the ratio of two numbers in double precision, with an error of a few roundings.
     pub(crate) fn ratio(self, by: Twofold) -> f64 {
         self.high / by.high
     }
 }
 
-/// Exact sum of two numbers (Knuth 1969).
+/// Returns the exact sum of two numbers (Knuth 1969).
 fn sum(a: f64, b: f64) -> Twofold {
     let high = a + b;
     let part = high - a;
     Twofold { high, low: (a - (high - part)) + (b - part) }
 }
 
-/// The same where `|a| >= |b|`.
+/// Returns the exact sum of two numbers with `|a| >= |b|`.
 fn quick_sum(a: f64, b: f64) -> Twofold {
     let high = a + b;
     Twofold { high, low: b - (high - a) }
@@ -75,7 +76,7 @@ mod tests {
         let square = exact(1.0 + e) * exact(1.0 + e) - exact(1.0 + 2.0 * e);
         assert_eq!((1.0 + e) * (1.0 + e) - (1.0 + 2.0 * e), 0.0);
         assert_eq!(square.high, e * e);
-        // A difference that no double holds: 1 - 1e-30.
+        // A difference that no double can represent: 1 - 1e-30.
         let rest = exact(1.0) - Twofold::difference(1.0, 1e-30);
         assert!((rest.high / 1e-30 - 1.0).abs() < 1e-15);
         assert!(((rest * exact(3.0)).ratio(rest) / 3.0 - 1.0).abs() < 1e-15);

@@ -1,4 +1,4 @@
-//! What each scheme refuses, and what it counts.
+//! Refused input of each scheme, and counted special cases.
 
 use efg::{EfgError, Support};
 use geometry::generate::box_mesh;
@@ -14,7 +14,7 @@ fn mesh(kind: CellKind) -> Mesh {
     box_mesh(kind, Point3::origin(), Point3::new(0.02, 0.02, 0.02), [4, 4, 4], [1.0; 3], None).unwrap()
 }
 
-/// The radial bases of the list.
+/// Returns all radial bases of the catalogue.
 fn radial() -> impl Iterator<Item = Scheme> {
     Scheme::all().filter(|scheme| matches!(scheme, Scheme::Radial(_)))
 }
@@ -117,7 +117,7 @@ fn coincident_nodes() {
             Err(error) => panic!("{scheme:?}: {error}"),
         }
     }
-    // The two share alike: the limit of the formula from any side.
+    // Both nodes have the same weight, which is the limit of the formula from all sides.
     let (rows, _) = Scheme::from_name("inverse-distance").unwrap().rows(&nodes, None, &targets).unwrap();
     assert_eq!(rows.rows().row(1).0[..2], [60, 125]);
     assert_eq!(rows.rows().row(1).1, [0.5, 0.5, 0.0, 0.0]);
@@ -144,7 +144,8 @@ fn almost_coincident_nodes_are_told_apart_or_refused() {
     }
 }
 
-/// Rows of a system that is singular to working precision would be noise: an interpolant that misses its nodes.
+/// Rows of a system that is singular to working precision would be noise: the interpolant would miss its
+/// nodes.
 #[test]
 fn functions_too_wide_for_the_nodes_are_refused() {
     let nodes = mesh(CellKind::Tet4).points().to_vec();
@@ -162,7 +163,7 @@ fn functions_too_wide_for_the_nodes_are_refused() {
                 Ok((rows, _)) => {
                     let back = rows.rows().apply(&u);
                     let miss = back.iter().zip(&u).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
-                    // 1e-6 is let pass of one field.
+                    // An error of 1e-6 is accepted for a single field.
                     assert!(miss < 1e-5, "{radial:?}: {miss:e}");
                 }
                 Err(InterpError::TooWide { width: reported, miss, .. }) => {
@@ -251,12 +252,12 @@ fn targets_no_support_covers_are_counted() {
     let far = [Point3::new(0.011, 0.012, 0.013), Point3::new(0.05, 0.01, 0.01)];
     let (rows, info) = Scheme::Shepard(Shepard { support_scale: 1.2 }).rows(&nodes, None, &far).unwrap();
     assert_eq!(info.fallbacks, 1);
-    // The nodes that count are those of the near face, x = 20 mm.
+    // The contributing nodes are those of the near face, x = 20 mm.
     assert!(rows.rows().row(1).0.iter().all(|&n| nodes[n as usize].x > 0.019), "{:?}", rows.rows().row(1));
     let near = [Point3::new(0.023, 0.01, 0.01)];
     let (_, info) = Scheme::MlsLinear(MlsLinear { support_scale: 1.2 }).rows(&nodes, None, &near).unwrap();
     assert_eq!(info.fallbacks, 1);
-    // Farther out moving least squares would extrapolate wildly, and says no.
+    // Farther out moving least squares would extrapolate too far and return an error.
     let error = Scheme::MlsLinear(MlsLinear { support_scale: 1.2 }).rows(&nodes, None, &far).unwrap_err();
     assert!(matches!(error, InterpError::Mls(EfgError::TooFewNeighbours { .. })), "{error}");
 }
@@ -266,8 +267,8 @@ fn supports_by_neighbour_reach_every_neighbour() {
     let nodes = mesh(CellKind::Tet4).points().to_vec();
     let target = [Point3::new(0.0125, 0.0125, 0.0125)];
     let (rows, info) = shepard(&nodes, Support::Neighbours { count: 6, factor: 1.1 }, &target).unwrap();
-    // The centre of a cell of 5 mm: its 8 corners are 4.33 mm away, within 1.1 x 5 mm; the next
-    // nodes are 8.29 mm away, and those on the surface reach 1.1 x 7.07 mm.
+    // The target is the centre of a cell of 5 mm. Its 8 corners are 4.33 mm away, within 1.1 x 5 mm. The next
+    // nodes are 8.29 mm away; supports on the surface have a radius of 1.1 x 7.07 mm.
     assert_eq!(info.fallbacks, 0);
     assert_eq!(rows.rows().row(0).0.len(), 8);
     assert!(rows.rows().row(0).1.iter().all(|v| (v - 0.125).abs() < 1e-15));

@@ -1,4 +1,4 @@
-//! Forces carried back by the transpose of a table.
+//! Forces transferred back by the transpose of a table.
 
 use geometry::generate::{Jitter, box_mesh};
 use geometry::{CellKind, Mesh};
@@ -12,7 +12,7 @@ fn mesh() -> Mesh {
     box_mesh(CellKind::Tet4, low, high, [6, 5, 4], [1.0; 3], jitter).unwrap()
 }
 
-/// Targets within, and forces of 1 N in all directions at them.
+/// Returns targets inside the box, and forces of 1 N in various directions.
 fn forces() -> (Vec<Point3>, Vec<Vector3<f64>>) {
     let part = |t: f64| t.abs().fract();
     (0..200)
@@ -40,7 +40,8 @@ fn schemes() -> impl Iterator<Item = Scheme> {
     Scheme::all().chain(bare)
 }
 
-/// Force is kept by schemes that carry constants, moment by schemes that carry rotations; the others lose them.
+/// The force is preserved by schemes that reproduce constants, the moment by schemes that reproduce
+/// rotations; other schemes lose them.
 #[test]
 fn force_and_moment_are_kept_as_promised() {
     let mesh = mesh();
@@ -59,7 +60,7 @@ fn force_and_moment_are_kept_as_promised() {
     }
 }
 
-/// What the published scheme loses: the forces of a pure couple come back with a moment of their own.
+/// The published scheme loses moment: the nodal forces of a pure couple have a different moment.
 #[test]
 fn inverse_distance_loses_moment() {
     let mesh = mesh();
@@ -71,7 +72,7 @@ fn inverse_distance_loses_moment() {
         (moment.z + 2e-3).abs() / 2e-3
     };
     let published = lost(Scheme::InverseDistance(InverseDistance { neighbours: 4, power: 2.0 }));
-    // 3 % of the couple.
+    // The error is 3 % of the couple.
     assert!(published > 0.01, "{published}");
     assert!(lost(Scheme::NaturalNeighbour(NaturalNeighbour)) < 1e-12);
 }

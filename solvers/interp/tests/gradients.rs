@@ -17,7 +17,7 @@ fn targets(mesh: &Mesh) -> Vec<Point3> {
         let part = |c: f64| (i as f64 * c + 0.1).fract();
         Point3::new(0.04 * part(0.754_877), 0.03 * part(0.569_84), 0.02 * part(0.317_8))
     };
-    // Nodes too, where the functions of radial bases have their centres.
+    // Some targets are nodes, which are the centres of radial functions.
     (0..40).map(inner).chain(mesh.points().iter().copied().step_by(17)).collect()
 }
 
@@ -28,7 +28,7 @@ fn bare() -> [Scheme; 2] {
     ]
 }
 
-/// Every scheme that has gradients, and the table.
+/// Returns every scheme that has gradients, with its table.
 fn tables(mesh: &Mesh, targets: &[Point3]) -> Vec<(Scheme, GradRows)> {
     let table = |scheme: Scheme| match scheme.grad_rows(mesh.points(), Some(mesh), targets) {
         Ok((rows, _)) => Some((scheme, rows)),
@@ -77,8 +77,8 @@ fn linear_and_quadratic_fields_have_their_gradients() {
         let constant = error(&|_| Vector3::new(0.01, -0.02, 0.03), &|_| Matrix3::zeros());
         let linear = error(&|x| h * x.coords, &|_| h);
         let quadratic = error(&bent, &slope);
-        // Strain to ten digits: values to 1e-15 of the displacement, over a spacing of a sixth of the extent, and the worst
-        // conditioned systems leave some 1e3 of that.
+        // Strain is accurate to ten digits: values have errors of 1e-15 of the displacement, divided by a
+        // spacing of a sixth of the extent, and the worst conditioned systems amplify them by about 1e3.
         let promised = scheme.exact_degree();
         assert_eq!(constant < 1e-10, promised >= Some(0), "{scheme:?}: constant {constant:e}");
         assert_eq!(linear < 1e-10, promised >= Some(1), "{scheme:?}: linear {linear:e}");
@@ -89,7 +89,7 @@ fn linear_and_quadratic_fields_have_their_gradients() {
 #[test]
 fn gradients_are_those_of_differences() {
     let mesh = mesh();
-    // None on the border of a tetrahedron, where barycentric gradients jump.
+    // No target is on the border of a tetrahedron, where barycentric gradients jump.
     let targets = &targets(&mesh)[..40];
     let field =
         |x: &Point3| Vector3::new((90.0 * x.x).sin(), (70.0 * x.y).cos(), (80.0 * (x.z + x.x)).sin()) * 1e-2;
@@ -107,7 +107,8 @@ fn gradients_are_those_of_differences() {
             let (up, down) = (at(shift), at(-shift));
             for (row, (up, down)) in up.iter().zip(&down).enumerate() {
                 let gap = ((up - down) / (2.0 * step) - found[row].column(axis)).norm();
-                // Differences of a field of 1e-2 over 2e-7 leave 1e-8 by rounding, and the curvature 1e-9.
+                // Differences of a field of 1e-2 over 2e-7 have a rounding error of 1e-8, and an error of
+                // 1e-9 from curvature.
                 assert!(gap < 1e-6, "{scheme:?} at {}: {gap:e}", targets[row]);
             }
         }

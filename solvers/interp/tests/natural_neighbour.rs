@@ -1,4 +1,4 @@
-//! Natural neighbour interpolation: against volumes counted on a grid, and where geometry degenerates.
+//! Natural neighbour interpolation, compared with volumes counted on a grid, and in degenerate geometries.
 
 use geometry::{Kidney, cloud};
 use interp::{InterpError, TransferInfo, natural_neighbour};
@@ -20,7 +20,7 @@ fn scattered(n: usize, shift: f64) -> Vec<Point3> {
         .collect()
 }
 
-/// Full rows, one after another.
+/// Returns full rows, one after another.
 fn dense(table: &PointRows) -> Vec<Vec<f64>> {
     let rows = table.rows();
     let row = |q: usize| {
@@ -31,21 +31,21 @@ fn dense(table: &PointRows) -> Vec<Vec<f64>> {
     (0..rows.len()).map(row).collect()
 }
 
-/// Largest difference of two tables.
+/// Returns the largest difference between two tables.
 fn gap(a: &PointRows, b: &PointRows) -> f64 {
     let pairs = dense(a).concat().into_iter().zip(dense(b).concat());
     pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
 }
 
-/// Sound rows, no target outside and none that fell back.
+/// Returns the table, and checks that no target is outside and that there are no fallbacks.
 fn sound(nodes: &[Point3], targets: &[Point3]) -> PointRows {
     let (rows, info) = natural_neighbour(nodes, targets).unwrap();
     assert_eq!(info, TransferInfo::default());
     rows
 }
 
-/// The volume that a point takes from each cell is the part of space nearer to it than to any node, parted by the node that
-/// is nearest otherwise: counted on a grid, without a mesh.
+/// The volume that a point takes from each cell is the region closer to the point than to any node, divided
+/// according to the nearest node. It is counted on a grid, without a mesh.
 #[test]
 fn coordinates_are_the_volumes_taken_from_voronoi_cells() {
     let nodes = scattered(60, 0.3);
@@ -71,13 +71,14 @@ fn coordinates_are_the_volumes_taken_from_voronoi_cells() {
         let total: f64 = counted.iter().sum();
         assert!(total > 10_000.0, "{total}");
         for (node, (value, count)) in row.iter().zip(&counted).enumerate() {
-            // A cell of 20 000 grid points is told to about 1e-3 by its surface.
+            // A cell of 20 000 grid points is accurate to about 1e-3 because of its surface.
             assert!((value - count / total).abs() < 2e-3, "node {node}: {value} {}", count / total);
         }
     }
 }
 
-/// By symmetry: the middle of an edge, a face and a cell of a lattice, where all nodes around lie on one sphere.
+/// Symmetry: at the middle of an edge, a face and a cell of a lattice, all surrounding nodes lie on one
+/// sphere.
 #[test]
 fn lattices_share_alike() {
     let nodes = lattice(4);
@@ -94,16 +95,16 @@ fn lattices_share_alike() {
         for &node in &close {
             assert!((row[node] - row[close[0]]).abs() < 1e-13, "{target} {node}: {}", row[node]);
         }
-        // In the middle of a cell nobody else has a share; elsewhere those around do.
+        // In the middle of a cell no other node has a share; elsewhere surrounding nodes do.
         assert_eq!(others < 1e-13, close.len() == 8, "{target}: {others:e}");
     }
 }
 
-/// The cospherical nodes of a lattice are told apart by rounding once it is turned, and make tetrahedra of no volume.
+/// In a rotated lattice, rounding distinguishes the cospherical nodes, which form tetrahedra without volume.
 #[test]
 fn a_lattice_may_be_turned() {
     let nodes = lattice(5);
-    // On nodes, edges, faces and within, on a lattice thrice as fine, not on the hull.
+    // Targets on nodes, edges and faces and inside cells, on a lattice three times as fine, not on the hull.
     let inner = |i: usize| [i % 11, i / 11 % 11, i / 121].map(|k| (k + 1) as f64 / 3.0);
     let targets: Vec<Point3> = (0..1331).map(|i| Point3::from(inner(i)) * 1e-3).collect();
     let straight = sound(&nodes, &targets);
@@ -115,7 +116,7 @@ fn a_lattice_may_be_turned() {
     }
 }
 
-/// On the hull and a little to either side of it the coordinates are the same.
+/// The coordinates are the same on the hull and slightly to either side.
 #[test]
 fn coordinates_are_continuous_through_the_hull() {
     let nodes = lattice(4);
@@ -129,16 +130,18 @@ fn coordinates_are_continuous_through_the_hull() {
         let (beyond, info) = natural_neighbour(&nodes, &at(-depth)).unwrap();
         assert_eq!(info.outside, 3);
         let most = gap(&on, &below).max(gap(&on, &beyond));
-        // In proportion to the depth (1 mm is the spacing), and 1e-6 by drawing in.
+        // The difference is proportional to the depth (the spacing is 1 mm), plus 1e-6 from moving the
+        // targets inwards.
         assert!(most < 5e-6 + 10.0 * depth / 1e-3, "{depth:e}: {most:e}");
     }
-    // Nodes of the hull itself.
+    // Targets at the nodes of the hull.
     let (rows, info) = natural_neighbour(&nodes, &nodes).unwrap();
     assert_eq!(info, TransferInfo::default());
     assert!(rows.rows().values().iter().all(|&v| v == 1.0));
 }
 
-/// Half of the targets of the kidney lie outside the hull of a cloud of 83 nodes, and all of them carry linear fields.
+/// Half of the kidney's targets lie outside the hull of a cloud of 83 nodes, and linear fields are exact at
+/// all of them.
 #[test]
 fn beyond_the_hull_linear_fields_go_on() {
     let nodes = cloud(&Kidney, 83, 1, &[]).unwrap().points;
@@ -155,7 +158,7 @@ fn beyond_the_hull_linear_fields_go_on() {
     let (rows, info) = natural_neighbour(&nodes, &far).unwrap();
     assert_eq!(info.outside, 1);
     assert!((rows.rows().apply(&nodal)[0] - field(&far[0])).norm() < 1e-11);
-    // Slopes across the hull are bounded: at a tenth of the extent beyond it weights are 8 at most.
+    // Slopes across the hull are bounded: at a tenth of the extent beyond the hull, weights are at most 8.
     let beyond: Vec<Point3> = targets.iter().map(|x| Point3::from(x.coords * 1.1)).collect();
     let (rows, _) = natural_neighbour(&nodes, &beyond).unwrap();
     let largest = rows.rows().values().iter().fold(0.0, |most: f64, v| most.max(v.abs()));

@@ -1,4 +1,4 @@
-//! One list of properties, every scheme.
+//! Properties common to all schemes.
 
 use geometry::generate::{Jitter, box_mesh};
 use geometry::{CellKind, Mesh};
@@ -10,14 +10,14 @@ use proptest::prelude::*;
 use proptest::test_runner::FileFailurePersistence;
 use shape::{Point3, PointRows};
 
-/// A box of 40 x 30 x 20 mm, 6 x 5 x 4 cells of 6 tetrahedra, inner nodes jittered: 210 nodes.
+/// A box of 40 x 30 x 20 mm with 6 x 5 x 4 cells of 6 tetrahedra and jittered inner nodes: 210 nodes.
 fn mesh() -> Mesh {
     let jitter = Some(Jitter { fraction: 0.2, seed: 7 });
     let (low, high) = (Point3::origin(), Point3::new(0.04, 0.03, 0.02));
     box_mesh(CellKind::Tet4, low, high, [6, 5, 4], [1.0; 3], jitter).unwrap()
 }
 
-/// Every scheme of the list, and some with other parameters.
+/// Returns every scheme of the catalogue, and some with other parameters.
 fn schemes() -> Vec<Scheme> {
     let mut all = Scheme::all().collect::<Vec<_>>();
     all.extend([
@@ -38,7 +38,7 @@ fn rows(scheme: Scheme, mesh: &Mesh, targets: &[Point3]) -> (PointRows, Transfer
     scheme.rows(mesh.points(), Some(mesh), targets).unwrap_or_else(|error| panic!("{scheme:?}: {error}"))
 }
 
-/// Largest error of a transferred field, relative to its largest value at the targets.
+/// Returns the largest error of a transferred field, relative to its largest value at the targets.
 fn error(scheme: Scheme, mesh: &Mesh, targets: &[Point3], field: impl Fn(&Point3) -> Vector3<f64>) -> f64 {
     let nodal: Vec<_> = mesh.points().iter().map(&field).collect();
     let (rows, _) = rows(scheme, mesh, targets);
@@ -48,7 +48,7 @@ fn error(scheme: Scheme, mesh: &Mesh, targets: &[Point3], field: impl Fn(&Point3
 }
 
 fn quadratic(x: &Point3) -> Vector3<f64> {
-    // Pure bending, curvature 0.5 per metre, and a twist.
+    // Pure bending with a curvature of 0.5 per metre, and a twist.
     Vector3::new(0.5 * x.x * x.y, -0.25 * (x.x * x.x + 0.3 * (x.y * x.y - x.z * x.z)), 0.7 * x.z * x.x)
 }
 
@@ -89,13 +89,14 @@ proptest! {
     ) {
         let mesh = mesh();
         for scheme in schemes() {
-            // 1e-12 relative to the field: the worst conditioned is the quadratic basis, 1e3 times rounding.
+            // The tolerance is 1e-12 relative to the field; the worst conditioned scheme has the quadratic
+            // basis, 1e3 times rounding.
             let constant = error(scheme, &mesh, &targets, |_| Vector3::new(3.0, -2.0, 1.0));
             let promised = scheme.exact_degree();
             prop_assert_eq!(constant < 1e-12, promised.is_some(), "{:?}: constant {:e}", scheme, constant);
             let linear = error(scheme, &mesh, &targets, |x| h * x.coords + c);
             let bent = error(scheme, &mesh, &targets, quadratic);
-            // And not beyond it: the promise is no smaller than the truth.
+            // Fields of a higher degree are not exact, so the stated degree is not too low.
             prop_assert_eq!(linear < 1e-12, promised >= Some(1), "{:?}: linear {:e}", scheme, linear);
             prop_assert_eq!(bent < 1e-11, promised >= Some(2), "{:?}: quadratic {:e}", scheme, bent);
         }
@@ -124,7 +125,8 @@ proptest! {
         shift in prop::array::uniform3(-100.0..100.0f64),
         seed in 0..1000u64,
     ) {
-        // A body of 1e-6 to 10 m, up to 100 times its size from the origin, inner nodes jittered.
+        // A body of 1e-6 to 10 m with jittered inner nodes, at a distance of up to 100 times its size from
+        // the origin.
         let scale = 10f64.powi(unit);
         let jitter = Some(Jitter { fraction: 0.2, seed });
         let high = Point3::new(1.0, 0.75, 0.5);
@@ -136,7 +138,7 @@ proptest! {
             let origin = Vector3::from(shift) * scale;
             let field = |x: &Point3| h * (x.coords - origin) / scale + c;
             let linear = error(scheme, &mesh, &targets, field);
-            // Coordinates keep 2e-14 of the size that far out.
+            // At this distance coordinates are accurate to 2e-14 of the size.
             prop_assert_eq!(linear < 1e-11, scheme.exact_degree() >= Some(1), "{:?}: {:e}", scheme, linear);
         }
     }
@@ -148,7 +150,7 @@ proptest! {
     ) {
         let mesh = mesh();
         let n = mesh.points().len();
-        // Strides without a common divisor with the 210 nodes visit each of them once.
+        // Strides without a common divisor with the 210 nodes visit each node once.
         let order: Vec<usize> = (0..n).map(|i| i * stride % n).collect();
         let shuffled: Vec<Point3> = order.iter().map(|&i| mesh.points()[i]).collect();
         for scheme in schemes().into_iter().filter(|s| *s != Scheme::Barycentric(Barycentric)) {
@@ -185,7 +187,7 @@ fn targets_at_nodes_get_the_nodal_value_where_promised() {
             Vector3::new(x.x.sin(), (x.y + x.z).cos(), x.z.sin() * x.x)
         });
         if scheme.interpolates() {
-            // Radial bases: the condition of their dense system, some 1e4, times rounding.
+            // For radial bases: the condition of their dense system, about 1e4, times rounding.
             assert!(error < 1e-10, "{scheme:?}: {error:e}");
         } else {
             assert!(error > 1e-4, "{scheme:?}: {error:e}: it interpolates, but does not say so");
@@ -193,7 +195,7 @@ fn targets_at_nodes_get_the_nodal_value_where_promised() {
     }
 }
 
-/// The penalty of 1e-5 on second derivatives shows, and no more than that.
+/// The error of modified least squares is that of the penalty of 1e-5 on second derivatives.
 #[test]
 fn modified_least_squares_are_almost_exact_for_quadratic_fields() {
     let mesh = mesh();

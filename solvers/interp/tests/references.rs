@@ -1,4 +1,4 @@
-//! Numbers from elsewhere: worked by hand, from the textbook's own system, and known levels of error.
+//! Reference numbers: computed by hand, from the textbook's own system, and known levels of error.
 
 use geometry::{Cloud, Kidney, cloud};
 use interp::{InverseDistance, MlsLinear, Nearest, Radial, Scheme, Shepard};
@@ -25,14 +25,14 @@ fn inverse_distance_stays_finite_beside_a_node() {
         for gap in [1e-3, 1e-30, 1e-150, 1e-200, 5e-324] {
             let scheme = Scheme::InverseDistance(InverseDistance { neighbours: 4, power });
             let (rows, _) = scheme.rows(&nodes, None, &[Point3::new(gap, 0.0, 0.0)]).unwrap();
-            // The others keep the share gap^p (1 + 2^-p + 3^-p), up to rounding.
+            // The other nodes have the share gap^p (1 + 2^-p + 3^-p), except for rounding.
             let share = 1.0 - rows.rows().row(0).1[0];
             assert!(share <= 2.0 * gap.powf(power) + 1e-15, "{power} {gap}: {share}");
         }
     }
 }
 
-/// Cubic splines of the distance over each node's own radius, made to sum to one.
+/// Cubic splines of the distance relative to each node's own radius, normalised to a sum of one.
 #[test]
 fn shepard_by_hand() {
     let nodes: Vec<Point3> = (0..30)
@@ -64,8 +64,8 @@ fn the_nearest_of_two_at_one_distance_is_the_first() {
     assert_eq!(rows.rows().nodes(), [1, 1]);
 }
 
-/// The bordered system `[Phi P; P^T 0]` of the textbook, solved by LU, beside the projected positive definite
-/// one.
+/// The bordered system `[Phi P; P^T 0]` of the textbook, solved by LU, gives the same rows as the projected
+/// positive definite system.
 #[test]
 fn radial_bases_solve_the_textbook_system() {
     let nodes: Vec<Point3> = (0..40)
@@ -77,7 +77,7 @@ fn radial_bases_solve_the_textbook_system() {
     let target = Point3::new(0.21, -0.13, 0.34);
     let thin_plate = |r: f64| if r == 0.0 { 0.0 } else { r * r * r.ln() };
     let cubic = |r: f64| r.powi(3);
-    // The widths by the spacing: the mean distance to the 14 nearest.
+    // Widths follow from the spacing, the mean distance to the 14 nearest nodes.
     let spacing = {
         let mean = |x: &Point3| {
             let mut all: Vec<f64> = nodes.iter().map(|y| (x - y).norm()).collect();
@@ -123,15 +123,15 @@ fn radial_bases_solve_the_textbook_system() {
     }
 }
 
-/// The paper transfers 83 nodes to 1330 by inverse distance. On a plain linear field, which every other
-/// family here carries to rounding, that alone leaves an error of the order of the differences it reports
-/// between methods.
+/// The paper transfers 83 nodes to 1330 by inverse distance. For a linear field, which every other family
+/// here reproduces to rounding, this transfer alone has an error of the order of the differences that the
+/// paper reports between methods.
 #[test]
 fn inverse_distance_spoils_a_linear_field_on_the_kidney() {
     let nodes = cloud(&Kidney, 83, 1, &[]).unwrap().points;
     let targets = cloud(&Kidney, 1331, 2, &[]).unwrap().points;
     let rms = |u: &[Vector3<f64>]| (u.iter().map(|u| u.norm_squared()).sum::<f64>() / u.len() as f64).sqrt();
-    // Flattened along z, wider along x and y.
+    // Compressed along z, extended along x and y.
     let stretch = |x: &Point3| Vector3::new(0.5 * x.x, 0.5 * x.y, -x.z);
     // Scaled to 4.3 mm RMS, the level of the kidney's displacement.
     let scale = 4.3e-3 / rms(&targets.iter().map(stretch).collect::<Vec<_>>());

@@ -1,67 +1,67 @@
-//! What makes the constants of a law unusable.
+//! Errors in the constants of a law.
 
 use catalogue::Problem;
 
-/// Constants that a law refuses.
+/// A constant that a law refuses.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum MaterialError {
-    /// Young's modulus must be positive and finite.
+    /// A Young's modulus that is not positive and finite.
     #[error("Young's modulus is {young} Pa; it must be positive and finite")]
     Young {
         /// The modulus given, Pa.
         young: f64,
     },
-    /// Poisson's ratio must lie between -1 and 0.5, both excluded.
+    /// A Poisson's ratio outside the open interval from -1 to 0.5.
     #[error("Poisson's ratio is {poisson}; it must lie between -1 and 0.5, both excluded")]
     Poisson {
         /// The ratio given.
         poisson: f64,
     },
-    /// The shear modulus that the constants amount to must be positive and finite.
+    /// Constants whose shear modulus is not positive and finite.
     #[error("the constants amount to a shear modulus of {mu} Pa; it must be positive and finite")]
     Shear {
         /// `2 (C10 + C01)` or `sum mu_p alpha_p / 2`, Pa.
         mu: f64,
     },
-    /// The bulk modulus must be positive and finite.
+    /// A bulk modulus that is not positive and finite.
     #[error("the bulk modulus is {bulk} Pa; it must be positive and finite")]
     Bulk {
         /// The modulus given, Pa.
         bulk: f64,
     },
-    /// The share of the second Mooney-Rivlin term must lie between 0 and 1.
+    /// A share of the second Mooney-Rivlin term outside 0 to 1.
     #[error("C01 / (C10 + C01) is {share}; it must lie between 0 and 1")]
     Share {
         /// The share given.
         share: f64,
     },
-    /// An Ogden term must be finite and its exponent not zero.
+    /// An Ogden term that is not finite or has a zero exponent.
     #[error("Ogden term {} is mu = {mu} Pa, alpha = {alpha}; both must be finite and alpha not zero", term + 1)]
     OgdenTerm {
         /// Index of the term, from 0.
         term: usize,
-        /// Its constant, Pa.
+        /// Constant of the term, Pa.
         mu: f64,
-        /// Its exponent.
+        /// Exponent of the term.
         alpha: f64,
     },
-    /// A Prony term must be positive and finite.
+    /// A Prony term that is not positive and finite.
     #[error("Prony term {} is g = {g}, tau = {tau} s; both must be positive and finite", term + 1)]
     PronyTerm {
         /// Index of the term, from 0.
         term: usize,
-        /// Its share.
+        /// Share of the term.
         g: f64,
-        /// Its time, s.
+        /// Relaxation time of the term, s.
         tau: f64,
     },
-    /// The shares of a Prony series must leave something that does not relax.
+    /// A Prony series whose shares leave nothing that does not relax.
     #[error("the shares of the Prony series sum to {sum}; the sum must be below 1")]
     PronySum {
         /// `sum g_i`.
         sum: f64,
     },
-    /// A time step must not be negative.
+    /// A negative time step.
     #[error("the time step is {dt} s; it must not be negative")]
     TimeStep {
         /// The step given, s.
@@ -69,7 +69,7 @@ pub enum MaterialError {
     },
 }
 
-/// At the parameter that a scene gives, where there is one.
+/// Converts the error to a problem at the scene's parameter, if there is one.
 impl From<MaterialError> for Problem {
     fn from(bad: MaterialError) -> Problem {
         let parameter = match bad {

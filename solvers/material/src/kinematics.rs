@@ -1,28 +1,29 @@
-//! What the laws share of a displacement gradient, free of cancellation at small strain.
+//! Kinematic quantities common to the laws, computed from a displacement gradient without cancellation at
+//! small strain.
 
 use shape::Matrix3;
 
 use super::Tangent;
 
-/// Cofactor matrix `cof A = d(det A)/dA`, so that `A^-T = cof A / det A`.
+/// Returns the cofactor matrix `cof A = d(det A)/dA`, so `A^-T = cof A / det A`.
 pub(super) fn cofactor(A: &Matrix3) -> Matrix3 {
     let (a, b, c) = (A.column(0), A.column(1), A.column(2));
     Matrix3::from_columns(&[b.cross(&c), c.cross(&a), a.cross(&b)])
 }
 
-/// Green-Lagrange strain `E = (H + H^T + H^T H) / 2`.
+/// Returns the Green-Lagrange strain `E = (H + H^T + H^T H) / 2`.
 pub(super) fn green_lagrange(H: &Matrix3) -> Matrix3 {
     (H + H.transpose() + H.transpose() * H) * 0.5
 }
 
-/// `J - 1 = tr H + II(H) + det H`: at small strain to as many digits as `H` has.
+/// Returns `J - 1 = tr H + II(H) + det H`, at small strain to as many digits as `H` has.
 #[inline]
 pub fn volume_change(H: &Matrix3) -> f64 {
     let cof = cofactor(H);
     H.trace() + cof.trace() + H.column(0).dot(&cof.column(0))
 }
 
-/// `F`, `F^-T` and `J`, with the differences that vanish at `H = 0` kept apart.
+/// `F`, `F^-T` and `J`, with separate values of the differences that vanish at `H = 0`.
 pub(super) struct Kinematics {
     /// `F = I + H`.
     pub F: Matrix3,
@@ -55,7 +56,7 @@ impl Kinematics {
         let per_j = 1.0 / (1.0 + j);
         let cof_less_I = Matrix3::identity() * trace - H.transpose() + cof;
         let G = (Matrix3::identity() + cof_less_I) * per_j;
-        // I - F^-T = (J I - cof F) / J; in the numerator tr H drops out.
+        // I - F^-T = (J I - cof F) / J; in the numerator tr H cancels.
         let F_less_G = H + (H.transpose() + Matrix3::identity() * (second + third) - cof) * per_j;
         Kinematics {
             F: Matrix3::identity() + H,
@@ -70,17 +71,17 @@ impl Kinematics {
         }
     }
 
-    /// `ln J`; NaN where `J < 0`.
+    /// Returns `ln J`; NaN for `J < 0`.
     pub(super) fn ln_j(&self) -> f64 {
         self.j.ln_1p()
     }
 
-    /// `I2 - 3`, `I2 = ((tr C)^2 - tr C^2) / 2 = |cof F|^2`.
+    /// Returns `I2 - 3`, with `I2 = ((tr C)^2 - tr C^2) / 2 = |cof F|^2`.
     pub(super) fn i2(&self) -> f64 {
         2.0 * self.cof_less_I.trace() + self.cof_less_I.norm_squared()
     }
 
-    /// `ln(I2 J^(-4/3) / 3)`, the terms of first order taken out of the difference by hand.
+    /// Returns `ln(I2 J^(-4/3) / 3)`; the first-order terms of the difference are removed analytically.
     pub(super) fn ln_i2_bar(&self) -> f64 {
         // With K = cof F - I: (I2 - 3) - 4 (J - 1) = K : K - 2 II - 4 III.
         let square = self.cof_less_I.norm_squared();
@@ -88,7 +89,7 @@ impl Kinematics {
             + 4.0 / 3.0 * less_ln_1p(self.j)
     }
 
-    /// `ln(I1 J^(-2/3) / 3)`, the terms of first order taken out of the difference by hand.
+    /// Returns `ln(I1 J^(-2/3) / 3)`; the first-order terms of the difference are removed analytically.
     pub(super) fn ln_i1_bar(&self) -> f64 {
         // (I1 - 3) - 2 (J - 1) = H : H - 2 II - 2 III.
         (self.square - 2.0 * (self.second + self.third)) / 3.0 - less_ln_1p(self.i1 / 3.0)
@@ -96,7 +97,7 @@ impl Kinematics {
     }
 }
 
-/// `x - ln(1 + x)`, without the cancellation near 0.
+/// Returns `x - ln(1 + x)` without cancellation near 0.
 ///
 /// With `s = x / (2 + x)`: `ln(1 + x) = 2 atanh s = 2 (s + s^3/3 + ...)` and `x - 2 s = x s`.
 #[inline]
@@ -106,7 +107,7 @@ pub fn less_ln_1p(x: f64) -> f64 {
     }
     let s = x / (2.0 + x);
     let q = s * s;
-    // |s| <= 1/7: the first term left out is q^9/21 < 1e-16 of the sum.
+    // |s| <= 1/7: the first omitted term is q^9/21 < 1e-16 of the sum.
     let mut sum = 0.0;
     for n in (1..10).rev() {
         sum = sum * q + 1.0 / f64::from(2 * n + 1);
@@ -114,12 +115,12 @@ pub fn less_ln_1p(x: f64) -> f64 {
     x * s - 2.0 * s * q * sum
 }
 
-/// `exp(x) - 1 - x`, without the cancellation near 0.
+/// Returns `exp(x) - 1 - x` without cancellation near 0.
 pub(super) fn exp_m1_less(x: f64) -> f64 {
     if x.abs() > 0.5 {
         return x.exp_m1() - x;
     }
-    // x^2/2 (1 + x/3 (1 + x/4 (...))): the first term left out is 2 x^14/16! < 1e-17 of the sum.
+    // x^2/2 (1 + x/3 (1 + x/4 (...))): the first omitted term is 2 x^14/16! < 1e-17 of the sum.
     let mut sum = 1.0;
     for n in (3..16).rev() {
         sum = 1.0 + x / f64::from(n) * sum;
@@ -127,7 +128,7 @@ pub(super) fn exp_m1_less(x: f64) -> f64 {
     0.5 * x * x * sum
 }
 
-/// The tangent with the entry `dP_ij/dF_kl = entry(i, j, k, l)`.
+/// Returns the tangent with the entries `dP_ij/dF_kl = entry(i, j, k, l)`.
 #[inline(always)]
 pub(super) fn tangent_of(entry: impl Fn(usize, usize, usize, usize) -> f64) -> Tangent {
     let mut tangent = Tangent::zeros();
@@ -144,7 +145,7 @@ pub(super) fn tangent_of(entry: impl Fn(usize, usize, usize, usize) -> f64) -> T
     tangent
 }
 
-/// Adds `delta_ik M_jl`, the derivative of `F M` at constant `M`, `M` symmetric.
+/// Adds `delta_ik M_jl`, the derivative of `F M` at constant symmetric `M`.
 pub(super) fn add_right(tangent: &mut Tangent, M: &Matrix3) {
     for l in 0..3 {
         for j in 0..3 {
@@ -172,7 +173,7 @@ mod tests {
 
     #[test]
     fn differences_from_the_logarithm_keep_their_digits() {
-        // Leading terms x^2/2 - x^3/3 + x^4/4 at small x; the direct difference where it is exact enough.
+        // Leading terms x^2/2 - x^3/3 + x^4/4 at small x; the direct difference where it is accurate enough.
         for x in [1e-12, -1e-9, 3e-6, -2e-5] {
             let series = x * x * (0.5 - x / 3.0 + x * x / 4.0);
             assert!((less_ln_1p(x) - series).abs() < 4e-15 * series, "{x}");

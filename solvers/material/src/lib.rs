@@ -1,7 +1,7 @@
-//! Pointwise constitutive laws. A law sees a displacement gradient `H = grad u` and knows no mesh.
+//! Pointwise constitutive laws. A law takes a displacement gradient `H = grad u` and has no access to a mesh.
 //!
-//! Every law takes `H` and not `F = I + H`: with `F`, a strain of 1e-10 keeps 6 digits, with `H` it keeps all of them
-//! (here `E = (H + H^T + H^T H) / 2`, `J - 1 = tr H + II(H) + det H`, `ln J = log1p(J - 1)`).
+//! Every law takes `H` instead of `F = I + H`: with `F`, a strain of 1e-10 keeps 6 digits; with `H` it keeps
+//! all digits (here `E = (H + H^T + H^T H) / 2`, `J - 1 = tr H + II(H) + det H`, `ln J = log1p(J - 1)`).
 //!
 //! ```
 //! use material::{Law, LinearElastic, Material, NeoHookean};
@@ -44,46 +44,47 @@ pub use viscoelastic::{deviator, relaxed_stress_and_tangent};
 use lane::{LaneStrain, Lanes};
 use shape::Matrix3;
 
-/// `A = dP/dF`, (9, 9), Pa: entry `(i + 3 j, k + 3 l)` is `dP_ij / dF_kl`, the column-major index of a `Matrix3`.
+/// Tangent `A = dP/dF`, (9, 9), Pa: entry `(i + 3 j, k + 3 l)` is `dP_ij / dF_kl`, with the column-major
+/// index of a `Matrix3`.
 pub type Tangent = nalgebra::SMatrix<f64, 9, 9>;
 
 /// An isotropic elastic law, given by its energy per undeformed volume.
 ///
-/// Where `det F <= 0` the laws with a logarithm or a power of `J` (all but the linear and the
-/// St. Venant-Kirchhoff one) return values that are not finite: callers look at `J` first.
+/// For `det F <= 0` the laws with a logarithm or a power of `J` (all except the linear and the St.
+/// Venant-Kirchhoff law) return values that are not finite. Callers must check `J` first.
 pub trait Material {
-    /// Whether the law holds for small displacement gradients only, rotations included.
+    /// Whether the law is valid only for small displacement gradients, rotations included.
     fn is_small_strain(&self) -> bool {
         false
     }
 
-    /// Energy per undeformed volume `W(H)`, J/m^3.
+    /// Returns the energy per undeformed volume `W(H)`, J/m^3.
     fn energy(&self, H: &Matrix3) -> f64;
 
-    /// First Piola-Kirchhoff stress `P = dW/dF`, (3, 3), Pa.
+    /// Returns the first Piola-Kirchhoff stress `P = dW/dF`, (3, 3), Pa.
     fn stress(&self, H: &Matrix3) -> Matrix3;
 
-    /// Tangent `dP/dF`, (9, 9), Pa; symmetric.
+    /// Returns the symmetric tangent `dP/dF`, (9, 9), Pa.
     fn tangent(&self, H: &Matrix3) -> Tangent;
 
-    /// Both at once: what they share is computed once.
+    /// Returns stress and tangent; common quantities are computed once.
     fn stress_and_tangent(&self, H: &Matrix3) -> (Matrix3, Tangent) {
         (self.stress(H), self.tangent(H))
     }
 
-    /// Shear modulus in the limit of small strain, Pa.
+    /// Returns the shear modulus in the limit of small strain, Pa.
     fn mu(&self) -> f64;
 
-    /// First Lame modulus in the limit of small strain, Pa.
+    /// Returns the first Lame modulus in the limit of small strain, Pa.
     fn lambda(&self) -> f64;
 
-    /// Bulk modulus in the limit of small strain, `lambda + 2 mu / 3`, Pa.
+    /// Returns the bulk modulus in the limit of small strain, `lambda + 2 mu / 3`, Pa.
     fn bulk(&self) -> f64 {
         self.lambda() + 2.0 / 3.0 * self.mu()
     }
 
-    /// [`Material::stress`] of eight points, `P_ij` at [3 i + j], Pa; straight-line arithmetic, fused where `FMA`. A law without
-    /// lanes of its own is evaluated point by point.
+    /// Computes [`Material::stress`] of eight points, with `P_ij` at [3 i + j], Pa, by straight-line
+    /// arithmetic, fused if `FMA`. A law without vectorised code is evaluated point by point.
     #[inline(always)]
     fn stress_lanes<const FMA: bool>(&self, strain: &LaneStrain, p: &mut [Lanes; 9])
     where
@@ -92,7 +93,8 @@ pub trait Material {
         lane::one_by_one(self, strain, p);
     }
 
-    /// [`Material::stress_lanes`] of many: where a law is a long chain, several overlap.
+    /// Computes [`Material::stress_lanes`] of many groups of eight points; laws with a long dependency chain
+    /// overlap several groups.
     #[inline(always)]
     fn stress_batch<const FMA: bool>(&self, strains: &[LaneStrain], p: &mut [[Lanes; 9]])
     where
@@ -103,8 +105,9 @@ pub trait Material {
         }
     }
 
-    /// The law without its volumetric part, and that part, where the energy is a sum of the two and the first does not
-    /// change with `J`; a shared dilation then acts on the second alone.
+    /// Splits the law into a part without volumetric energy and the volumetric energy. The result is `None`
+    /// unless the energy is a sum of the two and the first part does not depend on `J`. A shared dilation
+    /// then acts only on the second part.
     fn split(&self) -> Option<(Self, Volumetric)>
     where
         Self: Sized,
@@ -112,8 +115,8 @@ pub trait Material {
         None
     }
 
-    /// How the energy depends on a volume change `theta` in place of `J`, at `theta - 1`, where that is apart from the change
-    /// of shape; `None` for a law that does not part, which costs time alone.
+    /// Returns the dependence of the energy on a volume change `theta` in place of `J`, at `theta - 1`, for a
+    /// law separable into shape and volume. `None` marks a law that is not separable, which only costs time.
     fn separated(&self, _theta_minus_1: f64) -> Option<Separated> {
         None
     }

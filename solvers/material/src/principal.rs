@@ -1,4 +1,5 @@
-//! Laws in principal stretches: from Kirchhoff stress over logarithmic stretch to `P` and `dP/dF`.
+//! Laws in principal stretches: `P` and `dP/dF` from the Kirchhoff stress as a function of logarithmic
+//! stretch.
 
 use shape::Matrix3;
 
@@ -7,23 +8,25 @@ use super::{Tangent, spectral};
 
 /// Principal axes and stretches of `C = F^T F = I + 2 E`.
 pub(super) struct Principal {
-    /// Axes `N_a`, columns.
+    /// Axes `N_a`, as columns.
     axes: Matrix3,
-    /// Principal Green-Lagrange strains, in no order.
+    /// Principal Green-Lagrange strains, unordered.
     strain: [f64; 3],
     /// Squared stretches `c_a = 1 + 2 strain_a`.
     square: [f64; 3],
-    /// Logarithmic stretches `e_a = ln(c_a) / 2`; NaN where `J <= 0`, which `C` alone does not show.
+    /// Logarithmic stretches `e_a = ln(c_a) / 2`; NaN for `J <= 0`, which cannot be recognised from `C`
+    /// alone.
     pub log: [f64; 3],
     /// `J - 1`.
     pub j: f64,
 }
 
-/// How the principal Kirchhoff stresses follow the logarithmic stretches.
+/// Derivatives of the principal Kirchhoff stresses with respect to the logarithmic stretches.
 pub(super) struct Slopes {
     /// `d tau_a / d e_b`, symmetric.
     pub slope: [[f64; 3]; 3],
-    /// `(tau_b - tau_c) / (e_b - e_c)` for the pairs (1, 2), (2, 0), (0, 1); its limit where they are equal.
+    /// `(tau_b - tau_c) / (e_b - e_c)` for the pairs (1, 2), (2, 0), (0, 1), or its limit for equal
+    /// stretches.
     pub quotient: [f64; 3],
 }
 
@@ -35,7 +38,7 @@ impl Principal {
         Principal { axes, strain, square: strain.map(|e| 1.0 + 2.0 * e), log, j }
     }
 
-    /// Second Piola-Kirchhoff stress `S = sum tau_a / c_a N_a N_a^T`.
+    /// Returns the second Piola-Kirchhoff stress `S = sum tau_a / c_a N_a N_a^T`.
     fn second_piola(&self, tau: &[f64; 3]) -> Matrix3 {
         let mut scaled = self.axes;
         for a in 0..3 {
@@ -44,16 +47,18 @@ impl Principal {
         scaled * self.axes.transpose()
     }
 
-    /// `P = F S` at the principal Kirchhoff stresses `tau`.
+    /// Returns `P = F S` for the principal Kirchhoff stresses `tau`.
     pub(super) fn stress(&self, H: &Matrix3, tau: &[f64; 3]) -> Matrix3 {
         let S = self.second_piola(tau);
         S + H * S
     }
 
-    /// `dP/dF = delta_ik S_jl + sum_ab D_ab M_aa M_bb + sum_(a<b) theta_ab/2 (M_ab + M_ba)(M_ab + M_ba)` with
-    /// `M_ab = (F N_a) N_b^T`, `D_ab = ds_a / dE_b` and `theta_ab = (s_a - s_b) / (E_a - E_b)` of the principal
-    /// stresses `s_a = tau_a / c_a` and strains `E_a`. `theta` is formed without dividing by `E_a - E_b`, so that equal
-    /// stretches are no special case: with `m = (tau_a - tau_b) / (e_a - e_b)`,
+    /// Returns the tangent
+    /// `dP/dF = delta_ik S_jl + sum_ab D_ab M_aa M_bb + sum_(a<b) theta_ab/2 (M_ab + M_ba)(M_ab + M_ba)`.
+    ///
+    /// Here `M_ab = (F N_a) N_b^T`, `D_ab = ds_a / dE_b` and `theta_ab = (s_a - s_b) / (E_a - E_b)`, with the
+    /// principal stresses `s_a = tau_a / c_a` and strains `E_a`. `theta` is formed without division by
+    /// `E_a - E_b`, so equal stretches need no special treatment. With `m = (tau_a - tau_b) / (e_a - e_b)`,
     ///
     /// ```text
     /// theta = m (e_a - e_b) / (E_a - E_b) (1/c_a + 1/c_b) / 2 - (tau_a + tau_b) / (c_a c_b)
@@ -89,7 +94,7 @@ impl Principal {
     }
 }
 
-/// Adds `A_ij B_kl`.
+/// Adds `A_ij B_kl` to the tangent.
 fn add_dyad(tangent: &mut Tangent, A: &Matrix3, B: &Matrix3) {
     for n in 0..9 {
         let b = B[n];
@@ -99,7 +104,7 @@ fn add_dyad(tangent: &mut Tangent, A: &Matrix3, B: &Matrix3) {
     }
 }
 
-/// `atanh(x) / x`, 1 at 0.
+/// Returns `atanh(x) / x`, 1 at 0.
 fn atanh_over(x: f64) -> f64 {
     if x == 0.0 { 1.0 } else { x.atanh() / x }
 }

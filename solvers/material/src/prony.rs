@@ -4,27 +4,27 @@ use shape::Matrix3;
 
 use super::MaterialError;
 
-/// `g(t) = g_inf + sum_i g_i exp(-t / tau_i)`, `g_inf = 1 - sum_i g_i`: the share of a stress put on at once that is
-/// left after the time `t`. `g_i` without unit, `tau_i` in seconds.
+/// Prony series `g(t) = g_inf + sum_i g_i exp(-t / tau_i)` with `g_inf = 1 - sum_i g_i`: the fraction of a
+/// suddenly applied stress that remains after the time `t`. `g_i` is dimensionless, `tau_i` in seconds.
 ///
-/// It acts on a material stress, the deviatoric part of the instantaneous second Piola-Kirchhoff stress `S0` (see
-/// [`deviator`](super::deviator)):
+/// The series acts on a material stress, the deviatoric part of the instantaneous second Piola-Kirchhoff
+/// stress `S0` (see [`deviator`](super::deviator)):
 ///
 /// ```text
 /// S(t) = g_inf S0(t) + sum_i h_i(t),   h_i(t) = integral_0^t g_i exp(-(t - s) / tau_i) dS0/ds ds
 /// h_i(t + dt) = exp(-dt / tau_i) h_i(t) + g_i (1 - exp(-dt / tau_i)) / (dt / tau_i) (S0(t + dt) - S0(t))
 /// ```
 ///
-/// The recursion is exact if `S0` is linear in time over the step, and stable for any step.
-/// Sources: Taylor, Pister and Goudreau, Int. J. Numer. Methods Eng. 2 (1970) 45-59; Simo and Hughes, Computational
+/// The recursion is exact if `S0` is linear in time over the step, and stable for any step. Sources: Taylor,
+/// Pister and Goudreau, Int. J. Numer. Methods Eng. 2 (1970) 45-59; Simo and Hughes, Computational
 /// Inelasticity, section 10.3.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Prony {
     terms: Vec<(f64, f64)>,
 }
 
-/// What a step of one length needs of the series. A point keeps its `h_i` as a slice of as many tensors as there are
-/// terms, zero at the start; all points together are one flat array.
+/// Coefficients of the series for a given step length. The `h_i` of a point are a slice with one tensor per
+/// term, initially zero; the slices of all points form one flat array.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PronyStep {
     relaxed: f64,
@@ -33,7 +33,8 @@ pub struct PronyStep {
 }
 
 impl Prony {
-    /// From the terms `(g_i, tau_i)`: both positive and finite, the `g_i` summing to less than 1.
+    /// Builds the series from the terms `(g_i, tau_i)`. All must be positive and finite, and the sum of the
+    /// `g_i` must be less than 1.
     pub fn new(terms: &[(f64, f64)]) -> Result<Prony, MaterialError> {
         for (term, &(g, tau)) in terms.iter().enumerate() {
             if !(g > 0.0 && tau > 0.0 && tau.is_finite()) {
@@ -47,22 +48,23 @@ impl Prony {
         Ok(Prony { terms: terms.to_vec() })
     }
 
-    /// The terms `(g_i, tau_i)`.
+    /// Terms `(g_i, tau_i)`.
     pub fn terms(&self) -> &[(f64, f64)] {
         &self.terms
     }
 
-    /// `g(t)`, `t` in seconds.
+    /// Returns `g(t)`, with `t` in seconds.
     pub fn relaxation(&self, t: f64) -> f64 {
         self.relaxed() + self.terms.iter().map(|(g, tau)| g * (-t / tau).exp()).sum::<f64>()
     }
 
-    /// `g_inf`, the share that never relaxes.
+    /// Returns `g_inf`, the fraction that never relaxes.
     pub fn relaxed(&self) -> f64 {
         1.0 - self.terms.iter().map(|(g, _)| g).sum::<f64>()
     }
 
-    /// For steps of `dt` seconds. 0 gives the instantaneous response, infinity the relaxed one.
+    /// Returns the coefficients for steps of `dt` seconds. 0 gives the instantaneous response, infinity the
+    /// relaxed response.
     pub fn step(&self, dt: f64) -> Result<PronyStep, MaterialError> {
         if !(dt >= 0.0) {
             return Err(MaterialError::TimeStep { dt });
@@ -77,24 +79,25 @@ impl Prony {
 }
 
 impl PronyStep {
-    /// `S` at the end of the step, Pa, from `S0` at its start (`old`) and end (`new`) and the `h_i` at its start.
+    /// Returns `S` at the end of the step, Pa, from `S0` at its start (`old`) and end (`new`) and the `h_i`
+    /// at its start.
     pub fn stress(&self, old: &Matrix3, new: &Matrix3, history: &[Matrix3]) -> Matrix3 {
         new * self.modulus() + self.carried(old, history)
     }
 
-    /// `dS / dS0` at the end of the step: `g_inf + sum_i g_i (1 - exp(-dt / tau_i)) / (dt / tau_i)`.
+    /// Returns `dS / dS0` at the end of the step: `g_inf + sum_i g_i (1 - exp(-dt / tau_i)) / (dt / tau_i)`.
     pub fn modulus(&self) -> f64 {
         self.relaxed + self.terms.iter().map(|(_, gain)| gain).sum::<f64>()
     }
 
-    /// The part of `S` at the end of the step that was settled at its start, Pa.
+    /// Returns the part of `S` at the end of the step that is known at its start, Pa.
     pub fn carried(&self, old: &Matrix3, history: &[Matrix3]) -> Matrix3 {
         assert_eq!(history.len(), self.terms.len(), "one tensor for each term");
         let sum = |sum, (&(decay, gain), h): (&(f64, f64), &Matrix3)| sum + h * decay - old * gain;
         self.terms.iter().zip(history).fold(Matrix3::zeros(), sum)
     }
 
-    /// Takes the `h_i` from the start of the step to its end.
+    /// Updates the `h_i` from the start of the step to its end.
     pub fn advance(&self, old: &Matrix3, new: &Matrix3, history: &mut [Matrix3]) {
         assert_eq!(history.len(), self.terms.len(), "one tensor for each term");
         for (&(decay, gain), h) in self.terms.iter().zip(history) {
@@ -108,7 +111,7 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// Random series of three terms that leave at least a tenth, and steps of 1e-4 to 10 s.
+    /// Returns random series of three terms with a relaxed fraction of at least a tenth.
     fn series() -> impl Strategy<Value = Prony> {
         (prop::array::uniform3(0.01..0.3f64), prop::array::uniform3(-3.0..2.0f64)).prop_map(|(g, tau)| {
             let terms: Vec<_> = g.into_iter().zip(tau.map(|t| 10.0_f64.powf(t))).collect();
@@ -122,7 +125,7 @@ mod tests {
 
     const S: Matrix3 = Matrix3::new(3.0, 1.0, -2.0, 1.0, -4.0, 0.5, -2.0, 0.5, 1.0);
 
-    // A few dozen steps, each rounded: 1e-13.
+    // Rounding over a few dozen steps is 1e-13.
     proptest! {
         #[test]
         fn a_step_strain_relaxes_by_the_series(prony in series(), steps in steps()) {
@@ -164,7 +167,7 @@ mod tests {
         let history = vec![S, S * 2.0];
         let relaxed = prony.step(f64::INFINITY).unwrap().stress(&S, &(S * 3.0), &history);
         assert!((relaxed - S * 1.5).norm() < 1e-14);
-        // (1 - exp(-x)) / x = 1 - x/2 at x = 1e-9: no digit of the x/2 may be lost.
+        // (1 - exp(-x)) / x = 1 - x/2 at x = 1e-9: no digit of x/2 may be lost.
         let modulus = prony.step(1e-10).unwrap().modulus();
         assert!((1.0 - modulus - (0.3 * 0.5e-9 + 0.2 * 0.25e-10)).abs() < 2e-16, "{modulus}");
     }

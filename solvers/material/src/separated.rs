@@ -1,9 +1,10 @@
-//! Laws in which shape and volume part: `psi(F, theta) = A(theta) psi(F, 1) + U(theta)`.
+//! Laws that are separable into shape and volume: `psi(F, theta) = A(theta) psi(F, 1) + U(theta)`.
 //!
-//! All but St. Venant-Kirchhoff's do. A point that shares its volume change with many groups, as every point of a cloud
-//! does, then needs one tangent in place of one per group: 83 nodes with 960 points have 26 000 pairs of the two.
+//! All laws except St. Venant-Kirchhoff's are separable. A point of a cloud shares its volume change with
+//! many groups. For a separable law it needs a single tangent instead of one per group: 83 nodes with 960
+//! points have 26 000 pairs of point and group.
 
-/// `A` and `U` (J/m^3) at a dilation, each with its first and second derivative.
+/// `A` (dimensionless) and `U` (J/m^3) at a dilation, each with its first and second derivative.
 #[derive(Clone, Copy, Debug)]
 #[allow(missing_docs)]
 pub struct Separated {
@@ -11,17 +12,17 @@ pub struct Separated {
     pub U: [f64; 3],
 }
 
-/// `A` of a law whose part in the change of shape does not change with the volume.
+/// Constant `A` of a law whose shape part does not depend on the volume.
 const WHOLE: [f64; 3] = [1.0, 0.0, 0.0];
 
 impl Separated {
-    /// `A = 1`, `U = kappa/2 (theta - 1)^2`.
+    /// Builds `A = 1`, `U = kappa/2 (theta - 1)^2`.
     pub fn quadratic(bulk: f64, theta_minus_1: f64) -> Separated {
         let U = [0.5 * bulk * theta_minus_1 * theta_minus_1, bulk * theta_minus_1, bulk];
         Separated { A: WHOLE, U }
     }
 
-    /// `A = 1`, `U = kappa/2 (ln theta)^2`.
+    /// Builds `A = 1`, `U = kappa/2 (ln theta)^2`.
     pub fn logarithmic(bulk: f64, theta_minus_1: f64) -> Separated {
         let (log, theta) = (theta_minus_1.ln_1p(), 1.0 + theta_minus_1);
         let U = [0.5 * log * log, log / theta, (1.0 - log) / (theta * theta)].map(|u| bulk * u);

@@ -1,11 +1,13 @@
-//! Eigenvalues and axes of a symmetric 3 x 3 tensor.
+//! Eigenvalues and principal axes of a symmetric 3 x 3 tensor.
 
 use shape::Matrix3;
 
-/// Eigenvalues and orthonormal eigenvectors (columns) of a symmetric `A`, in no order, by cyclic Jacobi rotations.
+/// Returns the eigenvalues and orthonormal eigenvectors (columns) of a symmetric `A`, unordered, by cyclic
+/// Jacobi rotations.
 ///
-/// Errors are of the order of the rounding of `|A|`, equal eigenvalues or not: a tensor of 1e-10 is resolved to 1e-26.
-/// NaN in gives NaN out. Source: Golub and Van Loan, Matrix Computations, 4th ed., section 8.5.
+/// Errors are of the order of the rounding of `|A|`, also for equal eigenvalues: a tensor of 1e-10 is
+/// resolved to 1e-26. NaN in the input gives NaN in the result. Source: Golub and Van Loan, Matrix
+/// Computations, 4th ed., section 8.5.
 pub(super) fn eigen(A: &Matrix3) -> ([f64; 3], Matrix3) {
     let mut a = *A;
     let mut axes = Matrix3::identity();
@@ -26,7 +28,7 @@ pub(super) fn eigen(A: &Matrix3) -> ([f64; 3], Matrix3) {
             a[(p, p)] -= shift;
             a[(q, q)] += shift;
             a[(p, q)] = 0.0;
-            // Only the upper triangle is kept up to date.
+            // Only the upper triangle is updated.
             let (rp, rq) = (upper(r, p), upper(r, q));
             (a[rp], a[rq]) = (c * a[rp] - s * a[rq], s * a[rp] + c * a[rq]);
             for i in 0..3 {
@@ -68,7 +70,7 @@ mod tests {
             let A = (full + full.transpose()) * 0.5;
             let (mut found, axes) = eigen(&A);
             let back = axes * Matrix3::from_diagonal(&found.into()) * axes.transpose();
-            // A dozen rotations, each rounded.
+            // Rounding of a dozen rotations.
             prop_assert!((back - A).norm() <= 4e-15 * A.norm());
             prop_assert!((axes.transpose() * axes - Matrix3::identity()).norm() < 4e-15);
             values.sort_by(f64::total_cmp);

@@ -5,23 +5,24 @@ use shape::Matrix3;
 use super::kinematics::{Kinematics, add_right, tangent_of};
 use super::{Material, PronyStep, Tangent};
 
-/// Deviatoric part of the second Piola-Kirchhoff stress, `S_dev = S - (S : C)/3 C^-1`, (3, 3), Pa, from `P = F S`: the
-/// pull-back of the deviator of the Kirchhoff stress. It is what [`PronyStep`] relaxes.
+/// Returns the deviatoric part of the second Piola-Kirchhoff stress, `S_dev = S - (S : C)/3 C^-1`, (3, 3),
+/// Pa, from `P = F S`. It is the pull-back of the deviator of the Kirchhoff stress, on which [`PronyStep`]
+/// acts.
 pub fn deviator(P: &Matrix3, H: &Matrix3) -> Matrix3 {
     let k = Kinematics::new(H);
     let pressure = P.dot(&k.F) / 3.0;
     k.G.transpose() * (P - k.G * pressure)
 }
 
-/// `P` and `dP/dF` at the end of a step of a `law` whose deviatoric part relaxes, `carried` being
+/// Returns `P` and `dP/dF` at the end of a step for a `law` whose deviatoric part relaxes; `carried` is
 /// [`PronyStep::carried`] of the point:
 ///
 /// ```text
 /// P = P0 + (m - 1) (P0 - p F^-T) + F carried,   p = P0 : F / 3,   m = PronyStep::modulus
 /// ```
 ///
-/// with `P0` of the law. The tangent is symmetric for the laws in which `p` follows `J` alone (isochoric neo-Hookean,
-/// Hencky, Mooney-Rivlin, Ogden), not for the others.
+/// with the elastic stress `P0` of the law. The tangent is symmetric for laws in which `p` depends on `J`
+/// alone (isochoric neo-Hookean, Hencky, Mooney-Rivlin, Ogden) and unsymmetric for the others.
 pub fn relaxed_stress_and_tangent(
     law: &impl Material,
     H: &Matrix3,

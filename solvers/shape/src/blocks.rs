@@ -1,20 +1,20 @@
-//! Rows by eights, for tables applied again and again.
+//! Rows in blocks of eight, for tables that are applied repeatedly.
 
 use lanes::{LANES, LanePath, on_path};
 
 use crate::{Rows, Vector3};
 
-/// One number of each row of a block, on one line of the cache.
+/// One number for each row of a block, in one cache line.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[repr(align(64))]
 struct Lanes([f64; LANES]);
 
-/// A table packed for repeated products: rows that share most of their nodes side by side, eight to a block, each block over the
-/// nodes that any of its rows names, with zeros where a row does not (register blocks; Im, Yelick and Vuduc 2004).
+/// A table packed for repeated products (register blocks; Im, Yelick and Vuduc 2004).
 ///
-/// A nodal vector is loaded once for eight rows, and no sum waits for another. Every row's sum runs by ascending node in a
-/// lane of its own, multiply and add apart, so that bits are those of [`Rows::apply`] on a table whose rows ascend, on any
-/// machine.
+/// Eight rows with mostly common nodes form a block. A block covers the nodes of all its rows, with zeros for
+/// nodes that a row lacks. A nodal vector is loaded once for eight rows, and no sum waits for another. Each
+/// row is summed by ascending node in a lane of its own, with separate multiplication and addition. For a
+/// table with ascending rows the bits are therefore those of [`Rows::apply`] on any machine.
 ///
 /// ```
 /// use shape::{RowBlocks, Rows, Unity, Vector3};
@@ -30,16 +30,17 @@ struct Lanes([f64; LANES]);
 #[derive(Clone, Debug, PartialEq)]
 pub struct RowBlocks {
     node_count: usize,
-    /// Rows in the order of their lanes; the last block may have lanes to spare.
+    /// Rows in the order of their lanes; the last block may have unused lanes.
     order: Vec<u32>,
-    /// Of each block among `nodes` and `values`, blocks + 1 entries; an even number of blocks.
+    /// Start of each block in `nodes` and `values`, blocks + 1 entries; the number of blocks is even.
     offsets: Vec<usize>,
     nodes: Vec<u32>,
     values: Vec<Lanes>,
 }
 
 impl RowBlocks {
-    /// Packs a table, in the time of some six of [`Rows::apply`] (moving least squares): to be applied more often than that.
+    /// Packs a table. This takes the time of about six calls of [`Rows::apply`] (moving least squares), so it
+    /// pays off for more calls than that.
     pub fn new(rows: &Rows) -> RowBlocks {
         let order = alike(rows);
         let (mut offsets, mut nodes) = (vec![0], Vec::new());
@@ -52,10 +53,11 @@ impl RowBlocks {
             offsets.push(nodes.len());
         }
         if offsets.len() % 2 == 0 {
-            // Blocks go in pairs; the last may be beside one of no rows.
+            // Blocks are processed in pairs; the last block may be paired with an empty block.
             offsets.push(nodes.len());
         }
-        // Filled by node and lane, then read by ascending node: each value is moved twice, and none is looked for.
+        // Values are filled by node and lane, then read by ascending node: each is moved twice, without a
+        // search.
         let mut values = Vec::with_capacity(nodes.len());
         let mut of_nodes = vec![Lanes::default(); rows.node_count()];
         for (block, range) in order.chunks(LANES).zip(offsets.windows(2)) {
@@ -76,21 +78,22 @@ impl RowBlocks {
         self.order.len()
     }
 
-    /// True without rows.
+    /// Whether the table has no rows.
     pub fn is_empty(&self) -> bool {
         self.order.is_empty()
     }
 
-    /// The field with nodal parameters `u` at every row's point, `u(x_q) = sum_I N_I(x_q) u_I`, into a caller's buffer: nothing
-    /// is allocated.
+    /// Evaluates the field with nodal parameters `u` at every row's point, `u(x_q) = sum_I N_I(x_q) u_I`,
+    /// into the buffer `field` without allocation.
     pub fn apply_into(&self, u: &[Vector3], field: &mut [Vector3]) {
         assert_eq!(u.len(), self.node_count, "one vector per node");
         assert_eq!(field.len(), self.len(), "one vector per row");
         apply(LanePath::best(), self, u, field)
     }
 
-    /// Two blocks side by side: a sum waits for the one before, four cycles, and the sums and products for a node of one block take
-    /// three. All six sums in one array, and no function between: else the compiler shuffles them at every node.
+    /// Processes two blocks together: a sum waits four cycles for the previous one, and the sums and products
+    /// of a block for one node take three. All six sums are in one array of one function; otherwise the
+    /// compiler shuffles them at every node.
     #[inline(always)]
     fn apply_plain(&self, u: &[Vector3], field: &mut [Vector3]) {
         let block = |range: std::ops::Range<usize>| (&self.nodes[range.clone()], &self.values[range]);
@@ -132,7 +135,8 @@ impl RowBlocks {
 }
 
 on_path! {
-    /// [`RowBlocks::apply_plain`] in wide registers; the same bits on every path: multiply and add stay apart.
+    /// Calls [`RowBlocks::apply_plain`] in wide registers. The bits are the same on every path because
+    /// multiplication and addition stay separate.
     fn apply(blocks: &RowBlocks, u: &[Vector3], field: &mut [Vector3]) = apply_in
 }
 
@@ -141,7 +145,8 @@ fn apply_in<const FMA: bool>(blocks: &RowBlocks, u: &[Vector3], field: &mut [Vec
     blocks.apply_plain(u, field)
 }
 
-/// Writes the vectors of a block. Apart, lest the compiler pair x and y of a row already in the sums: twice the time.
+/// Writes the vectors of a block. As a separate function it prevents the compiler from pairing x and y of a
+/// row in the sums, which doubles the time.
 #[inline(never)]
 fn scatter([x, y, z]: &[[f64; LANES]; 3], rows: &[u32], field: &mut [Vector3]) {
     for (l, &row) in rows.iter().enumerate() {
@@ -149,8 +154,8 @@ fn scatter([x, y, z]: &[[f64; LANES]; 3], rows: &[u32], field: &mut [Vector3]) {
     }
 }
 
-/// Rows in an order that puts alike ones together: by their two largest values' nodes, where a table has more columns than
-/// a row has entries.
+/// Returns the rows in an order that groups similar rows: by the nodes of their two largest values, if a
+/// table has more columns than a row has entries.
 fn alike(rows: &Rows) -> Vec<u32> {
     let order: Vec<u32> = (0..rows.len() as u32).collect();
     if rows.uniform_len() == Some(rows.node_count()) {
@@ -162,7 +167,7 @@ fn alike(rows: &Rows) -> Vec<u32> {
     sorted(&order, &firsts, rows.node_count())
 }
 
-/// Nodes of the two largest values, of equal ones the first; node 0 where there are none.
+/// Returns the nodes of the two largest values (the first of equal values), or node 0 if there are no values.
 fn two_largest((nodes, values): (&[u32], &[f64])) -> (u32, u32) {
     let (most, next) = two_highest(values);
     let place = |value: f64, from: usize| (from..values.len()).find(|&at| values[at] == value);
@@ -171,8 +176,8 @@ fn two_largest((nodes, values): (&[u32], &[f64])) -> (u32, u32) {
     (nodes[first], second.map_or(0, |at| nodes[at]))
 }
 
-/// The two largest values, minus infinity where there are none: lane by lane, then of the lanes, without a branch that a new
-/// record would mispredict.
+/// Returns the two largest values, or minus infinity if there are none. The search goes lane by lane and then
+/// over the lanes, without branches that a new maximum would mispredict.
 fn two_highest(values: &[f64]) -> (f64, f64) {
     let larger = |a: f64, b: f64| if b > a { b } else { a };
     let smaller = |a: f64, b: f64| if b < a { b } else { a };
@@ -195,7 +200,7 @@ fn two_highest(values: &[f64]) -> (f64, f64) {
     (most[0], next[0])
 }
 
-/// The rows by their keys, all below `count`; rows of one key keep their order (counting sort).
+/// Sorts the rows by their keys, all below `count`; rows with equal keys keep their order (counting sort).
 fn sorted(order: &[u32], keys: &[u32], count: usize) -> Vec<u32> {
     let mut next = vec![0; count + 1];
     for &key in keys {
@@ -213,10 +218,10 @@ fn sorted(order: &[u32], keys: &[u32], count: usize) -> Vec<u32> {
     sorted
 }
 
-/// The nodes that a block names, as a set of bits.
+/// The set of nodes of a block, as bits.
 struct Named {
     bits: Vec<u64>,
-    /// Words of `bits` that are not all zero lie between these.
+    /// Range of the words of `bits` that may be nonzero.
     span: (usize, usize),
 }
 
@@ -226,7 +231,7 @@ impl Named {
     }
 
     fn add(&mut self, nodes: &[u32]) {
-        // Bits of one word are gathered apart: a word in memory would wait for every bit before.
+        // Bits of a word are collected locally, because a word in memory would wait for every previous bit.
         let (mut word, mut bits) = (0, 0);
         for &node in nodes {
             if node as usize / 64 != word {
@@ -245,7 +250,7 @@ impl Named {
         }
     }
 
-    /// Appends the nodes, ascending, and forgets them.
+    /// Appends the nodes in ascending order and clears the set.
     fn drain_into(&mut self, nodes: &mut Vec<u32>) {
         let (low, high) = std::mem::replace(&mut self.span, (usize::MAX, 0));
         for word in low..high {
@@ -263,7 +268,7 @@ mod tests {
     use super::*;
     use crate::Unity;
 
-    /// `count` rows over 83 nodes, of every length up to a full one.
+    /// Returns `count` rows over 83 nodes, of every length up to a full row.
     fn table(count: usize) -> Rows {
         let (mut offsets, mut nodes, mut values) = (vec![0], Vec::new(), Vec::new());
         for row in 0..count {
@@ -280,7 +285,7 @@ mod tests {
     #[test]
     fn blocks_give_the_bits_of_rows_on_every_path() {
         let u: Vec<Vector3> = (0..83).map(|i| Vector3::new(i as f64, 1.0, -0.3).map(f64::cos)).collect();
-        // Whole blocks, lanes to spare, no rows at all.
+        // Full blocks, unused lanes, and no rows.
         for count in [0, 1, 7, 8, 200, 1331] {
             let rows = table(count);
             let blocks = RowBlocks::new(&rows);
@@ -305,7 +310,7 @@ mod tests {
 
     #[test]
     fn alike_rows_share_a_block() {
-        // Sixteen rows of two nodes each, of either kind by turns: two blocks of two nodes.
+        // Sixteen rows of two nodes each, of two alternating kinds, form two blocks of two nodes.
         let nodes = (0..16).flat_map(|row| if row % 2 == 0 { [3, 9] } else { [5, 6] }).collect();
         let offsets = (0..=16).map(|row| 2 * row).collect();
         let rows = Rows::new(10, offsets, nodes, [0.75, 0.25].repeat(16), Unity::Within(0.0)).unwrap();

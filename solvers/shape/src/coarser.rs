@@ -2,11 +2,12 @@
 
 use crate::Rows;
 
-/// Functions of some of a method's nodes, interpolated at all of them: the linear mesh under a quadratic one.
+/// Functions of some of a method's nodes, interpolated at all of its nodes: the linear mesh under a quadratic
+/// mesh.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Coarser {
-    /// For each node of the method the coarser nodes, ascending, and the values of their functions.
+    /// For each node of the method, the coarser nodes in ascending order and the values of their functions.
     pub rows: Rows,
-    /// The method's node at the place of each coarser node.
+    /// Node of the method that coincides with each coarser node.
     pub places: Vec<u32>,
 }

@@ -1,30 +1,32 @@
-//! Dilation groups: which quadrature points share one volume change. The cure of volumetric locking is a second,
-//! small table, filled alike by finite elements (one group per element, or per node) and by meshless clouds.
+//! Dilation groups: sets of quadrature points that share a volume change. The remedy for volumetric locking
+//! is a second, small table, filled in the same way by finite elements (one group per element or per node)
+//! and by meshless clouds.
 
 use crate::{ShapeError, Vector3, VolumeRows};
 
-/// Nodes among which [`DilationGroups::near`] shares out a point: in three dimensions those of the tetrahedron around it.
+/// Number of nodes among which [`DilationGroups::near`] divides a point: in three dimensions the nodes of the
+/// surrounding tetrahedron.
 const NEAREST: usize = 4;
 
-/// Volume of a group over that of its shares taken positive, below which a part of a group that
-/// [`DilationGroups::by_part`] cuts is left out.
+/// Ratio of a group's volume to the volume with absolute shares below which [`DilationGroups::by_part`] omits
+/// a part of a divided group.
 const POSITIVE: f64 = 0.5;
 
-/// Groups of (point, share): group `a` averages the dilation of its points with the weights
-/// `share * w_q`, `V_a = sum_q share_aq w_q`. Shares of one point over all groups sum to one, so that no volume is
-/// lost or counted twice.
+/// Groups of pairs (point, share): group `a` averages the dilation of its points with the weights
+/// `share * w_q`, `V_a = sum_q share_aq w_q`. The shares of a point over all groups sum to one, so no volume
+/// is lost or counted twice.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DilationGroups {
     offsets: Vec<usize>,
     points: Vec<u32>,
     shares: Vec<f64>,
     point_count: usize,
-    /// Part of each point that groups do not cross; empty where there is one.
+    /// Part of each point, for groups that do not cross parts; empty if there is a single part.
     parts: Vec<u16>,
 }
 
 impl DilationGroups {
-    /// Checks and wraps: `offsets` (groups + 1), `points` and `shares` (one per entry).
+    /// Builds the groups from checked arrays: `offsets` (groups + 1), `points` and `shares` (one per entry).
     pub fn new(
         point_count: usize,
         offsets: Vec<usize>,
@@ -51,7 +53,7 @@ impl DilationGroups {
                 total[point] += shares[k];
             }
         }
-        // As a negation: a NaN must not pass.
+        // The negation also rejects NaN.
         #[allow(clippy::neg_cmp_op_on_partial_ord)]
         let lost = total.iter().position(|t| !((t - 1.0).abs() < 1e-12));
         match lost {
@@ -60,7 +62,7 @@ impl DilationGroups {
         }
     }
 
-    /// One group for each cell, of the points in it; they stand together, cell after cell.
+    /// Builds one group for each cell from the numbers of points per cell; points are in the order of cells.
     pub fn of_cells(points: impl IntoIterator<Item = usize>) -> Result<DilationGroups, ShapeError> {
         let mut offsets = vec![0];
         let mut count = 0;
@@ -76,37 +78,40 @@ impl DilationGroups {
         self.offsets.len() - 1
     }
 
-    /// True without groups.
+    /// Whether there are no groups.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// Number of quadrature points the groups divide up.
+    /// Number of quadrature points divided among the groups.
     pub fn point_count(&self) -> usize {
         self.point_count
     }
 
-    /// Part of each point, that of [`DilationGroups::by_part`]; empty where there is one.
+    /// Part of each point as given to [`DilationGroups::by_part`]; empty if there is a single part.
     pub fn parts(&self) -> &[u16] {
         &self.parts
     }
 
-    /// Points and shares of one group.
+    /// Returns the points and shares of a group.
     pub fn group(&self, group: usize) -> (&[u32], &[f64]) {
         let range = self.offsets[group]..self.offsets[group + 1];
         (&self.points[range.clone()], &self.shares[range])
     }
 
-    /// One group per node, each point shared out by its own shape values (nodal averaging; Ortiz-Bernardin et
-    /// al. 2015, volume-averaged nodal projection): `share_aq = N_a(x_q)`. A point whose values do not sum to one
-    /// is refused.
+    /// Builds one group per node, with each point divided by its shape values, `share_aq = N_a(x_q)` (nodal
+    /// averaging; Ortiz-Bernardin et al. 2015, volume-averaged nodal projection).
+    ///
+    /// # Errors
+    /// A point whose values do not sum to one.
     pub fn nodal(volume: &VolumeRows) -> Result<DilationGroups, ShapeError> {
         DilationGroups::of_nodes(volume, |values, shares| shares.extend(values.iter().map(|&v| Some(v))))
     }
 
-    /// As [`DilationGroups::nodal`], each point shared out among its four largest shape values alone, in proportion to
-    /// them. A group couples all nodes that its points see, in a cloud those within four support radii; with this those
-    /// of the points around its node.
+    /// Builds groups as [`DilationGroups::nodal`] does, but divides each point only among its four largest
+    /// shape values, in proportion to them. A nodal group couples all nodes of its points, i.e. nodes within
+    /// four support radii in a cloud. With this method a group couples only the nodes of the points around
+    /// its node.
     pub fn near(volume: &VolumeRows) -> Result<DilationGroups, ShapeError> {
         let mut order = Vec::new();
         DilationGroups::of_nodes(volume, |values, shares| {
@@ -116,13 +121,14 @@ impl DilationGroups {
             order.sort_by(|&a, &b| values[b].total_cmp(&values[a]));
             order.truncate(NEAREST);
             let sum: f64 = order.iter().map(|&k| values[k]).sum();
-            // A node that counts for nothing at all of its points would have a group without a volume.
+            // A node with zero value at all of its points would have a group without volume.
             let share = |k: usize| (order.contains(&k) && values[k] != 0.0).then(|| values[k] / sum);
             shares.extend((0..values.len()).map(share));
         })
     }
 
-    /// One group per node; `share` adds the shares of a point from its values, `None` for a node that has no part in it.
+    /// Builds one group per node. `share` appends the shares of a point, given its values; `None` marks a
+    /// node without a share.
     fn of_nodes(
         volume: &VolumeRows,
         mut share: impl FnMut(&[f64], &mut Vec<Option<f64>>),
@@ -139,7 +145,7 @@ impl DilationGroups {
         let mut offsets = vec![0];
         for next in &mut next {
             let (first, count) = (offsets[offsets.len() - 1], *next);
-            // A node that no point counts for has no group.
+            // A node without a share in any point has no group.
             if count > 0 {
                 offsets.push(first + count);
             }
@@ -158,12 +164,12 @@ impl DilationGroups {
         DilationGroups::new(rows.len(), offsets, points, shares)
     }
 
-    /// The same groups cut into one for each part among their points: a mean over the border of two materials
-    /// mixes dilations that jump there. `parts` has one entry for each point, `weights` (m^3) are those of
-    /// the quadrature.
+    /// Divides every group into one group for each part among its points. A mean across the border of two
+    /// materials would mix dilations that jump there. `parts` has one entry per point; `weights` (m^3) are
+    /// those of the quadrature.
     ///
-    /// The shares of a cloud can be negative. A piece of a cut group that has hardly a volume is left out,
-    /// and its points are shared out among their other groups.
+    /// The shares of a cloud can be negative. A piece of a divided group with almost no volume is omitted,
+    /// and its points are divided among their other groups.
     pub fn by_part(&self, parts: &[u16], weights: &[f64]) -> Result<DilationGroups, ShapeError> {
         for (what, found) in [("parts of points", parts.len()), ("weights", weights.len())] {
             if found != self.point_count {
@@ -195,8 +201,8 @@ impl DilationGroups {
         Ok(DilationGroups { parts: parts.to_vec(), ..groups })
     }
 
-    /// Volume `V_a` (m^3) and averaged gradient row `b_a = sum_q share w_q grad N / V_a` (1/m) of one group, by
-    /// ascending node. `scratch` holds one vector per node and is zero on entry and on return.
+    /// Returns the volume `V_a` (m^3) and averaged gradient row `b_a = sum_q share w_q grad N / V_a` (1/m) of
+    /// a group, by ascending node. `scratch` has one vector per node and is zero on entry and on return.
     pub fn averaged_gradient(
         &self,
         group: usize,
@@ -212,7 +218,7 @@ impl DilationGroups {
             let (nodes, grads) = volume.row(q as usize);
             for (&node, g) in nodes.iter().zip(grads) {
                 let sum = &mut scratch[node as usize];
-                // Again where a sum is zero by chance.
+                // A node may be appended again if its sum is zero by chance.
                 if *sum == Vector3::zeros() {
                     touched.push(node);
                 }
@@ -234,7 +240,7 @@ mod tests {
     use super::*;
     use crate::{GradRows, Point3, Rows, Unity};
 
-    /// Three points of six nodes; the third sees two, of which one counts for nothing.
+    /// Three points over six nodes; the third has two nodes, of which one has a zero value.
     fn volume() -> VolumeRows {
         let values = vec![0.3, 0.05, 0.2, 0.2, -0.05, 0.3, 0.5, 0.25, 0.125, 0.0625, 0.0625, 0.0, 1.0, 0.0];
         let nodes = (0..6).chain(0..6).chain([0, 4]).collect();
@@ -253,7 +259,7 @@ mod tests {
             };
             (0..groups.len()).map(share).collect::<Vec<_>>()
         };
-        // Node 4 counts for no point, and has no group: of equal values the one of the first node does.
+        // Node 4 has a share in no point, hence no group: among equal values the first node is selected.
         assert_eq!(groups.len(), 5);
         let close = |found: &[Option<f64>], wanted: [f64; 5]| {
             found.iter().zip(wanted).all(|(f, w)| (f.unwrap_or(0.0) - w).abs() < 1e-15)
@@ -275,10 +281,10 @@ mod tests {
             (0..groups.len()).flat_map(entries).filter(|(q, _)| **q == point).map(|(_, share)| share).sum()
         };
         assert!((0..3).all(|q| (sum(&cut, q) - 1.0).abs() < 1e-15));
-        // Node 4 counts for -0.05 of the first point: such a piece has no volume, and the others take it
-        // over.
+        // Node 4 has the share -0.05 in the first point. Such a piece has no volume, and the other groups
+        // take over its point.
         assert_eq!((0..cut.len()).filter(|&a| cut.group(a).1.iter().any(|share| *share < 0.0)).count(), 0);
-        // Points of one part have the groups that they had.
+        // Points with a single part keep their groups.
         let uncut = whole.by_part(&[1; 3], volume.weights()).unwrap();
         assert!((0..whole.len()).all(|a| whole.group(a) == uncut.group(a)) && uncut.len() == whole.len());
         assert!(whole.by_part(&[0, 1], volume.weights()).is_err());

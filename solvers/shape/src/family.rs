@@ -1,4 +1,4 @@
-//! Families of methods over a mesh, as scenes name them.
+//! Families of methods over a mesh, as named in scenes.
 
 use std::sync::Arc;
 
@@ -7,22 +7,22 @@ use geometry::{CellKind, Mesh};
 
 use crate::{RowSource, SourceError};
 
-/// A family that scenes name by `family = NAME`, with its parameters beside it.
+/// Catalogue entry of a family that scenes select by `family = NAME`, with its parameters.
 pub type FamilyEntry = Entry<fn(&Values) -> Result<MeshFamily, Problem>>;
 
-/// Makes the source of a family's tables over a mesh.
+/// Function that builds the source of a family's tables over a mesh.
 pub type OverMesh = Arc<dyn Fn(Arc<Mesh>) -> Result<Box<dyn RowSource>, SourceError> + Send + Sync>;
 
 /// A family of methods whose nodes are the vertices of a mesh, with its parameters.
 #[derive(Clone)]
 pub struct MeshFamily {
-    /// Cells that it takes.
+    /// Cell kind that the family uses.
     pub cells: CellKind,
-    /// Whether its basis is Kronecker: nodal parameters are displacements. Where they are not, essential conditions are enforced
-    /// by penalty.
+    /// Whether the basis has the Kronecker property, so that nodal parameters are displacements. Otherwise
+    /// essential conditions are enforced by penalty.
     pub interpolates: bool,
-    /// How its shape functions are made and where they are evaluated, for plans.
+    /// Description, for plans, of the construction of shape functions and their evaluation points.
     pub shape_functions: String,
-    /// The source of its tables.
+    /// Builds the source of the family's tables.
     pub over: OverMesh,
 }

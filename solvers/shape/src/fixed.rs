@@ -1,12 +1,12 @@
 //! A nodal parameter with a prescribed value.
 
-/// One nodal parameter prescribed.
+/// A prescribed nodal parameter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FixedDof {
-    /// The node.
+    /// Node.
     pub node: u32,
-    /// 0, 1, 2 for x, y, z.
+    /// Axis: 0, 1, 2 for x, y, z.
     pub axis: u8,
-    /// Prescribed value, m (zero is a value like any other).
+    /// Prescribed value, m; zero is allowed.
     pub value: f64,
 }

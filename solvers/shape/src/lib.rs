@@ -1,10 +1,11 @@
-//! The shape table: *at this point, which nodes count, with which value and which gradient?*
+//! The shape table: the nodes that contribute at a point, with their values and gradients.
 //!
-//! A finite element, a moving-least-squares cloud, an inverse-distance weight and a radial basis all answer that
-//! one question, with a row. Everything downstream (kinematics, assembly, loads, supports, transfer) reads rows
-//! and never asks who filled them, which is what makes a comparison fair.
+//! A finite element, a moving-least-squares cloud, an inverse-distance weight and a radial basis all provide
+//! such a row. All later stages (kinematics, assembly, loads, supports, transfer) read rows regardless of
+//! their source, which makes a comparison fair.
 //!
-//! Compressed rows in flat arrays; positions and gradients in the reference configuration; SI units.
+//! Tables are compressed rows in flat arrays, with positions and gradients in the reference configuration and
+//! SI units.
 //!
 //! ```
 //! use shape::{PointRows, Point3, RowBlocks, Rows, Unity, Vector3};

@@ -1,9 +1,10 @@
-//! An order in which neighbours in space are neighbours in memory.
+//! Ordering in which neighbours in space are neighbours in memory.
 
 use crate::Point3;
 
-/// Indices of `points` along a Morton curve (the bits of the three coordinates interleaved, 21 per axis); ties keep
-/// their order. Nodes and elements numbered this way are read from cache: random numbering costs 3 times.
+/// Returns the indices of `points` along a Morton curve (the interleaved bits of the three coordinates, 21
+/// per axis); ties keep their order. Nodes and elements numbered in this way are read from the cache; random
+/// numbering takes 3 times as long.
 pub fn locality_order(points: &[Point3]) -> Vec<u32> {
     let mut low = [f64::INFINITY; 3];
     let mut high = [f64::NEG_INFINITY; 3];
@@ -13,7 +14,7 @@ pub fn locality_order(points: &[Point3]) -> Vec<u32> {
             high[c] = high[c].max(p[c]);
         }
     }
-    // One scale for all axes: cells of the curve are cubes.
+    // The same scale for all axes makes the cells of the curve cubes.
     let extent = (0..3).map(|c| high[c] - low[c]).fold(f64::MIN_POSITIVE, f64::max);
     let scale = f64::from((1u32 << 21) - 1) / extent;
     let code = |p: &Point3| (0..3).fold(0u64, |code, c| code | spread(((p[c] - low[c]) * scale) as u64) << c);
@@ -22,7 +23,7 @@ pub fn locality_order(points: &[Point3]) -> Vec<u32> {
     keyed.into_iter().map(|(_, index)| index).collect()
 }
 
-/// The lowest 21 bits of `x`, two zeros between any two of them.
+/// Returns the lowest 21 bits of `x` with two zeros between any two of them.
 fn spread(x: u64) -> u64 {
     let mut x = x & 0x1f_ffff;
     for (shift, mask) in [

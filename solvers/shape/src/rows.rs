@@ -1,23 +1,23 @@
-//! Compressed rows of (node, value): the sparse matrix that every table here is made of.
+//! Compressed rows of (node, value): the sparse matrix on which all tables are based.
 
 use rayon::prelude::*;
 
 use crate::Vector3;
 
-/// Rows that one task checks at least: some microseconds. So many alone are checked by the calling thread: to hand them over
-/// takes as long.
+/// Smallest number of rows checked by a task: a few microseconds. A table of at most this size is checked by
+/// the calling thread, because passing it on would take as long.
 const CHECKED_TOGETHER: usize = 2048;
 
-/// What the maker of a table promises about the sum of each row.
+/// Promised sum of each row.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Unity {
-    /// Rows sum to one within this absolute tolerance (checked).
+    /// Rows sum to one within this absolute tolerance, which is checked.
     Within(f64),
-    /// No promise: radial bases without a polynomial, say.
+    /// No promise, for example for radial bases without a polynomial.
     NotPromised,
 }
 
-/// What makes a table unusable.
+/// Reason why a table is invalid.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum ShapeError {
     /// Offsets that do not start at 0, decrease, or do not end at the number of entries.
@@ -27,25 +27,25 @@ pub enum ShapeError {
         row: usize,
         /// Offset found there.
         offset: usize,
-        /// Number of entries in all.
+        /// Total number of entries.
         entries: usize,
     },
-    /// Two arrays that should be of one length.
+    /// Two arrays that should have the same length.
     #[error("{what} has {found} entries, {expected} are needed")]
     Length {
-        /// Which array.
+        /// Name of the array.
         what: &'static str,
         /// Its length.
         found: usize,
-        /// The length it needs.
+        /// Required length.
         expected: usize,
     },
-    /// A node index beyond the nodes.
+    /// A node index beyond the number of nodes.
     #[error("row {row} names node {node} of {nodes}")]
     NodeOutOfRange {
         /// Row index.
         row: usize,
-        /// Bad node.
+        /// Invalid node.
         node: usize,
         /// Number of nodes.
         nodes: usize,
@@ -53,12 +53,12 @@ pub enum ShapeError {
     /// A NaN or an infinity.
     #[error("{what} of row {row} is not finite")]
     NotFinite {
-        /// Which array.
+        /// Name of the array.
         what: &'static str,
         /// Row index.
         row: usize,
     },
-    /// A row that breaks its promise to sum to one.
+    /// A row whose sum violates the promise of one.
     #[error("row {row} sums to {sum}, promised is 1 within {tolerance:e}")]
     NotUnity {
         /// Row index.
@@ -78,7 +78,7 @@ pub enum ShapeError {
     },
 }
 
-/// Values of the shape functions that count at each of a list of points.
+/// Values of the nonzero shape functions at each of a list of points.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rows {
     node_count: usize,
@@ -89,7 +89,7 @@ pub struct Rows {
 }
 
 impl Rows {
-    /// Checks and wraps: `offsets` (rows + 1), `nodes` and `values` (one per entry).
+    /// Builds rows from checked arrays: `offsets` (rows + 1), `nodes` and `values` (one per entry).
     pub fn new(
         node_count: usize,
         offsets: Vec<usize>,
@@ -126,7 +126,7 @@ impl Rows {
         }
     }
 
-    /// The first row's fault, of those that have any.
+    /// Returns the fault of the first faulty row.
     pub(crate) fn first_fault(
         &self,
         of: impl Fn(usize) -> Option<ShapeError> + Sync + Send,
@@ -139,7 +139,8 @@ impl Rows {
 
     fn fault(&self, row: usize, unity: Unity) -> Option<ShapeError> {
         let (nodes, values) = self.row(row);
-        // Sums first: a search for the offender would stop at every entry to look. Whatever is not finite makes the sum so.
+        // The sum is tested first, because a search would test every entry. Any value that is not finite
+        // makes the sum not finite.
         let sum = sum_of(values);
         let highest = nodes.iter().fold(0, |highest, &node| highest.max(node)) as usize;
         if !nodes.is_empty() && highest >= self.node_count {
@@ -154,7 +155,7 @@ impl Rows {
             return Some(ShapeError::NotFinite { what: "value", row });
         }
         match unity {
-            // A sum that is no number is not near one either.
+            // A NaN sum also fails this test.
             Unity::Within(tolerance) if !((sum - 1.0).abs() <= tolerance) => {
                 Some(ShapeError::NotUnity { row, sum, tolerance })
             }
@@ -167,12 +168,12 @@ impl Rows {
         self.offsets.len() - 1
     }
 
-    /// True without rows.
+    /// Whether there are no rows.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// Number of nodes the table refers to (columns).
+    /// Number of nodes of the table (columns).
     pub fn node_count(&self) -> usize {
         self.node_count
     }
@@ -192,24 +193,24 @@ impl Rows {
         &self.values
     }
 
-    /// The one length of all rows, if they share one: hot loops then run with a fixed trip count.
+    /// Common length of all rows, if there is one; hot loops then have a fixed trip count.
     pub fn uniform_len(&self) -> Option<usize> {
         self.uniform_len
     }
 
-    /// Nodes and values of one row.
+    /// Returns the nodes and values of a row.
     pub fn row(&self, row: usize) -> (&[u32], &[f64]) {
         let range = self.range(row);
         (&self.nodes[range.clone()], &self.values[range])
     }
 
-    /// Entry range of one row.
+    /// Returns the range of entries of a row.
     pub fn range(&self, row: usize) -> std::ops::Range<usize> {
         self.offsets[row]..self.offsets[row + 1]
     }
 
-    /// The field with nodal parameters `u` at every row's point: `u(x_q) = sum_I N_I(x_q) u_I`. For repeated products there is
-    /// [`crate::RowBlocks`].
+    /// Evaluates the field with nodal parameters `u` at every row's point: `u(x_q) = sum_I N_I(x_q) u_I`.
+    /// [`crate::RowBlocks`] is faster for repeated products.
     pub fn apply(&self, u: &[Vector3]) -> Vec<Vector3> {
         assert_eq!(u.len(), self.node_count, "one vector per node");
         let at = |row: usize| {
@@ -219,9 +220,9 @@ impl Rows {
         (0..self.len()).map(at).collect()
     }
 
-    /// The nodal forces that do the same work as forces at the rows' points: `f_I = sum_q N_I(x_q) f_q`, so that
-    /// `sum_I f_I . u_I = sum_q f_q . u(x_q)` for every nodal `u`. Total force is kept where rows sum to one, total moment
-    /// where they are exact for linear fields.
+    /// Returns the nodal forces that do the same work as forces at the rows' points:
+    /// `f_I = sum_q N_I(x_q) f_q`, so `sum_I f_I . u_I = sum_q f_q . u(x_q)` for every nodal `u`. The total
+    /// force is preserved if rows sum to one, the total moment if they reproduce linear fields.
     pub fn apply_transposed(&self, forces: &[Vector3]) -> Vec<Vector3> {
         assert_eq!(forces.len(), self.len(), "one vector per row");
         let mut nodal = vec![Vector3::zeros(); self.node_count];
@@ -235,7 +236,7 @@ impl Rows {
     }
 }
 
-/// Sum by four partial sums: one alone waits for every addition, four cycles of the processor each.
+/// Sums by four partial sums: a single sum would wait four processor cycles for every addition.
 fn sum_of(values: &[f64]) -> f64 {
     let (groups, rest) = values.as_chunks::<4>();
     let mut sums = [0.0; 4];

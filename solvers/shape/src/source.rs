@@ -1,4 +1,4 @@
-//! Where tables come from: the one question every family of methods answers.
+//! Sources of tables: the common interface of all families of methods.
 
 use std::error::Error;
 
@@ -10,14 +10,14 @@ use crate::{
     Coarser, DilationGroups, FluxRows, GradRows, Point3, PointRows, Rows, SurfaceRows, TraceRows, VolumeRows,
 };
 
-/// Why a table can't be filled; each family has errors of its own.
+/// Error of filling a table; each family has its own errors.
 pub type SourceError = Box<dyn Error + Send + Sync>;
 
-/// The quadrature of a method, with what was met as it was made.
+/// Quadrature of a method, with diagnostics of its construction.
 pub struct Quadrature {
     /// Values, gradients and weights.
     pub rows: VolumeRows,
-    /// Numbers about the rows: neighbours, conditioning, lost volume.
+    /// Diagnostics of the rows: neighbours, conditioning, lost volume.
     pub diagnostics: Vec<(&'static Metric, f64)>,
 }
 
@@ -27,80 +27,86 @@ impl From<VolumeRows> for Quadrature {
     }
 }
 
-/// The shape functions of one method on one body, ready to be evaluated. Finite elements and meshless clouds implement it once
-/// each; assembly, loads, supports, errors and transfer ask nothing else of a method.
+/// The shape functions of a method on a body. Finite elements and meshless clouds each implement this trait
+/// once; assembly, loads, supports, errors and transfer need nothing else of a method.
 ///
-/// Facets and cells are those of [`mesh`](RowSource::mesh): the elements themselves, or the background that a cloud is integrated
-/// over.
+/// Facets and cells are those of [`mesh`](RowSource::mesh): the elements themselves, or the background of a
+/// cloud.
 pub trait RowSource: Send + Sync {
-    /// The cells that carry quadrature, facets and regions.
+    /// Returns the cells that define quadrature, facets and regions.
     fn mesh(&self) -> &Mesh;
 
-    /// Size h (m) such that halving every cell or spacing halves it; `volume` is the method's own quadrature.
+    /// Returns a size h (m) that halves if all cells or spacings halve; `volume` is the method's own
+    /// quadrature.
     fn spacing(&self, volume: &VolumeRows) -> f64;
 
-    /// Nodes whose support had to be found; none where the cells give the neighbours.
+    /// Returns the number of nodes whose support had to be determined; zero if the cells define the
+    /// neighbours.
     fn supports(&self) -> usize {
         0
     }
 
-    /// The method's own quadrature.
+    /// Computes the method's own quadrature.
     fn volume(&self) -> Result<Quadrature, SourceError>;
 
-    /// Region of each point of that quadrature.
+    /// Returns the region of each point of the method's own quadrature.
     fn regions(&self) -> Vec<u16>;
 
-    /// Points of that quadrature in each cell, where it goes by cells of one kind: those of a cell stand together.
+    /// Returns the number of points per cell of the method's own quadrature if all cells have the same number
+    /// of points in sequence, `None` otherwise.
     fn points_per_cell(&self) -> Option<usize>;
 
-    /// One group of points for each cell; `None` where the quadrature does not go by cells.
+    /// Returns one group of points for each cell; `None` if the quadrature is not based on cells.
     fn cell_dilation(&self) -> Result<Option<DilationGroups>, SourceError>;
 
-    /// A pressure field, linear between corners, at the points of that quadrature; `None` where the family
-    /// has none. It is continuous in each material alone; `alike` names that of each region.
+    /// Returns a pressure field, linear between corners, at the points of the method's own quadrature; `None`
+    /// if the family has none. The field is continuous only within a material; `alike` gives the material of
+    /// each region.
     fn pressure(&self, alike: &[u16]) -> Result<Option<Rows>, SourceError>;
 
-    /// A coarser mesh whose functions the method's nodes hold exactly; `None` where there is none.
+    /// Returns a coarser mesh whose functions the method's nodes reproduce exactly; `None` if there is none.
     fn coarser(&self) -> Result<Option<Coarser>, SourceError> {
         Ok(None)
     }
 
-    /// A finer quadrature, for error norms and consistent masses.
+    /// Computes a finer quadrature, for error norms and consistent masses.
     fn fine_volume(&self) -> Result<VolumeRows, SourceError>;
 
-    /// Region of each point of the finer quadrature.
+    /// Returns the region of each point of the finer quadrature.
     fn fine_regions(&self) -> Vec<u16>;
 
-    /// Values on facets.
+    /// Computes shape values on facets.
     fn surface(&self, facets: &[Facet]) -> Result<SurfaceRows, SourceError>;
 
-    /// Values on facets for what varies over them and need not be smooth.
+    /// Computes shape values on facets for quantities that vary over the facets and need not be smooth.
     fn field_surface(&self, facets: &[Facet]) -> Result<SurfaceRows, SourceError> {
         self.surface(facets)
     }
 
-    /// Values on the whole outer boundary, where tools may touch, with the points on parts of the facets:
-    /// parts for each facet of the boundary, or none for whole facets.
+    /// Computes shape values on the whole outer boundary, where tools may touch, with the points on parts of
+    /// the facets: a division for each boundary facet, or an empty list for whole facets.
     fn contact_surface(&self, parts: &[Parts]) -> Result<SurfaceRows, SourceError>;
 
-    /// Values at the nodes of facets in ascending order, then at the middle of each; they carry no quadrature, but tell where the
-    /// boundary is.
+    /// Computes shape values at the nodes of facets in ascending order, then at the centre of each facet.
+    /// They form no quadrature but describe the position of the boundary.
     fn outline(&self, facets: &[Facet]) -> Result<PointRows, SourceError>;
 
-    /// Values and gradients on facets, for weak supports.
+    /// Computes shape values and gradients on facets, for weak supports.
     fn flux(&self, facets: &[Facet]) -> Result<FluxRows, SourceError>;
 
-    /// What gradients smoothed over cells are on facets; `None` where the gradients are those of the shape functions.
+    /// Expresses gradients smoothed over cells on facets; `None` if the gradients are those of the shape
+    /// functions.
     fn trace(&self, _facets: &[Facet]) -> Result<Option<TraceRows>, SourceError> {
         Ok(None)
     }
 
-    /// Points on a triangular facet of [`surface`](RowSource::surface).
+    /// Returns the number of points on a triangular facet of [`surface`](RowSource::surface).
     fn face_points(&self) -> usize;
 
-    /// Values at points of the body, and how many of the points lie outside and took the value of the nearest point.
+    /// Computes shape values at points of the body, and the number of points that lie outside and take the
+    /// value of the nearest point.
     fn at_points(&self, points: &[Point3]) -> Result<(PointRows, usize), SourceError>;
 
-    /// Values and gradients at points, as [`at_points`](RowSource::at_points).
+    /// Computes shape values and gradients at points, as [`at_points`](RowSource::at_points) does.
     fn gradients_at(&self, points: &[Point3]) -> Result<GradRows, SourceError>;
 }

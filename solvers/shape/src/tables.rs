@@ -1,4 +1,4 @@
-//! The tables: rows with what else a point carries (position, gradients, weight, normal).
+//! Tables: rows with further data of each point (position, gradients, weight, normal).
 
 use rayon::prelude::*;
 
@@ -16,7 +16,7 @@ fn check_points(points: &[Point3]) -> Result<(), ShapeError> {
 }
 
 fn check_weights(weights: &[f64]) -> Result<(), ShapeError> {
-    // `!(w > 0)` and not `w <= 0`: a NaN must not pass.
+    // `!(w > 0)` instead of `w <= 0` also rejects NaN.
     match weights.iter().position(|&w| !(w > 0.0 && w.is_finite())) {
         Some(row) => Err(ShapeError::BadWeight { row, weight: weights[row] }),
         None => Ok(()),
@@ -33,7 +33,7 @@ fn check_normals(normals: &[Vector3]) -> Result<(), ShapeError> {
     }
 }
 
-/// Values at points: probes, targets of a transfer, constraint points.
+/// Shape values at points: probes, targets of a transfer, constraint points.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PointRows {
     points: Vec<Point3>,
@@ -41,7 +41,7 @@ pub struct PointRows {
 }
 
 impl PointRows {
-    /// One row per point.
+    /// Builds the table from positions (m) and one row per point.
     pub fn new(points: Vec<Point3>, rows: Rows) -> Result<PointRows, ShapeError> {
         check_len("points", points.len(), rows.len())?;
         check_points(&points)?;
@@ -53,13 +53,13 @@ impl PointRows {
         &self.points
     }
 
-    /// The rows.
+    /// Rows of shape values.
     pub fn rows(&self) -> &Rows {
         &self.rows
     }
 }
 
-/// Values and gradients at points: where strain and stress are wanted.
+/// Shape values and gradients at points, for strain and stress.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GradRows {
     points: Vec<Point3>,
@@ -68,14 +68,14 @@ pub struct GradRows {
 }
 
 impl GradRows {
-    /// One row per point, one gradient (1/m) per row entry.
+    /// Builds the table from positions (m), one row per point, and one gradient (1/m) per row entry.
     pub fn new(points: Vec<Point3>, rows: Rows, grads: Vec<Vector3>) -> Result<GradRows, ShapeError> {
         check_len("points", points.len(), rows.len())?;
         check_len("gradients", grads.len(), rows.nodes().len())?;
         check_points(&points)?;
         let finite = |g: &Vector3| g.iter().all(|c| c.is_finite());
         let fault = |row| {
-            // As with values: a sum first.
+            // The sum is tested first, as for values.
             let grads = &grads[rows.range(row)];
             (!finite(&grads.iter().sum()) && !grads.iter().all(finite))
                 .then_some(ShapeError::NotFinite { what: "gradient", row })
@@ -91,7 +91,7 @@ impl GradRows {
         &self.points
     }
 
-    /// The rows.
+    /// Rows of shape values.
     pub fn rows(&self) -> &Rows {
         &self.rows
     }
@@ -101,14 +101,15 @@ impl GradRows {
         &self.grads
     }
 
-    /// Nodes and gradients of one row.
+    /// Returns the nodes and gradients of a row.
     pub fn row(&self, row: usize) -> (&[u32], &[Vector3]) {
         let range = self.rows.range(row);
         (&self.rows.nodes()[range.clone()], &self.grads[range])
     }
 
-    /// The row whose gradients are farthest from reproducing linear fields, and how far: `|sum_I grad N_I (x_I - x)^T - 1|`, or
-    /// `|sum_I grad N_I|` times the distance of the farthest node where that is more. `nodes` (m) has the position of each node.
+    /// Returns the row whose gradients have the largest error of linear reproduction, and this error
+    /// (dimensionless). The error is `|sum_I grad N_I (x_I - x)^T - 1|`, or `|sum_I grad N_I|` times the
+    /// distance of the farthest node if that is larger. `nodes` (m) holds the position of each node.
     pub fn worst_reproduction(&self, nodes: &[Point3]) -> Option<(usize, f64)> {
         assert_eq!(nodes.len(), self.rows.node_count(), "one position per node");
         let off = |q: usize| {
@@ -125,7 +126,7 @@ impl GradRows {
         (0..self.rows.len()).into_par_iter().map(off).max_by(|a, b| a.1.total_cmp(&b.1).then(b.0.cmp(&a.0)))
     }
 
-    /// Displacement gradient at each point: `H_ij = sum_I u_Ii N_I,j`.
+    /// Returns the displacement gradient at each point: `H_ij = sum_I u_Ii N_I,j`.
     pub fn displacement_gradients(&self, u: &[Vector3]) -> Vec<Matrix3> {
         assert_eq!(u.len(), self.rows.node_count(), "one vector per node");
         (0..self.rows.len())
@@ -141,19 +142,20 @@ impl GradRows {
     }
 }
 
-/// What the maker of a volume quadrature knows of its rows; kernels are chosen by it.
+/// Known structure of the rows of a volume quadrature, by which kernels are selected.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Layout {
-    /// Nothing.
+    /// No known structure.
     #[default]
     General,
-    /// Each row is at a point of a linear tetrahedron: four nodes, gradients that are constant in it and sum to zero.
+    /// Each row is at a point of a linear tetrahedron: four nodes, with gradients that are constant in the
+    /// cell and sum to zero.
     LinearTetrahedra,
-    /// Each run of eight rows is the 2 x 2 x 2 Gauss points of one trilinear hexahedron.
+    /// Each group of eight rows belongs to the 2 x 2 x 2 Gauss points of a trilinear hexahedron.
     TrilinearHexahedra,
 }
 
-/// A volume quadrature: values and gradients at points with weights (m^3).
+/// A volume quadrature: shape values and gradients at points with weights (m^3).
 #[derive(Clone, Debug, PartialEq)]
 pub struct VolumeRows {
     at: GradRows,
@@ -162,17 +164,17 @@ pub struct VolumeRows {
 }
 
 impl VolumeRows {
-    /// One positive weight (m^3) per row of `at`.
+    /// Builds the quadrature from rows with one positive weight (m^3) each.
     pub fn new(at: GradRows, weights: Vec<f64>) -> Result<VolumeRows, ShapeError> {
         check_len("weights", weights.len(), at.rows.len())?;
         check_weights(&weights)?;
         Ok(VolumeRows { at, weights, layout: Layout::General })
     }
 
-    /// The same rows with what their maker knows of them.
+    /// Declares the known structure of the rows.
     ///
     /// # Errors
-    /// Rows of another length than the layout's.
+    /// Rows whose length or number does not suit the layout.
     pub fn laid_out(self, layout: Layout) -> Result<VolumeRows, ShapeError> {
         let (points, nodes) = match layout {
             Layout::General => (1, None),
@@ -188,12 +190,12 @@ impl VolumeRows {
         Ok(VolumeRows { layout, ..self })
     }
 
-    /// What the maker knows of the rows.
+    /// Known structure of the rows.
     pub fn layout(&self) -> Layout {
         self.layout
     }
 
-    /// The rows without their weights.
+    /// Rows without their weights.
     pub fn at(&self) -> &GradRows {
         &self.at
     }
@@ -203,7 +205,7 @@ impl VolumeRows {
         &self.at.points
     }
 
-    /// Values.
+    /// Rows of shape values.
     pub fn rows(&self) -> &Rows {
         &self.at.rows
     }
@@ -218,13 +220,14 @@ impl VolumeRows {
         &self.weights
     }
 
-    /// Nodes and gradients of one row.
+    /// Returns the nodes and gradients of a row.
     pub fn row(&self, row: usize) -> (&[u32], &[Vector3]) {
         self.at.row(row)
     }
 }
 
-/// A surface quadrature: values at points with weights (m^2) and outward unit normals; tractions act through it.
+/// A surface quadrature: shape values at points with weights (m^2) and outward unit normals, through which
+/// tractions act.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SurfaceRows {
     at: PointRows,
@@ -233,7 +236,7 @@ pub struct SurfaceRows {
 }
 
 impl SurfaceRows {
-    /// One positive weight (m^2) and one unit normal per row of `at`.
+    /// Builds the quadrature from rows with one positive weight (m^2) and one unit normal each.
     pub fn new(at: PointRows, weights: Vec<f64>, normals: Vec<Vector3>) -> Result<SurfaceRows, ShapeError> {
         check_len("weights", weights.len(), at.rows.len())?;
         check_len("normals", normals.len(), at.rows.len())?;
@@ -247,7 +250,7 @@ impl SurfaceRows {
         &self.at.points
     }
 
-    /// Values.
+    /// Rows of shape values.
     pub fn rows(&self) -> &Rows {
         &self.at.rows
     }
@@ -263,7 +266,7 @@ impl SurfaceRows {
     }
 }
 
-/// A surface quadrature that also carries gradients: the boundary stress of Nitsche's method needs them.
+/// A surface quadrature with gradients, as needed for the boundary stress of Nitsche's method.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FluxRows {
     at: GradRows,
@@ -272,7 +275,7 @@ pub struct FluxRows {
 }
 
 impl FluxRows {
-    /// One positive weight (m^2) and one unit normal per row of `at`.
+    /// Builds the quadrature from rows with one positive weight (m^2) and one unit normal each.
     pub fn new(at: GradRows, weights: Vec<f64>, normals: Vec<Vector3>) -> Result<FluxRows, ShapeError> {
         check_len("weights", weights.len(), at.rows.len())?;
         check_len("normals", normals.len(), at.rows.len())?;
@@ -281,7 +284,7 @@ impl FluxRows {
         Ok(FluxRows { at, weights, normals })
     }
 
-    /// The rows without weights and normals.
+    /// Rows without weights and normals.
     pub fn at(&self) -> &GradRows {
         &self.at
     }

@@ -1,12 +1,13 @@
-//! Traces: what a volume quadrature implies on a surface.
+//! Traces: fields of a volume quadrature on a surface.
 
 use crate::ShapeError;
 
 /// Fields on a surface as combinations of their values at points of the volume quadrature,
-/// `f(x_s) = sum_q c_sq f(x_q)`, and the length that bounds them by the volume's integral of their square.
+/// `f(x_s) = sum_q c_sq f(x_q)`, with the lengths that bound them by the volume integral of their square.
 ///
-/// A boundary stress taken so is made of what the energy integrates, which is what lets Nitsche's method be definite
-/// with a known factor; gradients of the shape functions at the surface are not.
+/// A boundary stress of this form consists of the quantities that the energy integrates. Nitsche's method is
+/// then definite with a known factor, which does not hold for gradients of the shape functions at the
+/// surface.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TraceRows {
     offsets: Vec<usize>,
@@ -17,9 +18,10 @@ pub struct TraceRows {
 }
 
 impl TraceRows {
-    /// Checks and wraps: `offsets` (surface points + 1), volume `points` and `coefficients` (one per entry; those of a
-    /// row sum to one), `lengths` (m, one per surface point) with
-    /// `sum_s w_s h_s f(x_s)^2 <= sum_q w_q f(x_q)^2` for every `f` of the volume's points.
+    /// Builds a trace from checked arrays: `offsets` (surface points + 1), volume `points` and `coefficients`
+    /// (one per entry; the coefficients of a row sum to one), and `lengths` (m, one per surface point). The
+    /// lengths must satisfy `sum_s w_s h_s f(x_s)^2 <= sum_q w_q f(x_q)^2` for every `f` on the volume's
+    /// points; this is not checked.
     pub fn new(
         point_count: usize,
         offsets: Vec<usize>,
@@ -47,7 +49,7 @@ impl TraceRows {
                 return Err(ShapeError::NodeOutOfRange { row, node: point as usize, nodes: point_count });
             }
             let sum: f64 = coefficients[pair[0]..pair[1]].iter().sum();
-            // As negations: a NaN must not pass.
+            // The negations also reject NaN.
             if !((sum - 1.0).abs() < 1e-12) {
                 return Err(ShapeError::NotUnity { row, sum, tolerance: 1e-12 });
             }
@@ -63,7 +65,7 @@ impl TraceRows {
         self.lengths.len()
     }
 
-    /// True without surface points.
+    /// Whether there are no surface points.
     pub fn is_empty(&self) -> bool {
         self.lengths.is_empty()
     }
@@ -78,7 +80,7 @@ impl TraceRows {
         &self.points
     }
 
-    /// Volume points and coefficients of one surface point.
+    /// Returns the volume points and coefficients of a surface point.
     pub fn row(&self, row: usize) -> (&[u32], &[f64]) {
         let range = self.offsets[row]..self.offsets[row + 1];
         (&self.points[range.clone()], &self.coefficients[range])

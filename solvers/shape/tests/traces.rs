@@ -1,4 +1,4 @@
-//! Traces sum to one.
+//! Coefficients of traces sum to one.
 
 use shape::{ShapeError, TraceRows};
 

@@ -1,37 +1,37 @@
-//! Stresses of the form `a H + b (cof H - H^T) + c I` as straight-line scalar code, which a loop over lanes turns into
-//! vector instructions. Every difference that vanishes at `H = 0` is formed without cancellation.
+//! Stresses of the form `a H + b (cof H - H^T) + c I` as straight-line scalar code, which a loop over lanes
+//! turns into vector instructions. All differences that vanish at `H = 0` are formed without cancellation.
 
 use lanes::madd;
 
 use super::math::{inverse_cbrt_less_1, ln_1p};
 
-/// What a law needs of `H` beside `H` itself.
+/// Invariants of `H` that a law needs in addition to `H`.
 #[derive(Clone, Copy)]
 pub struct Invariants {
     /// `tr H`.
     pub trace: f64,
-    /// Second invariant and determinant of `H`.
+    /// Sum of the second invariant and the determinant, `II(H) + det H`.
     pub rest: f64,
     /// `J - 1 = tr H + II(H) + det H`.
     pub j: f64,
 }
 
-/// The first row of `cof H` and, off the diagonal, of `cof H - H^T`.
+/// First row of the minors: that of `cof H`, and off the diagonal that of `cof H - H^T`.
 pub type Minors = [f64; 3];
 
-/// The `a`, `b`, `c` of `w P = a H + b (cof H - H^T) + c I`: every isotropic stress of this file has this form, as
-/// `cof F = (1 + tr H) I + cof H - H^T`.
+/// Coefficients `a`, `b`, `c` of `w P = a H + b (cof H - H^T) + c I`. Every isotropic stress of this file has
+/// this form, because `cof F = (1 + tr H) I + cof H - H^T`.
 pub type Coefficients = [f64; 3];
 
 impl Invariants {
-    /// From `tr H` and `II(H) + det H`.
+    /// Builds the invariants from `tr H` and `II(H) + det H`.
     #[inline(always)]
     pub fn new(trace: f64, rest: f64) -> Invariants {
         Invariants { trace, rest, j: trace + rest }
     }
 
-    /// Of `H`, row by row, and the minors it took. `II + det` with the minors of the first row, each with its part of `II`: ten
-    /// products.
+    /// Computes the invariants of `H`, given row by row, and returns the minors used. `II + det` follows from
+    /// the minors of the first row, each including its part of `II`: ten products.
     #[inline(always)]
     pub fn of<const FMA: bool>(h: &[f64; 9]) -> (Invariants, Minors) {
         let m = madd::<FMA>;
@@ -42,23 +42,24 @@ impl Invariants {
         (Invariants::new(h[0] + h[4] + h[8], rest), [x, y, z])
     }
 
-    /// `w/J (s J (F - F^-T) + v cof F)`, given `s w` and `s w/J`, `v w/J`: `J (F - F^-T) = J H - (cof H - H^T) + rest I`.
+    /// Returns the coefficients of `w/J (s J (F - F^-T) + v cof F)`, given `s w`, `s w/J` and `v w/J`, from
+    /// `J (F - F^-T) = J H - (cof H - H^T) + rest I`.
     #[inline(always)]
     pub fn combined<const FMA: bool>(&self, stretch: f64, shape: f64, volume: f64) -> Coefficients {
         let m = madd::<FMA>;
         [stretch, volume - shape, m(shape, self.rest, m(volume, self.trace, volume))]
     }
 
-    /// `w P = w/J (mu J (F - F^-T) + lambda ln(J) cof F)`.
+    /// Returns the coefficients of `w P = w/J (mu J (F - F^-T) + lambda ln(J) cof F)`.
     #[inline(always)]
     pub fn stress<const FMA: bool>(&self, w: f64, mu: f64, lambda: f64) -> Coefficients {
-        // The logarithm has this quotient too: one division for both.
+        // The logarithm contains the same quotient, so a single division suffices.
         let per_j = w * (1.0 / (1.0 + self.j));
         self.combined::<FMA>(w * mu, mu * per_j, lambda * ln_1p::<FMA>(self.j) * per_j)
     }
 
-    /// `b = J^(-2/3) I1 / 3 - 1` and the stress `w mu J^(-2/3) (F - I1/3 F^-T)`, the energy's and that of a group's
-    /// points but for the dilation they share.
+    /// Returns `b = J^(-2/3) I1 / 3 - 1` and the stress `w mu J^(-2/3) (F - I1/3 F^-T)`: energy and stress of
+    /// a group's points except for their shared dilation.
     #[inline(always)]
     pub fn isochoric<const FMA: bool>(&self, h: &[f64; 9], w_mu: f64) -> (f64, Coefficients) {
         let m = madd::<FMA>;
@@ -68,26 +69,26 @@ impl Invariants {
         let d = inverse_cbrt_less_1::<FMA>(self.j);
         let (y, z) = (1.0 + d, d * (2.0 + d));
         let stretch = w_mu * (y * y);
-        // J^-1 = y^3: no division.
+        // J^-1 = y^3, so no division is needed.
         let shape = stretch * (y * y * y);
         (m(z, i, z + i), self.combined::<FMA>(stretch, shape, -shape * i))
     }
 }
 
-/// The stress of a point with a shared dilation, `S` times the isochoric one and `w p cof F`, where over the groups of the
-/// point `S = sum share J_a^(2/3)` and `p = sum share p_a`.
+/// Returns the stress of a point with a shared dilation: `S` times the isochoric stress plus `w p cof F`,
+/// where `S = sum share J_a^(2/3)` and `p = sum share p_a` are sums over the groups of the point.
 #[inline(always)]
 pub fn pressed<const FMA: bool>([a, b, c]: Coefficients, trace: f64, s: f64, wp: f64) -> Coefficients {
     let m = madd::<FMA>;
     [s * a, m(s, b, wp), m(s, c, m(wp, trace, wp))]
 }
 
-/// `w P` row by row. The minors are those of the invariants: six products of 36 less, 0.99 of the time of hex8 (with mean
-/// dilation 0.98).
+/// Returns `w P` row by row. The minors are those of the invariants, which saves six of 36 products: 0.99 of
+/// the time of hex8 (0.98 with mean dilation).
 #[inline(always)]
 pub fn piola<const FMA: bool>(h: &[f64; 9], [x, y, z]: Minors, [a, b, c]: Coefficients) -> [f64; 9] {
     let m = madd::<FMA>;
-    // Entry `k` with `cof H` from the places of its minor, and its mirror `t`.
+    // Entry `k` with `cof H` from the places of its minor; `t` is the transposed entry.
     let entry =
         |k: usize, t: usize, [p, q, r, s]: [usize; 4]| m(a, h[k], b * (m(h[p], h[q], -(h[r] * h[s])) - h[t]));
     [

@@ -1,13 +1,14 @@
-//! Elementary functions that vectorise: straight-line arithmetic on one number, so that a loop over lanes becomes
-//! vector instructions. `f64::ln` and `cbrt` are calls and would cost 20 ns per number.
+//! Elementary functions that vectorise: straight-line arithmetic on one number, which a loop over lanes turns
+//! into vector instructions. `f64::ln` and `cbrt` are function calls and would cost 20 ns per number.
 
 use lanes::madd;
 
-/// `ln(1 + j)` for `1 + j` positive and normal, to 2e-16 absolute and 4e-16 relative.
+/// Returns `ln(1 + j)` for positive, normal `1 + j`, with errors of 2e-16 absolute and 4e-16 relative.
 ///
-/// `1 + j = 2^k (1 + f)` with `1 + f` in [sqrt(1/2), sqrt 2) by exponent arithmetic, then the atanh series of
-/// `s = f / (2 + f)` with the minimax coefficients of fdlibm's `e_log.c` (Sun Microsystems 1993). What
-/// rounding `1 + j` took off is added again over `1 + j`: no digits are lost at small strain.
+/// Exponent arithmetic gives `1 + j = 2^k (1 + f)` with `1 + f` in [sqrt(1/2), sqrt 2). Then follows the
+/// atanh series of `s = f / (2 + f)` with the minimax coefficients of fdlibm's `e_log.c` (Sun Microsystems
+/// 1993). The rounding error of `1 + j`, divided by `1 + j`, is added again, so no digits are lost at small
+/// strain.
 #[inline(always)]
 pub fn ln_1p<const FMA: bool>(j: f64) -> f64 {
     const SQRT_HALF_HIGH: u64 = 0x3fe6_a09e;
@@ -36,16 +37,18 @@ pub fn ln_1p<const FMA: bool>(j: f64) -> f64 {
     m(k, LN2_HIGH, f - (half - m(s, half + odd + even, low)))
 }
 
-/// `(1 + j)^(-1/3) - 1` for `1 + j` positive and normal, to 4e-16 relative even near `j = 0`.
+/// Returns `(1 + j)^(-1/3) - 1` for positive, normal `1 + j`, with a relative error of 4e-16 even near
+/// `j = 0`.
 ///
-/// First guess by a third of the exponent bits (3.3 % off), then two steps of fourth order: with `e = 1 - x y^3`,
-/// `y (1 - e)^(-1/3) = y (1 + e/3 + 2 e^2/9 + 14 e^3/81 + ...)`. The last step is one of Newton on `d = y - 1` itself,
-/// with `e = -(j + t + j t)`, `t = (1 + d)^3 - 1`: no digits are lost at small strain.
+/// The first guess takes a third of the exponent bits (3.3 % off). Two steps of fourth order follow: with
+/// `e = 1 - x y^3`, `y (1 - e)^(-1/3) = y (1 + e/3 + 2 e^2/9 + 14 e^3/81 + ...)`. The last step is a Newton
+/// step for `d = y - 1` itself, with `e = -(j + t + j t)`, `t = (1 + d)^3 - 1`, so no digits are lost at
+/// small strain.
 #[inline(always)]
 pub fn inverse_cbrt_less_1<const FMA: bool>(j: f64) -> f64 {
     let x = 1.0 + j;
     let high = x.to_bits() >> 32;
-    // A product of two 32-bit numbers is one vector instruction, a division by 3 is none.
+    // A product of two 32-bit numbers is one vector instruction; a division by 3 has none.
     let third = (high * 0xaaaa_aaab) >> 33;
     let mut y = f64::from_bits((0x553e_f0ff_u64.wrapping_sub(third)) << 32);
     let m = madd::<FMA>;
@@ -56,7 +59,7 @@ pub fn inverse_cbrt_less_1<const FMA: bool>(j: f64) -> f64 {
     let d = y - 1.0;
     let t = d * m(d, d + 3.0, 3.0);
     let e = m(j, t, j + t);
-    // Far from 0 the three terms of e cancel, and d has its digits already.
+    // Far from 0 the three terms of e cancel, and d is already accurate.
     if d.abs() < 0.5 { m(-y * e, 1.0 / 3.0, d) } else { d }
 }
 
@@ -64,7 +67,7 @@ pub fn inverse_cbrt_less_1<const FMA: bool>(j: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// Positive numbers over 40 binades and close to 1 from both sides.
+    /// Returns positive numbers over 40 binades, and numbers close to 1 on both sides, minus 1.
     fn samples() -> impl Iterator<Item = f64> {
         let wide = (0..4000).map(|i| 2f64.powf(-20.0 + i as f64 * 0.01 + 1e-3) - 1.0);
         let near = (0..300).flat_map(|i| [1.0, -1.0].map(|sign| sign * 10f64.powf(-16.0 + i as f64 * 0.053)));

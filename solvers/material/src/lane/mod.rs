@@ -1,5 +1,5 @@
-//! Stress of eight points at once. A loop over lanes becomes vector instructions where its body is straight-line
-//! arithmetic, so every function here is: no branch on a lane, no call.
+//! Stress of eight points at once. A loop over lanes becomes vector instructions if its body is straight-line
+//! arithmetic. All functions here are therefore free of branches on a lane and of calls.
 
 pub mod invariants;
 pub mod math;
@@ -12,11 +12,12 @@ use shape::Matrix3;
 
 pub use lanes::LANES;
 
-/// One number of eight points.
+/// A number for each of eight points.
 pub type Lanes = [f64; LANES];
 
-/// Displacement gradients of eight points and what every kernel forms of them. Aligned: registers of 64 bytes would
-/// otherwise straddle cache lines, as the stack happens to lie (up to 1.5 times the time).
+/// Displacement gradients of eight points with derived quantities that every kernel needs. The structure is
+/// aligned, because otherwise registers of 64 bytes might straddle cache lines, depending on the stack (up to
+/// 1.5 times the time).
 #[derive(Clone, Copy)]
 #[repr(align(64))]
 pub struct LaneStrain {
@@ -24,29 +25,29 @@ pub struct LaneStrain {
     pub h: [Lanes; 9],
     /// `tr H` and `II(H) + det H`; their sum is `J - 1`.
     pub invariants: [Lanes; 2],
-    /// First row of `cof H`, off the diagonal of `cof H - H^T`.
+    /// First row of `cof H`; off the diagonal, of `cof H - H^T`.
     pub minors: [Lanes; 3],
 }
 
 impl LaneStrain {
-    /// No displacement.
+    /// Zero displacement.
     pub const ZERO: LaneStrain =
         LaneStrain { h: [[0.0; LANES]; 9], invariants: [[0.0; LANES]; 2], minors: [[0.0; LANES]; 3] };
 
-    /// Gradient of one lane, row by row.
+    /// Returns the gradient of a lane, row by row.
     #[inline(always)]
     pub fn lane(&self, l: usize) -> [f64; 9] {
         of_lane(&self.h, l)
     }
 
-    /// Invariants and minors of one lane.
+    /// Returns the invariants and minors of a lane.
     #[inline(always)]
     pub fn invariants(&self, l: usize) -> (Invariants, Minors) {
         let minors = [self.minors[0][l], self.minors[1][l], self.minors[2][l]];
         (Invariants::new(self.invariants[0][l], self.invariants[1][l]), minors)
     }
 
-    /// Stores gradient, invariants and minors of one lane.
+    /// Stores the gradient, invariants and minors of a lane.
     #[inline(always)]
     pub fn set<const FMA: bool>(&mut self, l: usize, h: &[f64; 9]) {
         let (x, minors) = Invariants::of::<FMA>(h);
@@ -57,8 +58,8 @@ impl LaneStrain {
         (self.minors[0][l], self.minors[1][l], self.minors[2][l]) = (minors[0], minors[1], minors[2]);
     }
 
-    /// Turns `good` of a lane to 0 where its `J` is not positive. A loop of its own: together with [`LaneStrain::set`] it
-    /// becomes a branch on each lane.
+    /// Sets `good` of a lane to 0 if its `J` is not positive. This is a separate loop, because together with
+    /// [`LaneStrain::set`] it becomes a branch for each lane.
     #[inline(always)]
     pub fn check(&self, good: &mut Lanes) {
         for l in 0..LANES {
@@ -68,13 +69,14 @@ impl LaneStrain {
     }
 }
 
-/// One lane of nine numbers.
+/// Returns one lane of nine numbers.
 #[inline(always)]
 pub(super) fn of_lane(h: &[Lanes; 9], l: usize) -> [f64; 9] {
     [h[0][l], h[1][l], h[2][l], h[3][l], h[4][l], h[5][l], h[6][l], h[7][l], h[8][l]]
 }
 
-/// The scalar law lane by lane: for a law without lanes of its own, and beyond the range of its series.
+/// Evaluates the scalar law lane by lane, for a law without vectorised code and beyond the range of its
+/// series.
 #[inline(always)]
 pub(super) fn one_by_one(law: &impl Material, x: &LaneStrain, p: &mut [Lanes; 9]) {
     for l in 0..LANES {

@@ -1,8 +1,8 @@
 //! Power series of a traceless symmetric tensor `X` without its eigenvalues.
 //!
-//! By Cayley and Hamilton `X^3 = a X + b I`, `a = X : X / 2`, `b = det X`: a polynomial of any degree is
-//! `x0 I + x1 X + x2 X^2`, and one step of Horner's scheme on the three numbers takes two products. Equal eigenvalues are no
-//! special case, and near `X = 0` no digit is lost.
+//! By Cayley and Hamilton `X^3 = a X + b I`, `a = X : X / 2`, `b = det X`. A polynomial of any degree is
+//! therefore `x0 I + x1 X + x2 X^2`, and one step of Horner's scheme on the three numbers takes two products.
+//! Equal eigenvalues need no special treatment, and no digits are lost near `X = 0`.
 
 use std::sync::LazyLock;
 
@@ -10,31 +10,31 @@ use lanes::madd;
 
 use super::{LANES, Lanes};
 
-/// Bounds of the eigenvalues of `X` for which there is a series, each of another length.
+/// Bounds of the eigenvalues of `X` for which there is a series, each with a separate length.
 pub(crate) const BOUNDS: [f64; 4] = [0.05, 0.15, 0.35, 0.6];
 
-/// Numbers of coefficients for which Horner's scheme is straight-line code; the logarithm's own among them.
+/// Numbers of coefficients for which Horner's scheme is straight-line code, including those of the logarithm.
 const LENGTHS: [usize; 6] = [10, 12, 14, 21, 32, 64];
 
-/// `g_0, g_1, ...`, with zeros up to one of [`LENGTHS`], which change no bit.
+/// Coefficients `g_0, g_1, ...`, padded with zeros to one of [`LENGTHS`]; the zeros change no bit.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Power(Vec<f64>);
 
 impl Power {
-    /// None beyond the longest.
+    /// Pads the coefficients; `None` if there are more than the largest length.
     pub fn new(mut g: Vec<f64>) -> Option<Power> {
         let length = LENGTHS.into_iter().find(|&length| g.len() <= length)?;
         g.resize(length, 0.0);
         Some(Power(g))
     }
 
-    /// All of them, if there are `N`.
+    /// Returns the coefficients as an array if there are exactly `N`.
     pub fn exactly<const N: usize>(&self) -> Option<&[f64; N]> {
         self.0.as_slice().try_into().ok()
     }
 }
 
-/// `$function(g, ...)` with the coefficients of a [`Power`] as an array.
+/// Calls `$function(g, ...)` with the coefficients of a [`Power`] as an array.
 macro_rules! unrolled {
     ($power:expr, $function:ident::<$fma:ident>($($arg:expr),* $(,)?)) => {
         unrolled!(@ $power, $function, $fma, ($($arg),*); 10 12 14 21 32 64)
@@ -50,11 +50,12 @@ macro_rules! unrolled {
 }
 pub(crate) use unrolled;
 
-/// `g` of `ln(1 + x) = x g(x) + constant`, by [`BOUNDS`].
+/// Coefficients `g` of `ln(1 + x) = x g(x) + constant`, for each of [`BOUNDS`].
 static LOGARITHM: LazyLock<[Option<Power>; 4]> =
     LazyLock::new(|| BOUNDS.map(|bound| Power::new(logarithm(bound))));
 
-/// The place in [`BOUNDS`] that holds all lanes; none beyond the last. No eigenvalue is above `2 sqrt(a / 3)`.
+/// Returns the index in [`BOUNDS`] that is valid for all lanes, `None` beyond the last. No eigenvalue exceeds
+/// `2 sqrt(a / 3)`.
 #[inline(always)]
 pub(crate) fn rung(a: &Lanes) -> Option<usize> {
     BOUNDS.iter().position(|bound| {
@@ -67,15 +68,17 @@ pub(crate) fn rung(a: &Lanes) -> Option<usize> {
     })
 }
 
-/// `g` of the logarithm on one rung.
+/// Returns `g` of the logarithm for an index in [`BOUNDS`].
 #[inline(always)]
 pub(crate) fn of_logarithm(rung: usize) -> Option<&'static Power> {
     LOGARITHM[rung].as_ref()
 }
 
-/// `g_0, g_1, ...` by the Chebyshev series of the logarithm on `[-bound, bound]`,
-/// `ln(1 + x) = constant - 2 sum_k (-beta)^k / k T_k(x / bound)`, `beta = bound / (1 + sqrt(1 - bound^2))`, half as long as
-/// Taylor's. The coefficients of `T_k` grow as `(1 + sqrt 2)^k`, slower than `beta^k` falls.
+/// Returns `g_0, g_1, ...` from the Chebyshev series of the logarithm on `[-bound, bound]`.
+///
+/// `ln(1 + x) = constant - 2 sum_k (-beta)^k / k T_k(x / bound)` with
+/// `beta = bound / (1 + sqrt(1 - bound^2))` is half as long as Taylor's series. The coefficients of `T_k`
+/// grow as `(1 + sqrt 2)^k`, more slowly than `beta^k` decreases.
 fn logarithm(bound: f64) -> Vec<f64> {
     let beta = bound / (1.0 + (1.0 - bound * bound).sqrt());
     let size = |k: i32| 2.0 * beta.powi(k) / f64::from(k);
@@ -96,10 +99,10 @@ fn logarithm(bound: f64) -> Vec<f64> {
     sum.iter().enumerate().skip(1).map(|(k, c)| c / bound.powi(k as i32)).collect()
 }
 
-/// `sum_k g_k X^k` as its three numbers, by the `a` and `b` of `X`.
+/// Returns the three numbers of `sum_k g_k X^k`, given the `a` and `b` of `X`.
 #[inline(always)]
 pub(crate) fn horner<const FMA: bool, const N: usize>(g: &[f64; N], a: f64, b: f64) -> [f64; 3] {
-    // The first three steps multiply zeros.
+    // Explicit zeros of the first three steps are omitted.
     let [mut g0, mut g1, mut g2] = [g[N - 3], g[N - 2], g[N - 1]];
     for k in (0..N - 3).rev() {
         (g0, g1, g2) = (madd::<FMA>(b, g2, g[k]), madd::<FMA>(a, g2, g0), g1);
@@ -132,7 +135,7 @@ mod tests {
             for i in -100..=100 {
                 let x = bound * f64::from(i) / 100.0;
                 let sum = of_logarithm(rung).unwrap().0.iter().rev().fold(0.0, |sum, c| sum * x + c) * x;
-                // The constant is lost in the deviator; it is below the last digit all the same.
+                // The constant cancels in the deviator; it is also below the last digit.
                 let error = (sum - x.ln_1p()).abs();
                 assert!(error < 1e-15 * x.abs().max(0.2 * bound), "{bound}: {x}: {error:e}");
             }

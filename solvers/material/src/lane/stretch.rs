@@ -1,19 +1,19 @@
 //! `C = F^T F` of eight points by its mean eigenvalue and its deviator, for laws in logarithmic strain.
 //!
-//! Each law goes over the lanes once with a long straight-line body. In many short loops over lanes the compiler takes the
-//! vectors apart and puts them together again between one and the next (Ogden's law: 1.4 times the time).
+//! Each law traverses the lanes once with a long straight-line body. With many short loops over lanes the
+//! compiler disassembles and reassembles the vectors between loops (Ogden's law: 1.4 times the time).
 
 use lanes::madd;
 
 use super::series::horner;
 use super::{LANES, LaneStrain, Lanes};
 
-/// `C = c (I + X)`, `tr X = 0`. Functions of `X` are three numbers each, `x0 I + x1 X + x2 X^2`.
+/// `C = c (I + X)` with `tr X = 0`. Functions of `X` are three numbers each, `x0 I + x1 X + x2 X^2`.
 #[repr(align(64))]
 pub(crate) struct Stretch {
     /// `X` as xx, yy, zz, xy, xz, yz.
     x: [Lanes; 6],
-    /// `adj X`, likewise; `X^2 = adj X + a I`.
+    /// `adj X` in the same order; `X^2 = adj X + a I`.
     adjugate: [Lanes; 6],
     /// `X^3 = a X + b I`.
     pub a: Lanes,
@@ -22,7 +22,8 @@ pub(crate) struct Stretch {
     scale: Lanes,
 }
 
-/// `0..count` two by two, the last twice where it is left over. A law is a chain of some 250 cycles, and two of them overlap.
+/// Returns the indices `0..count` in pairs; if `count` is odd, the last index occurs twice. A law is a chain
+/// of about 250 cycles, and two chains overlap.
 #[inline(always)]
 pub(crate) fn pairs(count: usize) -> impl Iterator<Item = [usize; 2]> {
     (0..count).step_by(2).map(move |k| [k, (k + 1).min(count - 1)])
@@ -42,13 +43,14 @@ impl Stretch {
         out
     }
 
-    /// `dev ln C` of one lane, twice the isochoric logarithmic strain, by the coefficients of its series.
+    /// Returns `dev ln C` of a lane, twice the isochoric logarithmic strain, from the coefficients of its
+    /// series.
     #[inline(always)]
     pub fn logarithm<const FMA: bool, const N: usize>(&self, g: &[f64; N], l: usize) -> [f64; 3] {
         deviator_of::<FMA>(self.a[l], horner::<FMA, N>(g, self.a[l], self.b[l]))
     }
 
-    /// `dev (e g(e))` of a traceless `e`.
+    /// Returns `dev (e g(e))` for a traceless `e`.
     #[inline(always)]
     pub fn series<const FMA: bool, const N: usize>(
         &self,
@@ -60,7 +62,7 @@ impl Stretch {
         in_powers_of_x::<FMA>(e, square, deviator_of::<FMA>(a, horner::<FMA, N>(g, a, b)))
     }
 
-    /// `P = F C^-1 tau` of one lane at the Kirchhoff stress `tau`.
+    /// Returns `P = F C^-1 tau` of a lane for the Kirchhoff stress `tau`.
     #[inline(always)]
     pub fn stress<const FMA: bool>(&self, h: &[f64; 9], tau: &[f64; 3], l: usize) -> [f64; 9] {
         first_piola::<FMA>(self, h, &over_c::<FMA>(self.a[l], self.b[l], self.scale[l], tau), l)
@@ -81,7 +83,7 @@ fn deviator<const FMA: bool>(strain: &LaneStrain, out: &mut Stretch) {
         let mean = (xx + yy + zz) * (1.0 / 3.0);
         let c = 1.0 + mean;
         let J = 1.0 + (strain.invariants[0][l] + strain.invariants[1][l]);
-        // Both reciprocals by one division.
+        // A single division gives both reciprocals.
         let per = 1.0 / (c * J);
         let (per_c, c_over_j) = (per * J, per * c * c);
         let (xx, yy, zz) = ((xx - mean) * per_c, (yy - mean) * per_c, (zz - mean) * per_c);
@@ -99,21 +101,21 @@ fn deviator<const FMA: bool>(strain: &LaneStrain, out: &mut Stretch) {
     }
 }
 
-/// From `g(X)` to the deviator of `X g(X)`.
+/// Returns the deviator of `X g(X)`, given `g(X)`.
 #[inline(always)]
 fn deviator_of<const FMA: bool>(a: f64, [g0, g1, g2]: [f64; 3]) -> [f64; 3] {
     // tr X^2 = 2 a.
     [a * g1 * (-2.0 / 3.0), madd::<FMA>(a, g2, g0), g1]
 }
 
-/// From the three numbers in `I`, `e`, `e^2` to those in `I`, `X`, `X^2`.
+/// Converts three numbers in `I`, `e`, `e^2` to those in `I`, `X`, `X^2`.
 #[inline(always)]
 fn in_powers_of_x<const FMA: bool>(e: &[f64; 3], square: &[f64; 3], [g0, g1, g2]: [f64; 3]) -> [f64; 3] {
     let m = madd::<FMA>;
     [m(g1, e[0], m(g2, square[0], g0)), m(g1, e[1], g2 * square[1]), m(g1, e[2], g2 * square[2])]
 }
 
-/// `e^2` and the `a`, `b` of `e^3 = a e + b I`.
+/// Returns `e^2` and the `a`, `b` of `e^3 = a e + b I`.
 #[inline(always)]
 pub(crate) fn squared<const FMA: bool>(a: f64, b: f64, [e0, e1, e2]: [f64; 3]) -> ([f64; 3], [f64; 2]) {
     let m = madd::<FMA>;
@@ -131,17 +133,17 @@ pub(crate) fn squared<const FMA: bool>(a: f64, b: f64, [e0, e1, e2]: [f64; 3]) -
     ([s0, s1, s2], [half, m(e0, trace, m(e1, of_x, e2 * of_square)) * (1.0 / 3.0)])
 }
 
-/// `C^-1 tau`, by `(I + X)^-1 det(I + X) = X^2 - X + (1 - a) I`.
+/// Returns `C^-1 tau`, from `(I + X)^-1 det(I + X) = X^2 - X + (1 - a) I`.
 #[inline(always)]
 fn over_c<const FMA: bool>(a: f64, b: f64, scale: f64, &[t0, t1, t2]: &[f64; 3]) -> [f64; 3] {
     let m = madd::<FMA>;
     let k = 1.0 - a;
-    // (X - I) tau, then once more by X.
+    // (X - I) tau, then another multiplication by X.
     let (v0, v1, v2) = (m(b, t2, -t0), m(a, t2, t0 - t1), t1 - t2);
     [scale * m(b, v2, k * t0), scale * m(a, v2, m(k, t1, v0)), scale * m(k, t2, v1)]
 }
 
-/// `P = F S`, `S = s0 I + s1 X + s2 X^2`.
+/// Returns `P = F S` with `S = s0 I + s1 X + s2 X^2`.
 #[inline(always)]
 fn first_piola<const FMA: bool>(
     Stretch { x, adjugate, a, .. }: &Stretch,

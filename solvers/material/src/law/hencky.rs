@@ -11,13 +11,13 @@ use lanes::madd;
 use shape::Matrix3;
 use std::slice::{from_mut, from_ref};
 
-/// `W = mu e : e + lambda/2 (tr e)^2`, `e = ln V` (`V^2 = F F^T`); `tau = 2 mu e + lambda tr(e) I`; moduli in Pa.
+/// Hencky's law `W = mu e : e + lambda/2 (tr e)^2` with `e = ln V` (`V^2 = F F^T`) and
+/// `tau = 2 mu e + lambda tr(e) I`; moduli in Pa.
 ///
-/// What a linear elastic material amounts to in codes that integrate the rate of deformation, as Abaqus does under
-/// NLGEOM. In a bar under uniaxial stress `tau = E ln l` and the sides shrink by `l^(-nu)`, exactly. The energy loses
-/// ellipticity at large stretch (the Kirchhoff stress has `dtau/de` constant, so the nominal stress of a bar falls
-/// beyond `ln l = 1`).
-/// Source: Hencky (1928); Xiao and Chen, Acta Mechanica 157 (2002).
+/// It corresponds to linear elasticity in codes that integrate the rate of deformation, such as Abaqus with
+/// NLGEOM. For a bar under uniaxial stress, `tau = E ln l` and the sides shrink by `l^(-nu)`, exactly. The
+/// energy loses ellipticity at large stretch: `dtau/de` is constant, so the nominal stress of a bar decreases
+/// beyond `ln l = 1`. Source: Hencky (1928); Xiao and Chen, Acta Mechanica 157 (2002).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hencky {
     mu: f64,
@@ -36,7 +36,7 @@ pub(super) const ENTRY: LawEntry = Entry {
 };
 
 impl Hencky {
-    /// From Young's modulus (Pa, positive) and Poisson's ratio (-1 < nu < 0.5).
+    /// Builds the law from Young's modulus (Pa, positive) and Poisson's ratio (-1 < nu < 0.5).
     pub fn new(young: f64, poisson: f64) -> Result<Hencky, MaterialError> {
         let hooke = LinearElastic::new(young, poisson)?;
         Ok(Hencky { mu: hooke.mu(), lambda: hooke.lambda() })
@@ -120,7 +120,7 @@ impl Material for Hencky {
     }
 }
 
-/// `ln J`.
+/// Returns `ln J`.
 #[inline(always)]
 fn logarithm<const FMA: bool>(strain: &LaneStrain) -> Lanes {
     let mut out = [0.0; LANES];
@@ -130,7 +130,7 @@ fn logarithm<const FMA: bool>(strain: &LaneStrain) -> Lanes {
     out
 }
 
-/// At `tau = mu dev ln C + kappa ln(J) I`.
+/// Computes the stress for `tau = mu dev ln C + kappa ln(J) I`.
 #[inline(always)]
 fn stress<const FMA: bool, const N: usize>(
     g: &[f64; N],

@@ -26,9 +26,9 @@ pub(super) const ENTRY: LawEntry = Entry {
 };
 
 impl LinearElastic {
-    /// From Young's modulus (Pa, positive) and Poisson's ratio (-1 < nu < 0.5).
+    /// Builds the law from Young's modulus (Pa, positive) and Poisson's ratio (-1 < nu < 0.5).
     pub fn new(young: f64, poisson: f64) -> Result<LinearElastic, MaterialError> {
-        // Written so that a NaN fails.
+        // The form of the test also rejects NaN.
         if !(young > 0.0 && young.is_finite()) {
             return Err(MaterialError::Young { young });
         }
@@ -63,19 +63,21 @@ impl LinearElastic {
         self.young / (3.0 * (1.0 - 2.0 * self.poisson))
     }
 
-    /// Stress (3, 3), Pa, at the displacement gradient `H` (3, 3).
+    /// Returns the stress (3, 3), Pa, at the displacement gradient `H` (3, 3).
     pub fn stress(&self, H: &Matrix3) -> Matrix3 {
         (H + H.transpose()) * self.mu() + Matrix3::identity() * (self.lambda() * H.trace())
     }
 
-    /// Strain energy per volume `(lambda tr(eps)^2 + 2 mu eps : eps) / 2`, J/m^3, at the displacement gradient `H`.
+    /// Returns the strain energy per volume `(lambda tr(eps)^2 + 2 mu eps : eps) / 2`, J/m^3, at the
+    /// displacement gradient `H`.
     pub fn energy_density(&self, H: &Matrix3) -> f64 {
         let eps = (H + H.transpose()) * 0.5;
         0.5 * self.lambda() * H.trace().powi(2) + self.mu() * eps.norm_squared()
     }
 }
 
-/// The energy is quadratic and the tangent constant; a rotation is taken for a strain (see [`Material::is_small_strain`]).
+/// The energy is quadratic and the tangent constant; a rotation counts as strain (see
+/// [`Material::is_small_strain`]).
 impl Material for LinearElastic {
     fn is_small_strain(&self) -> bool {
         true
@@ -160,7 +162,7 @@ mod tests {
             for k in 0..9 {
                 let mut d = Matrix3::zeros();
                 d[k] = 1e-3;
-                // The energy is quadratic: the central difference is exact but for rounding.
+                // The energy is quadratic, so the central difference is exact except for rounding.
                 let slope = (m.energy_density(&(h + d)) - m.energy_density(&(h - d))) / 2e-3;
                 prop_assert!((slope - s[k]).abs() < 1e-10 * (1.0 + s.norm()));
             }

@@ -1,8 +1,8 @@
 //! The laws that a scene can name.
 //!
-//! Each law is a file with its energy and derivatives and its [`LawEntry`], and a line of the list below. What a law does
-//! not say of itself (lanes, a split into shape and volume) has a default in [`Material`] that is right for any law, and
-//! slower.
+//! Each law is a file with its energy, its derivatives and its [`LawEntry`], and a line in the list below.
+//! Optional capabilities (lanes, a split into shape and volume) have defaults in [`Material`] that are
+//! correct for any law but slower.
 
 use catalogue::{Dimension, Entry, Kind, Parameter, Problem, Range, Value, Values};
 use shape::Matrix3;
@@ -13,8 +13,8 @@ use crate::{Material, Separated, Tangent, Volumetric};
 /// A law that scene files can name.
 pub type LawEntry = Entry<fn(&Values) -> Result<Law, Problem>>;
 
-/// Declares the files of the laws, the closed enum that tells them apart without a call through a pointer, and the slice of
-/// their entries.
+/// Declares the files of the laws, the enum that dispatches to them without a call through a pointer, and the
+/// slice of their entries.
 macro_rules! laws {
     ($($file:ident::$law:ident,)*) => {
         $(
@@ -34,11 +34,11 @@ macro_rules! laws {
             $($law($law),)*
         }
 
-        /// Every law, in the order tables list them.
+        /// Entries of all laws, in the order of tables.
         pub static LAWS: &[LawEntry] = &[$($file::ENTRY),*];
 
         impl Law {
-            /// Its name in scene files and tables.
+            /// Returns the name in scene files and tables.
             pub fn name(&self) -> &'static str {
                 match self {
                     $(Law::$law(_) => $file::ENTRY.name,)*
@@ -140,22 +140,23 @@ const POISSON: Parameter = Parameter::required(
 const BULK: Parameter =
     Parameter::required("bulk", Dimension::Pressure, "bulk modulus").within(Range::Positive);
 
-/// What a law takes that is known by its moduli at small strain.
+/// Parameters of a law that is defined by its moduli at small strain.
 const MODULI: &[Parameter] = &[YOUNG, POISSON];
 
-/// Their values.
+/// Returns Young's modulus (Pa) and Poisson's ratio.
 fn moduli(values: &Values) -> Result<(f64, f64), Problem> {
     Ok((values.number("young")?, values.number("poisson")?))
 }
 
-/// Shares of the shear modulus and exponents of Ogden's rubber, for [`Law::all`].
+/// Shares of the shear modulus and exponents of a rubber in Ogden's law, for [`Law::all`].
 pub(crate) const OGDEN: [(f64, f64); 3] = [(0.7, 1.3), (0.1, 5.0), (0.2, -2.0)];
 /// Share of the second Mooney-Rivlin constant, for [`Law::all`].
 pub(crate) const SECOND: f64 = 0.3;
 
 impl Law {
-    /// Every law with one pair of moduli at small strain, in the order tables list them: what the property lists walk. What a
-    /// law takes beyond Young's modulus (Pa) and Poisson's ratio has its default, or a value that rubber has.
+    /// Returns every law with the same moduli at small strain, in the order of tables, for tests of common
+    /// properties. Parameters other than Young's modulus (Pa) and Poisson's ratio have their defaults, or
+    /// values of a rubber.
     pub fn all(young: f64, poisson: f64) -> Result<Vec<Law>, Problem> {
         let hooke = LinearElastic::new(young, poisson)?;
         let sample = |entry: &LawEntry| {

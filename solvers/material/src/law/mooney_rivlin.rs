@@ -1,4 +1,4 @@
-//! Mooney-Rivlin law split into shape and volume.
+//! Mooney-Rivlin law, split into shape and volume.
 
 use super::{BULK, Dimension, Entry, LawEntry, LinearElastic, POISSON, Parameter, Problem, Range, YOUNG};
 use crate::kinematics::{Kinematics, add_left, add_right, cofactor, green_lagrange, tangent_of};
@@ -10,9 +10,10 @@ use catalogue::Values;
 use lanes::madd;
 use shape::Matrix3;
 
-/// `W = C10 (J^(-2/3) I1 - 3) + C01 (J^(-4/3) I2 - 3) + (J - 1)^2 / D1`, `2 (C10 + C01) = mu`, `D1 = 2 / kappa`; in Pa.
+/// Mooney-Rivlin law `W = C10 (J^(-2/3) I1 - 3) + C01 (J^(-4/3) I2 - 3) + (J - 1)^2 / D1` with
+/// `2 (C10 + C01) = mu` and `D1 = 2 / kappa`; constants in Pa.
 ///
-/// `I2 = ((tr C)^2 - tr C^2) / 2 = |cof F|^2`. With `C01 = 0` it is the isochoric neo-Hookean law.
+/// `I2 = ((tr C)^2 - tr C^2) / 2 = |cof F|^2`. For `C01 = 0` the law is the isochoric neo-Hookean law.
 /// Source: Mooney (1940), Rivlin (1948); form as in the Abaqus Theory Guide, Hyperelastic material behavior.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MooneyRivlin {
@@ -60,7 +61,8 @@ fn build(values: &Values) -> Result<super::Law, Problem> {
     })
 }
 
-/// `J` and the two shape moduli `2 C10 J^(-2/3)`, `2 C01 J^(-4/3)`, by the logarithm: NaN where `J < 0`.
+/// `J` and the two shape moduli `2 C10 J^(-2/3)`, `2 C01 J^(-4/3)`. They are computed by the logarithm and
+/// are NaN for `J < 0`.
 struct Moduli {
     J: f64,
     first: f64,
@@ -68,7 +70,8 @@ struct Moduli {
 }
 
 impl MooneyRivlin {
-    /// From the constants (Pa; `C10 + C01` positive, either may be negative) and the bulk modulus (Pa, positive).
+    /// Builds the law from the constants (Pa; `C10 + C01` positive, either may be negative) and the bulk
+    /// modulus (Pa, positive).
     pub fn new(c10: f64, c01: f64, bulk: f64) -> Result<MooneyRivlin, MaterialError> {
         let mu = 2.0 * (c10 + c01);
         if !(mu > 0.0 && mu.is_finite()) {
@@ -80,7 +83,8 @@ impl MooneyRivlin {
         Ok(MooneyRivlin { c10, c01, bulk })
     }
 
-    /// From Young's modulus (Pa), Poisson's ratio and the share `C01 / (C10 + C01)` of the second term, 0 to 1.
+    /// Builds the law from Young's modulus (Pa), Poisson's ratio and the share `C01 / (C10 + C01)` of the
+    /// second term, 0 to 1.
     pub fn from_young(young: f64, poisson: f64, share: f64) -> Result<MooneyRivlin, MaterialError> {
         let hooke = LinearElastic::new(young, poisson)?;
         if !(0.0..=1.0).contains(&share) {
@@ -105,10 +109,11 @@ impl MooneyRivlin {
         Moduli { J: 1.0 + k.j, first: 2.0 * self.c10 * a, second: 2.0 * self.c01 * a * a }
     }
 
-    /// `F S`, `S = 2 C10 J^(-2/3) (I - I1/3 C^-1) + 2 C01 J^(-4/3) (I1 I - C - 2/3 I2 C^-1) + kappa J (J - 1) C^-1`.
+    /// Returns `F S` with
+    /// `S = 2 C10 J^(-2/3) (I - I1/3 C^-1) + 2 C01 J^(-4/3) (I1 I - C - 2/3 I2 C^-1) + kappa J (J - 1) C^-1`.
     ///
-    /// In terms of `E` and `D = I - C^-1` both brackets are sums of small terms:
-    /// `D - 2/3 tr(E) C^-1` and `2 (tr(E) I - E + D) - 2/3 (I2 - 3) C^-1`.
+    /// In terms of `E` and `D = I - C^-1` both brackets are sums of small terms: `D - 2/3 tr(E) C^-1` and
+    /// `2 (tr(E) I - E + D) - 2/3 (I2 - 3) C^-1`.
     fn stress_at(&self, H: &Matrix3, k: &Kinematics, m: &Moduli) -> Matrix3 {
         let I = Matrix3::identity();
         let E = green_lagrange(H);
@@ -122,8 +127,8 @@ impl MooneyRivlin {
         S + H * S
     }
 
-    /// With `G = F^-T`, `B = F F^T`, `C = F^T F`, `Q = 2 (I1 F - B F) = dI2/dF`, `a = 2 C10 J^(-2/3)`,
-    /// `h = 2 C01 J^(-4/3)`:
+    /// Returns the tangent, the sum of the following terms with `G = F^-T`, `B = F F^T`, `C = F^T F`,
+    /// `Q = 2 (I1 F - B F) = dI2/dF`, `a = 2 C10 J^(-2/3)` and `h = 2 C01 J^(-4/3)`:
     ///
     /// ```text
     /// a (delta_ik delta_jl - 2/3 (F_ij G_kl + G_ij F_kl) + 2/9 I1 G_ij G_kl + I1/3 G_il G_kj)
@@ -140,7 +145,7 @@ impl MooneyRivlin {
         let Q = (F * I1 - B * F) * 2.0;
         let swap = a * I1 / 3.0 + h * I2 * 2.0 / 3.0 - self.bulk * J * k.j;
         let outer = a * I1 * 2.0 / 9.0 + h * I2 * 8.0 / 9.0 + self.bulk * J * (J + k.j);
-        // All that pairs with G: outer G x G - 2/3 ((a F + h Q) x G + G x (a F + h Q)) = X x G + G x X.
+        // Terms paired with G: outer G x G - 2/3 ((a F + h Q) x G + G x (a F + h Q)) = X x G + G x X.
         let X = G * (0.5 * outer) - (F * a + Q * h) * (2.0 / 3.0);
         let mut tangent = tangent_of(|i, j, k, l| {
             swap * G[(i, l)] * G[(k, j)] - h * F[(i, l)] * F[(k, j)]
@@ -177,8 +182,9 @@ impl Material for MooneyRivlin {
         (self.stress_at(H, &k, &m), self.tangent_at(&k, &m))
     }
 
-    /// `P = (a + 2 h) (F - F^-T) + (kappa (J - 1) - (a i1 + 2 h i2) / (3 J)) cof F + h (i1 F - F D)`, `D = C - I`,
-    /// `i1 = tr D`, `i2 = I2 - 3 = 2 i1 + II(D)`, `a = 2 C10 J^(-2/3)`, `h = 2 C01 J^(-4/3)`.
+    /// Computes `P = (a + 2 h) (F - F^-T) + (kappa (J - 1) - (a i1 + 2 h i2) / (3 J)) cof F + h (i1 F - F D)`
+    /// with `D = C - I`, `i1 = tr D`, `i2 = I2 - 3 = 2 i1 + II(D)`, `a = 2 C10 J^(-2/3)` and
+    /// `h = 2 C01 J^(-4/3)`.
     #[inline(always)]
     fn stress_lanes<const FMA: bool>(&self, strain: &LaneStrain, p: &mut [Lanes; 9]) {
         let m = madd::<FMA>;
@@ -252,7 +258,7 @@ mod tests {
 
     #[test]
     fn constants_follow_from_moduli_and_share() {
-        // mu = 12 kPa, kappa = 20 kPa; a quarter of mu/2 in the second term.
+        // mu = 12 kPa, kappa = 20 kPa; the second term has a quarter of mu/2.
         let law = MooneyRivlin::from_young(30e3, 0.25, 0.25).unwrap();
         let same = MooneyRivlin::new(4.5e3, 1.5e3, 20e3).unwrap();
         assert!((law.c10 - same.c10).abs() < 1e-9 && (law.c01 - same.c01).abs() < 1e-9);

@@ -8,12 +8,14 @@ use crate::lane::invariants::piola;
 use crate::lane::{LANES, LaneStrain, Lanes};
 use crate::{Material, MaterialError, Separated, Tangent};
 
-/// `W = mu/2 (I1 - 3 - 2 ln J) + lambda/2 (ln J)^2`, `I1 = tr(F^T F)`; moduli in Pa.
+/// Compressible neo-Hookean law `W = mu/2 (I1 - 3 - 2 ln J) + lambda/2 (ln J)^2` with `I1 = tr(F^T F)`;
+/// moduli in Pa.
 ///
 /// `P = mu (F - F^-T) + lambda ln(J) F^-T`. Shape and volume are not split: `mu` acts on `I1` itself, and the
-/// volumetric part `(ln J)^2` flattens beyond `J = e`. The split form, which Abaqus and CalculiX mean by neo-Hookean, is
-/// [`NeoHookeanIsochoric`](super::NeoHookeanIsochoric); the two agree to first order in the strain only.
-/// Source: Bonet and Wood, Nonlinear Continuum Mechanics for Finite Element Analysis, 2nd ed., section 6.4.3.
+/// volumetric part `(ln J)^2` flattens beyond `J = e`. In Abaqus and CalculiX, "neo-Hookean" means the split
+/// form, [`NeoHookeanIsochoric`](super::NeoHookeanIsochoric). The two laws agree only to first order in the
+/// strain. Source: Bonet and Wood, Nonlinear Continuum Mechanics for Finite Element Analysis, 2nd ed.,
+/// section 6.4.3.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NeoHookean {
     mu: f64,
@@ -32,7 +34,7 @@ pub(super) const ENTRY: LawEntry = Entry {
 };
 
 impl NeoHookean {
-    /// From Young's modulus (Pa, positive) and Poisson's ratio (-1 < nu < 0.5).
+    /// Builds the law from Young's modulus (Pa, positive) and Poisson's ratio (-1 < nu < 0.5).
     pub fn new(young: f64, poisson: f64) -> Result<NeoHookean, MaterialError> {
         let hooke = LinearElastic::new(young, poisson)?;
         Ok(NeoHookean { mu: hooke.mu(), lambda: hooke.lambda() })
@@ -42,7 +44,7 @@ impl NeoHookean {
         k.F_less_G * self.mu + k.G * (self.lambda * ln_j)
     }
 
-    /// `mu delta_ik delta_jl + (mu - lambda ln J) G_il G_kj + lambda G_ij G_kl`, `G = F^-T`.
+    /// Returns `mu delta_ik delta_jl + (mu - lambda ln J) G_il G_kj + lambda G_ij G_kl` with `G = F^-T`.
     fn tangent_at(&self, k: &Kinematics, ln_j: f64) -> Tangent {
         let G = &k.G;
         let swap = self.mu - self.lambda * ln_j;
@@ -58,7 +60,7 @@ impl NeoHookean {
 impl Material for NeoHookean {
     fn energy(&self, H: &Matrix3) -> f64 {
         let k = Kinematics::new(H);
-        // I1 - 3 - 2 (J - 1) has no term of first order: H : H - 2 II(H) - 2 det H.
+        // I1 - 3 - 2 (J - 1) has no first-order term: H : H - 2 II(H) - 2 det H.
         let shape = k.square - 2.0 * (k.second + k.third) + 2.0 * less_ln_1p(k.j);
         0.5 * (self.mu * shape + self.lambda * k.ln_j().powi(2))
     }
@@ -90,8 +92,8 @@ impl Material for NeoHookean {
         }
     }
 
-    /// `mu/2 theta^(2/3) I1_bar`, and `3 mu/2 (theta^(2/3) - 1) - mu ln theta + lambda/2 (ln theta)^2` beyond
-    /// `psi(F, 1)`.
+    /// Returns `mu/2 theta^(2/3) I1_bar`, and the part of the energy in addition to `psi(F, 1)`:
+    /// `3 mu/2 (theta^(2/3) - 1) - mu ln theta + lambda/2 (ln theta)^2`.
     fn separated(&self, theta_minus_1: f64) -> Option<Separated> {
         let (mu, lambda, theta) = (self.mu, self.lambda, 1.0 + theta_minus_1);
         let log = theta_minus_1.ln_1p();

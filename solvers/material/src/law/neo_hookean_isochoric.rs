@@ -1,4 +1,4 @@
-//! Neo-Hookean law split into shape and volume, as in Abaqus and CalculiX.
+//! Neo-Hookean law, split into shape and volume as in Abaqus and CalculiX.
 
 use super::{Entry, LawEntry, LinearElastic, MODULI, moduli};
 use crate::kinematics::{Kinematics, tangent_of};
@@ -7,12 +7,13 @@ use crate::lane::{LANES, LaneStrain, Lanes};
 use crate::{Material, MaterialError, Separated, Tangent, Volumetric};
 use shape::Matrix3;
 
-/// `W = C10 (J^(-2/3) I1 - 3) + (J - 1)^2 / D1`, `C10 = mu / 2`, `D1 = 2 / kappa`; moduli in Pa.
+/// Isochoric neo-Hookean law `W = C10 (J^(-2/3) I1 - 3) + (J - 1)^2 / D1` with `C10 = mu / 2` and
+/// `D1 = 2 / kappa`; moduli in Pa.
 ///
-/// `mu` acts on the change of shape alone and `kappa` on the change of volume alone, so the stress at `F = s I` is free
-/// of `mu`. [`NeoHookean`](super::NeoHookean) has neither property. At `nu = 0.45` and a bar
-/// confined at its sides and shortened by a fifth, the stress here is 23 % below that of the other form.
-/// Source: Abaqus Theory Guide, Hyperelastic material behavior; CalculiX CrunchiX manual, `*HYPERELASTIC, NEO HOOKE`.
+/// `mu` acts only on the change of shape and `kappa` only on the change of volume, so the stress at `F = s I`
+/// does not depend on `mu`. [`NeoHookean`](super::NeoHookean) has neither property. For `nu = 0.45` and a
+/// laterally confined bar shortened by a fifth, the stress is 23 % below that of the other form. Source:
+/// Abaqus Theory Guide, Hyperelastic material behavior; CalculiX CrunchiX manual, `*HYPERELASTIC, NEO HOOKE`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NeoHookeanIsochoric {
     mu: f64,
@@ -31,30 +32,34 @@ pub(super) const ENTRY: LawEntry = Entry {
 };
 
 impl NeoHookeanIsochoric {
-    /// From Young's modulus (Pa, positive) and Poisson's ratio (-1 < nu < 0.5).
+    /// Builds the law from Young's modulus (Pa, positive) and Poisson's ratio (-1 < nu < 0.5).
     pub fn new(young: f64, poisson: f64) -> Result<NeoHookeanIsochoric, MaterialError> {
         let hooke = LinearElastic::new(young, poisson)?;
         Ok(NeoHookeanIsochoric { mu: hooke.mu(), bulk: hooke.bulk() })
     }
 
-    /// `C10 = mu / 2`, Pa: the constant to give Abaqus or CalculiX.
+    /// Returns `C10 = mu / 2`, Pa, the constant for Abaqus or CalculiX.
     pub fn c10(&self) -> f64 {
         0.5 * self.mu
     }
 
-    /// `D1 = 2 / kappa`, 1/Pa: the constant to give Abaqus or CalculiX.
+    /// Returns `D1 = 2 / kappa`, 1/Pa, the constant for Abaqus or CalculiX.
     pub fn d1(&self) -> f64 {
         2.0 / self.bulk
     }
 
-    /// `mu J^(-2/3) (F - I1/3 F^-T) + kappa (J - 1) J F^-T`; `a = mu J^(-2/3)`.
+    /// Returns `mu J^(-2/3) (F - I1/3 F^-T) + kappa (J - 1) J F^-T` with `a = mu J^(-2/3)`.
     fn stress_at(&self, k: &Kinematics, a: f64) -> Matrix3 {
-        // F - I1/3 F^-T = (F - F^-T) - (I1 - 3)/3 F^-T: both small at small strain.
+        // F - I1/3 F^-T = (F - F^-T) - (I1 - 3)/3 F^-T: both terms are small at small strain.
         k.F_less_G * a + k.G * (self.bulk * k.j * (1.0 + k.j) - a * k.i1 / 3.0)
     }
 
-    /// With `G = F^-T`: `a (delta_ik delta_jl - 2/3 (F_ij G_kl + G_ij F_kl) + 2/9 I1 G_ij G_kl + I1/3 G_il G_kj)
-    /// + kappa (J (2 J - 1) G_ij G_kl - J (J - 1) G_il G_kj)`.
+    /// Returns the tangent, the sum of the following terms with `G = F^-T`:
+    ///
+    /// ```text
+    /// a (delta_ik delta_jl - 2/3 (F_ij G_kl + G_ij F_kl) + 2/9 I1 G_ij G_kl + I1/3 G_il G_kj)
+    /// kappa (J (2 J - 1) G_ij G_kl - J (J - 1) G_il G_kj)
+    /// ```
     fn tangent_at(&self, k: &Kinematics, a: f64) -> Tangent {
         let (F, G) = (&k.F, &k.G);
         let (J, I1) = (1.0 + k.j, 3.0 + k.i1);
@@ -71,7 +76,7 @@ impl NeoHookeanIsochoric {
         tangent
     }
 
-    /// `mu J^(-2/3)`; by the logarithm, so that it is NaN where `J < 0`.
+    /// Returns `mu J^(-2/3)`, computed by the logarithm and hence NaN for `J < 0`.
     fn shape_modulus(&self, k: &Kinematics) -> f64 {
         self.mu * (-2.0 / 3.0 * k.ln_j()).exp()
     }

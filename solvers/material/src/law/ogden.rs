@@ -12,14 +12,13 @@ use lanes::madd;
 use shape::Matrix3;
 use std::slice::{from_mut, from_ref};
 
-/// `W = sum_p mu_p / alpha_p (l_1^alpha_p + l_2^alpha_p + l_3^alpha_p - 3) + (J - 1)^2 / D1`, isochoric stretches
-/// `l_a = J^(-1/3) lambda_a`, `D1 = 2 / kappa`; moduli in Pa.
+/// Ogden's law `W = sum_p mu_p / alpha_p (l_1^alpha_p + l_2^alpha_p + l_3^alpha_p - 3) + (J - 1)^2 / D1` with
+/// isochoric stretches `l_a = J^(-1/3) lambda_a` and `D1 = 2 / kappa`; moduli in Pa.
 ///
-/// The initial shear modulus is `mu = sum_p mu_p alpha_p / 2`: Ogden's own convention. Abaqus writes
-/// `2 mu_p / alpha_p^2` for `mu_p / alpha_p` here: `mu_p(here) = 2 mu_p(Abaqus) / alpha_p`.
-/// One term of exponent 2 is the isochoric neo-Hookean law; exponents 2 and -2 with `mu_1 = 2 C10`, `mu_2 = -2 C01` are
-/// Mooney-Rivlin.
-/// Source: Ogden, Proc. R. Soc. A 326 (1972) 565-584.
+/// The initial shear modulus is `mu = sum_p mu_p alpha_p / 2`, in Ogden's own convention. Abaqus writes
+/// `2 mu_p / alpha_p^2` for `mu_p / alpha_p` here: `mu_p(here) = 2 mu_p(Abaqus) / alpha_p`. A single term
+/// with exponent 2 is the isochoric neo-Hookean law; exponents 2 and -2 with `mu_1 = 2 C10`, `mu_2 = -2 C01`
+/// give Mooney-Rivlin. Source: Ogden, Proc. R. Soc. A 326 (1972) 565-584.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ogden {
     terms: Vec<(f64, f64)>,
@@ -56,8 +55,8 @@ fn build(values: &Values) -> Result<super::Law, Problem> {
     })
 }
 
-/// `g` of `sum_p mu_p (exp(alpha_p e / 2) - 1) = e g(e)` in `e = dev ln C`, for lanes: by [`BOUNDS`] as long as it must be,
-/// none where its terms would cancel.
+/// Series `g` of `sum_p mu_p (exp(alpha_p e / 2) - 1) = e g(e)` in `e = dev ln C`, for lanes. There is a
+/// series of the necessary length for each of [`BOUNDS`], or `None` if its terms would cancel.
 type Series = [Option<Power>; BOUNDS.len()];
 
 fn series_of(terms: &[(f64, f64)]) -> Series {
@@ -65,7 +64,8 @@ fn series_of(terms: &[(f64, f64)]) -> Series {
     BOUNDS.map(|bound| {
         // |e| is largest at the smallest eigenvalue of C.
         let exponent = steepest * -(-bound).ln_1p();
-        // A term z^n / (n + 1)! against the first; terms as large as exp(4) cost no more than a digit.
+        // The size of a term z^n / (n + 1)! relative to the first. Terms as large as exp(4) cost at most one
+        // digit.
         let mut term = 1.0;
         let enough = |n: &usize| {
             term *= exponent / (*n as f64 + 1.0);
@@ -84,8 +84,9 @@ fn series_of(terms: &[(f64, f64)]) -> Series {
 }
 
 impl Ogden {
-    /// From the terms `(mu_p, alpha_p)` (Pa, no unit; `alpha_p` not 0, `sum mu_p alpha_p` positive) and the bulk
-    /// modulus (Pa, positive). Single terms with a negative `mu_p alpha_p` occur in fits and are taken.
+    /// Builds the law from the terms `(mu_p, alpha_p)` (Pa, dimensionless; `alpha_p` not 0,
+    /// `sum mu_p alpha_p` positive) and the bulk modulus (Pa, positive). Single terms with a negative
+    /// `mu_p alpha_p` occur in fits and are accepted.
     pub fn new(terms: &[(f64, f64)], bulk: f64) -> Result<Ogden, MaterialError> {
         for (term, &(mu, alpha)) in terms.iter().enumerate() {
             if !(mu.is_finite() && alpha.is_finite() && alpha != 0.0) {
@@ -102,12 +103,12 @@ impl Ogden {
         Ok(Ogden { terms: terms.to_vec(), bulk, series: series_of(terms) })
     }
 
-    /// The terms `(mu_p, alpha_p)`.
+    /// Terms `(mu_p, alpha_p)`.
     pub fn terms(&self) -> &[(f64, f64)] {
         &self.terms
     }
 
-    /// `tau_a = sum_p mu_p (l_a^alpha_p - mean_b l_b^alpha_p) + kappa J (J - 1)`.
+    /// Returns `tau_a = sum_p mu_p (l_a^alpha_p - mean_b l_b^alpha_p) + kappa J (J - 1)`.
     fn kirchhoff(&self, principal: &Principal) -> [f64; 3] {
         let e = isochoric(&principal.log);
         let mut tau = [self.bulk * principal.j * (1.0 + principal.j); 3];
@@ -135,7 +136,7 @@ impl Ogden {
                 for b in 0..3 {
                     slope[a][b] += scale * (third - power[a] - power[b]) / 3.0;
                 }
-                // (exp(alpha e_b) - exp(alpha e_c)) / (e_b - e_c), by the mean and half the difference.
+                // (exp(alpha e_b) - exp(alpha e_c)) / (e_b - e_c), from the mean and half the difference.
                 let (b, c) = ((a + 1) % 3, (a + 2) % 3);
                 let mean = (0.5 * alpha * (e[b] + e[c])).exp();
                 quotient[a] += scale * mean * sinh_over(0.5 * alpha * (e[b] - e[c]));
@@ -151,7 +152,7 @@ impl Material for Ogden {
         let e = isochoric(&principal.log);
         let mut energy = 0.5 * self.bulk * principal.j * principal.j;
         for &(mu, alpha) in &self.terms {
-            // The three e sum to 0: without them the first order is gone.
+            // The three e sum to 0, so the first-order terms can be omitted.
             energy += mu / alpha * e.map(|e| exp_m1_less(alpha * e)).iter().sum::<f64>();
         }
         energy
@@ -246,7 +247,7 @@ fn logarithm<const FMA: bool, const N: usize>(g: &[f64; N], stretch: &Stretch, o
     }
 }
 
-/// At `tau = dev f(dev ln C) + kappa J (J - 1) I`.
+/// Computes the stress for `tau = dev f(dev ln C) + kappa J (J - 1) I`.
 #[inline(always)]
 fn stress<const FMA: bool, const N: usize>(
     g: &[f64; N],
@@ -269,13 +270,13 @@ fn stress<const FMA: bool, const N: usize>(
     }
 }
 
-/// Logarithms of the isochoric stretches.
+/// Returns the logarithms of the isochoric stretches.
 fn isochoric(log: &[f64; 3]) -> [f64; 3] {
     let mean = (log[0] + log[1] + log[2]) / 3.0;
     log.map(|e| e - mean)
 }
 
-/// `sinh(x) / x`, 1 at 0.
+/// Returns `sinh(x) / x`, 1 at 0.
 fn sinh_over(x: f64) -> f64 {
     if x == 0.0 { 1.0 } else { x.sinh() / x }
 }

@@ -1,4 +1,4 @@
-//! St. Venant-Kirchhoff: Hooke's law between Green-Lagrange strain and second Piola-Kirchhoff stress.
+//! St. Venant-Kirchhoff law: Hooke's law between Green-Lagrange strain and second Piola-Kirchhoff stress.
 
 use lanes::madd;
 use shape::Matrix3;
@@ -8,11 +8,12 @@ use crate::kinematics::{add_left, add_right, green_lagrange, tangent_of};
 use crate::lane::{LANES, LaneStrain, Lanes};
 use crate::{Material, MaterialError, Tangent};
 
-/// `W = lambda/2 (tr E)^2 + mu E : E`, `E = (H + H^T + H^T H) / 2`; moduli in Pa.
+/// St. Venant-Kirchhoff law `W = lambda/2 (tr E)^2 + mu E : E` with `E = (H + H^T + H^T H) / 2`; moduli in
+/// Pa.
 ///
-/// For large rotation at small strain. It softens in compression: at `nu = 0` the nominal stress of a bar
-/// shortened to `l` is `E l (1 - l^2) / 2`, at most `E / (3 sqrt 3) = 0.192 E` at `l = 1 / sqrt 3`, and nothing
-/// keeps `J` from 0.
+/// The law suits large rotation at small strain. It softens in compression: for `nu = 0` the nominal stress
+/// of a bar shortened to `l` is `E l (1 - l^2) / 2`, at most `E / (3 sqrt 3) = 0.192 E` at `l = 1 / sqrt 3`,
+/// and nothing prevents `J` from reaching 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SaintVenantKirchhoff {
     mu: f64,
@@ -31,19 +32,20 @@ pub(super) const ENTRY: LawEntry = Entry {
 };
 
 impl SaintVenantKirchhoff {
-    /// From Young's modulus (Pa, positive) and Poisson's ratio (-1 < nu < 0.5).
+    /// Builds the law from Young's modulus (Pa, positive) and Poisson's ratio (-1 < nu < 0.5).
     pub fn new(young: f64, poisson: f64) -> Result<SaintVenantKirchhoff, MaterialError> {
         let hooke = LinearElastic::new(young, poisson)?;
         Ok(SaintVenantKirchhoff { mu: hooke.mu(), lambda: hooke.lambda() })
     }
 
-    /// Second Piola-Kirchhoff stress `S = lambda tr(E) I + 2 mu E`.
+    /// Returns the second Piola-Kirchhoff stress `S = lambda tr(E) I + 2 mu E`.
     fn second_piola(&self, H: &Matrix3) -> Matrix3 {
         let E = green_lagrange(H);
         E * (2.0 * self.mu) + Matrix3::identity() * (self.lambda * E.trace())
     }
 
-    /// `d(F S)/dF` at the stress `S`: `delta_ik S_jl + lambda F_ij F_kl + mu (B_ik delta_jl + F_il F_kj)`, `B = F F^T`.
+    /// Returns `d(F S)/dF` at the stress `S`:
+    /// `delta_ik S_jl + lambda F_ij F_kl + mu (B_ik delta_jl + F_il F_kj)` with `B = F F^T`.
     fn tangent_at(&self, H: &Matrix3, S: &Matrix3) -> Tangent {
         let F = Matrix3::identity() + H;
         let B = F * F.transpose() * self.mu;

@@ -5,12 +5,12 @@ use super::*;
 const YOUNG: f64 = 20e3;
 
 fn near(value: f64, exact: f64, law: &Law) {
-    // Exact formulas on both sides: rounding only.
+    // Both sides are exact formulas, so only rounding differs.
     let error = (value - exact).abs() / stiffness(law);
     assert!(error < 1e-14, "{}: {value} for {exact}, {error:.2e}", law.name());
 }
 
-/// `P` at `F = diag(a, b, c)`.
+/// Returns `P` at `F = diag(a, b, c)`.
 #[allow(non_snake_case)]
 fn stretched(law: &Law, a: f64, b: f64, c: f64) -> Matrix3 {
     let P = law.stress(&Matrix3::from_diagonal(&Vector3::new(a - 1.0, b - 1.0, c - 1.0)));
@@ -35,7 +35,7 @@ fn equal_stretch_in_all_directions() {
                         bulk * (s.powi(3) - 1.0) * s * s
                     }
                     #[allow(unreachable_patterns)]
-                    // a law without a closed form here has the list of properties
+                    // Laws without a closed form here are covered by the properties.
                     _ => continue,
                 };
                 let P = stretched(&law, s, s, s);
@@ -113,13 +113,13 @@ fn simple_shear() {
                         (shear, normal)
                     }
                     Law::NeoHookean(_) | Law::NeoHookeanIsochoric(_) | Law::MooneyRivlin(_) => {
-                        // sigma_22 - sigma_33 tells the terms apart: 2 C01 (1 - (1 + gamma^2)).
+                        // sigma_22 - sigma_33 distinguishes the terms: 2 C01 (1 - (1 + gamma^2)).
                         let second = if matches!(law, Law::MooneyRivlin(_)) { SECOND } else { 0.0 };
                         near(cauchy[(1, 1)] - cauchy[(2, 2)], -second * mu * square, &law);
                         (mu * gamma, mu * square)
                     }
-                    // Principal stretches l and 1/l, ln l = asinh(gamma / 2); the axis of l at half the angle
-                    // with tangent 2 / gamma.
+                    // Principal stretches l and 1/l, ln l = asinh(gamma / 2); the axis of l is at half the
+                    // angle with tangent 2 / gamma.
                     Law::Hencky(_) | Law::Ogden(_) => {
                         let e = (0.5 * gamma).asinh();
                         let half = match law {
@@ -141,7 +141,8 @@ fn simple_shear() {
     }
 }
 
-/// The nominal stress of a bar at `nu = 0` has its largest compression, `E / (3 sqrt 3)`, at `l = 1 / sqrt 3`.
+/// The nominal stress of a bar with `nu = 0` has its largest compression, `E / (3 sqrt 3)`, at
+/// `l = 1 / sqrt 3`.
 #[test]
 fn saint_venant_kirchhoff_softens_in_compression() {
     let law = Law::SaintVenantKirchhoff(SaintVenantKirchhoff::new(YOUNG, 0.0).unwrap());
@@ -162,7 +163,8 @@ fn constants_of_abaqus_are_those_of_the_moduli() {
     assert!((law.d1() - 1e-4).abs() < 1e-18);
 }
 
-/// A bar free at its sides: `tau = E ln l` along it and none across at side stretches of `l^(-nu)`.
+/// A bar with free sides has `tau = E ln l` along its axis and zero stress across, for side stretches of
+/// `l^(-nu)`.
 #[test]
 fn hencky_bar_under_uniaxial_stress() {
     for poisson in [0.0, 0.3, 0.49] {

@@ -6,7 +6,7 @@ use crate::lane::{LANES, LaneStrain};
 use proptest::prelude::*;
 use shape::Vector3;
 
-/// Largest difference over eight points, with and without fused products.
+/// Returns the largest difference over eight points, with and without fused products.
 fn difference(law: &Law, at: &[Matrix3; LANES]) -> f64 {
     let mut worst = 0.0_f64;
     for fused in [false, true] {
@@ -47,7 +47,8 @@ proptest! {
         }
     }
 
-    // Small against any strain of the size: 1e-13 of it, and as much of the turn, whose rounding is strain.
+    // The error is relative to any strain of this size: 1e-13 of the strain, and as much of the rotation,
+    // whose rounding appears as strain.
     #[test]
     fn lanes_keep_the_digits_of_small_strain(
         h in prop::array::uniform9(-1.0..1.0f64),
@@ -61,7 +62,7 @@ proptest! {
         }
     }
 
-    // Equal stretches and turned ones, over all lengths of the series of the logarithm and beyond.
+    // Equal stretches and rotated ones, over all lengths of the logarithm's series and beyond.
     #[test]
     fn lanes_know_no_special_stretches(
         stretch in 0.5..1.9f64,
@@ -80,7 +81,7 @@ proptest! {
         }
     }
 
-    // The sum of the parts is the whole, and the first does not change with J.
+    // The sum of the parts is the whole energy, and the first part does not depend on J.
     #[test]
     fn laws_that_split_do_so(H in finite(), poisson in POISSON, swell in 0.7..1.4f64) {
         for law in laws(poisson) {

@@ -1,4 +1,4 @@
-//! One list of properties and one of closed forms, over every law.
+//! Properties and closed forms of every law.
 
 mod closed_forms;
 mod lane;
@@ -8,12 +8,12 @@ mod viscoelastic;
 use super::*;
 use crate::law::{OGDEN, SECOND};
 
-/// Every law of the catalogue, of a Young's modulus of 20 kPa.
+/// Returns every law of the catalogue with a Young's modulus of 20 kPa.
 fn laws(poisson: f64) -> Vec<Law> {
     Law::all(20e3, poisson).unwrap()
 }
 
-/// `lambda + 2 mu`, Pa: the size that stresses and tangents are measured against.
+/// Returns `lambda + 2 mu`, Pa, the scale of stresses and tangents.
 fn stiffness(law: &Law) -> f64 {
     law.lambda().abs() + 2.0 * law.mu()
 }

@@ -12,7 +12,7 @@ pub(super) fn rotation(r: [f64; 3]) -> Matrix3 {
     Rotation3::new(Vector3::from(r)).into_inner()
 }
 
-/// Displacement gradient of `F`.
+/// Returns the displacement gradient of `F`.
 #[allow(non_snake_case)]
 pub(super) fn gradient(F: Matrix3) -> Matrix3 {
     F - Matrix3::identity()
@@ -22,7 +22,8 @@ pub(super) fn nonlinear(poisson: f64) -> impl Iterator<Item = Law> {
     laws(poisson).into_iter().filter(|law| !law.is_small_strain())
 }
 
-/// Gradients with singular values of `F` between 0.55 and 1.6 or so: away from `J = 0`, far from small.
+/// Gradients with singular values of `F` between about 0.55 and 1.6: away from `J = 0` and far from small
+/// strain.
 #[allow(non_snake_case)]
 pub(super) fn finite() -> impl Strategy<Value = Matrix3> {
     (
@@ -42,8 +43,9 @@ pub(super) const POISSON: std::ops::Range<f64> = -0.4..0.49;
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
 
-    // Central differences of step d: truncation d^2 W'''/6, rounding 1e-16 W/d. With d = 1e-5 both are about
-    // 1e-10 of lambda + 2 mu times the largest higher derivative, some 100 at a stretch of 0.55.
+    // Central differences with step d have the truncation error d^2 W'''/6 and the rounding error 1e-16 W/d.
+    // For d = 1e-5 both are about 1e-10 of lambda + 2 mu times the largest higher derivative, about 100 at a
+    // stretch of 0.55.
     #[test]
     fn stress_is_the_gradient_of_energy(H in finite(), poisson in POISSON) {
         let step = 1e-5;
@@ -131,8 +133,8 @@ proptest! {
         }
     }
 
-    // What is left at |H| = 1e-10 is the second order, 1e-10 times some 100 at most (lambda / mu at nu = 0.49).
-    // Formed from F, the stress would be wrong by 1e-16 / 1e-10 times the same: 1e-4.
+    // The remainder at |H| = 1e-10 is of second order, 1e-10 times at most about 100 (lambda / mu at nu =
+    // 0.49). If formed from F, the stress would have an error of 1e-16 / 1e-10 times this factor: 1e-4.
     #[test]
     fn small_strain_keeps_its_digits(h in prop::array::uniform9(-1.0..1.0f64), poisson in POISSON) {
         let H = matrix(h) * 1e-10;
@@ -165,7 +167,7 @@ fn laws_have_hookes_tangent_and_no_stress_at_rest() {
 
 #[test]
 fn the_linear_law_is_not_objective() {
-    // A turn by 90 degrees about z: eps = diag(-1, -1, 0), so P = -2 mu eps - 2 lambda I.
+    // For a rotation by 90 degrees about z, eps = diag(-1, -1, 0), so P = -2 mu eps - 2 lambda I.
     let law = LinearElastic::new(20e3, 0.25).unwrap();
     let H = gradient(rotation([0.0, 0.0, std::f64::consts::FRAC_PI_2]));
     let P = LinearElastic::stress(&law, &H);
@@ -182,7 +184,7 @@ fn beyond_inversion_the_laws_with_a_logarithm_are_not_finite() {
     }
 }
 
-/// Two laws written in other invariants must be the same function.
+/// Checks that two laws written in different invariants are the same function.
 fn same(a: &dyn Material, b: &dyn Material, H: &Matrix3) -> Result<(), TestCaseError> {
     let scale = a.lambda().abs() + 2.0 * a.mu();
     prop_assert!((a.energy(H) - b.energy(H)).abs() < 1e-13 * scale);
@@ -204,8 +206,8 @@ proptest! {
         same(&mooney, &Ogden::new(&[(0.6 * mu, 2.0), (-0.4 * mu, -2.0)], bulk).unwrap(), &H)?;
     }
 
-    // At stretches that differ by d the tangent is that at equal ones but for O(d), and the stress follows it but for
-    // O(d^2); a division by the difference would leave 1e-16 / d.
+    // For stretches that differ by d, the tangent equals that for equal stretches up to O(d), and the stress
+    // follows it up to O(d^2). A division by the difference would leave an error of 1e-16 / d.
     #[test]
     fn equal_stretches_are_no_special_case(
         (stretch, other) in (0.6..1.7f64, 0.6..1.7f64),
@@ -231,7 +233,7 @@ proptest! {
                 let error = (near_P - foreseen).norm() / tangent.norm();
                 prop_assert!(error < 20.0 * d * d + 1e-14, "{}, {d:e}: stress {error:.2e}", law.name());
             }
-            // Exactly equal: the tangent is still the gradient of the stress.
+            // For exactly equal stretches, the tangent is still the gradient of the stress.
             let H = at(0.0);
             for n in 0..9 {
                 let mut d = Matrix3::zeros();

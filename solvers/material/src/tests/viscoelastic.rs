@@ -7,7 +7,7 @@ fn prony() -> Prony {
     Prony::new(&[(0.3, 0.05), (0.25, 1.0)]).unwrap()
 }
 
-/// Points that have gone from rest to `H` in 0.2 s: `S_dev` now and the history.
+/// Returns `S_dev` and the history of points that were loaded from rest to `H` in 0.2 s.
 fn loaded(law: &Law, H: &Matrix3) -> (Matrix3, Vec<Matrix3>) {
     let mut history = vec![Matrix3::zeros(); 2];
     let S = deviator(&law.stress(H), H);
@@ -41,7 +41,7 @@ proptest! {
             let relaxed = |H: &Matrix3| relaxed_stress_and_tangent(&law, H, &step, &carried);
             let (P, tangent) = relaxed(&H);
 
-            // P itself, from its parts.
+            // P itself from its parts.
             let elastic = law.stress(&H);
             let F = Matrix3::identity() + H;
             let S = deviator(&elastic, &H);
@@ -54,7 +54,7 @@ proptest! {
                 d[n] = 1e-5;
                 let slope = (relaxed(&(H + d)).0 - relaxed(&(H - d)).0) / 2e-5;
                 let error = (slope - Matrix3::from_column_slice(tangent.column(n).as_slice())).norm();
-                // Truncation, as for the elastic tangents.
+                // Truncation error, as for the elastic tangents.
                 prop_assert!(error < 1e-7 * stiffness(&law), "{}: {n}: {error:.2e}", law.name());
             }
 
@@ -81,7 +81,7 @@ proptest! {
         }
     }
 
-    /// Put on at once the response is elastic; after a step without end the shear modulus is down to `g_inf mu`.
+    /// A sudden load has an elastic response; after an infinite step the shear modulus is `g_inf mu`.
     #[test]
     fn ends_of_the_time_scale(H in finite(), poisson in POISSON) {
         let at_rest = [Matrix3::zeros(); 2];
@@ -95,7 +95,7 @@ proptest! {
             prop_assert!((at(0.0).0 - P).norm() < 1e-14 * stiffness(&law));
             prop_assert!((at(0.0).1 - tangent).norm() < 1e-13 * stiffness(&law));
             if matches!(law, Law::NeoHookeanIsochoric(_)) {
-                // C10 times g_inf, the same bulk modulus.
+                // C10 times g_inf, with the same bulk modulus.
                 let (mu, bulk) = (law.mu() * prony().relaxed(), law.bulk());
                 let soft = MooneyRivlin::new(0.5 * mu, 0.0, bulk).unwrap();
                 prop_assert!((at(f64::INFINITY).0 - soft.stress(&H)).norm() < 1e-12 * stiffness(&law));
