@@ -27,8 +27,8 @@ const ENERGIES: [(&str, &str); 9] = [
     ("scheme-dissipation", "lost in the scheme"),
 ];
 
-/// Figures of the tool force for the finest run of every method: against travel, against time in dynamics,
-/// and as the difference from the reference at the same travel, with its uncertainty.
+/// Figures of the tool force for the finest run of every method: against travel, against time (if there is
+/// one), and as the difference from the reference at the same travel, with its uncertainty.
 pub(super) fn forces(runs: &[Run]) -> Vec<Figure> {
     let mut panels = Vec::new();
     for case in by_case(runs) {
