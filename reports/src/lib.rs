@@ -7,7 +7,7 @@
 //! ```
 //! use reports::{Family, Record, RunSet, read_run, render, write_run};
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
-//! // One number of one run: who made it, what it is, how much.
+//! // A record is one number of one run: its case and method, then its quantity, unit and value.
 //! let run = Record { case: "block".into(), method: "tet4".into(), family: Family::Fem, ..Record::default()
 //! }; let error = Record { quantity: "l2".into(), unit: "1".into(), statistic: "value".into(), value: 0.02,
 //! ..run }; let set = RunSet { records: vec![error], ..RunSet::default() }; let folder =

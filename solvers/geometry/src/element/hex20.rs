@@ -5,10 +5,13 @@ use super::Element;
 /// 20-node serendipity hexahedron on the cube `[-1, 1]^3`: the corners of [`super::Hex8`], then mid-edges
 /// 01 12 23 30, 45 56 67 74, 04 15 26 37.
 ///
-/// With `X = x x_a` and so on, `N_a = (1 + X)(1 + Y)(1 + Z)(X + Y + Z - 2) / 8` at the corners and `N_a = (1
-/// - x^2)(1 + Y)(1 + Z) / 4` at the middle of an edge along x; y and z are analogous. The space contains all
-/// quadratics on cells with an affine map. Source: Zienkiewicz & Taylor, The Finite Element Method, vol. 1,
-/// section on serendipity families.
+/// With `X = x x_a` and so on, the shape functions are:
+///
+/// - at the corners `N_a = (1 + X)(1 + Y)(1 + Z)(X + Y + Z - 2) / 8`;
+/// - at the middle of an edge along x `N_a = (1 - x^2)(1 + Y)(1 + Z) / 4`, and likewise along y and z.
+///
+/// The space contains all quadratics on cells with an affine map. Source: Zienkiewicz & Taylor, The Finite
+/// Element Method, vol. 1, section on serendipity families.
 pub struct Hex20;
 
 impl Element<20> for Hex20 {
