@@ -1,14 +1,16 @@
 //! Affine field: the linear patch test.
 //!
 //! ```text
-//! Source      Irons & Razzaque (1972), the patch test; Zienkiewicz & Taylor, The Finite Element Method, ch. 10.
+//! Source      Irons & Razzaque (1972), the patch test; Zienkiewicz & Taylor, The Finite Element Method,
+//!             ch. 10.
 //!
 //!      +-------+        +--------+
 //!      |  . .  |   ->  /   . .  /     u = H x + t,  any body, any mesh or cloud inside
 //!      | .   . |      /  .   . /
 //!      +-------+     +--------+
 //!
-//! Conditions  the exact displacement on the boundary, or the exact traction with rigid motion removed; no body force.
+//! Conditions  the exact displacement on the boundary, or the exact traction with rigid motion removed; no
+//!             body force.
 //! Must hold   every consistent method returns the field to rounding, at any Poisson's ratio.
 //! ```
 
@@ -28,7 +30,7 @@ impl Affine {
         Affine { elastic, gradient, shift }
     }
 
-    /// A field with all nine components and the shift different from zero and from each other, strains of some 1e-3:
+    /// A field whose nine components and shift are all nonzero and different, with strains of about 1e-3:
     /// a patch test that no symmetry of the body can pass by luck.
     pub fn generic(elastic: Elastic) -> Affine {
         let gradient = Matrix3::new(1.1, -0.4, 0.7, 0.9, -1.3, 0.2, -0.6, 0.5, 0.8) * 1e-3;

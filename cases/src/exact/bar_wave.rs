@@ -1,19 +1,20 @@
 //! A bar pulled at its end: d'Alembert's waves between a fixed and a free end.
 //!
 //! ```text
-//! Source      d'Alembert's solution of the wave equation (Graff, Wave Motion in Elastic Solids, 1975, ch. 2.1 and 2.4): of
-//!             the wave that the pull sends out, a fixed end returns the opposite, a free end the same.
+//! Source      d'Alembert's solution of the wave equation (Graff, Wave Motion in Elastic Solids, 1975, ch.
+//!             2.1 and 2.4). A fixed end reflects a wave with the opposite sign, a free end with the same
+//!             sign.
 //!
 //!   |//+--------------------------------+
 //!   +//|                                | ==> p(t)      p = p0 t / T until T, then p0; at once with T = 0
 //!    //+--------------------------------+
 //!      x = 0                          x = L             sides on frictionless walls
 //!
-//! Field       c^2 = M / rho,  M = lambda + 2 mu,  s = L - x,  Q(t) = integral_0^t p,
-//!             u_x = c / M sum_n (-1)^n (Q(t - (2 n L + s) / c) - Q(t - (2 (n + 1) L - s) / c)),  u_y = u_z = 0.
+//! Field       c^2 = M / rho,  M = lambda + 2 mu,  s = L - x,  Q(t) = integral_0^t p,  u_y = u_z = 0,
+//!             u_x = c / M sum_n (-1)^n (Q(t - (2 n L + s) / c) - Q(t - (2 (n + 1) L - s) / c)).
 //! Conditions  from rest; u_x = 0 on x = 0, traction p on x = L, no shear and no motion across the sides.
-//! Must hold   rho u'' = div sigma between the fronts. Pulled at once the end goes straight from 0 to twice the static
-//!             p0 L / M and back, in periods of 4 L / c.
+//! Must hold   rho u'' = div sigma between the fronts. After a sudden pull the end moves linearly from 0 to
+//!             twice the static p0 L / M and back, with a period of 4 L / c.
 //! ```
 
 use super::{
@@ -31,7 +32,7 @@ pub struct BarWave {
     time: f64,
 }
 
-/// What of the pull a sum over the waves is made of.
+/// The function of the pull that is summed over the waves.
 #[derive(Clone, Copy)]
 enum Of {
     Integral,
@@ -40,7 +41,8 @@ enum Of {
 }
 
 impl BarWave {
-    /// Pull `p0` (Pa) that grows over `over` (s, 0 for at once), length (m) and density (kg/m^3), both above zero; at time 0.
+    /// A bar at time 0. The pull `p0` (Pa) grows over `over` (s; 0 for a sudden pull). Length (m) and density
+    /// (kg/m^3) have to be positive.
     pub fn new(
         elastic: Elastic,
         pull: f64,
@@ -69,7 +71,7 @@ impl BarWave {
         (self.modulus() / self.density).sqrt()
     }
 
-    /// `p` at a time, its integral since 0 or its rate.
+    /// The pull `p` at time `t` (Pa), its integral since 0 (Pa s) or its rate (Pa/s).
     fn pulled(&self, of: Of, t: f64) -> f64 {
         let part = match of {
             _ if t <= 0.0 => 0.0,
@@ -83,7 +85,8 @@ impl BarWave {
         self.pull * part
     }
 
-    /// `sum_n (-1)^n (f(t - (2 n L + s) / c) + sign f(t - (2 (n + 1) L - s) / c))`, `f` of the pull (Pa).
+    /// `sum_n (-1)^n (f(t - (2 n L + s) / c) + sign f(t - (2 (n + 1) L - s) / c))`, with `f` the chosen
+    /// function of the pull.
     fn waves(&self, of: Of, x: f64, sign: f64) -> f64 {
         let (c, from_end) = (self.speed(), self.length - x);
         let passages = (0.5 * self.time * c / self.length).ceil() as usize;

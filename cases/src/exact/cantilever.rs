@@ -1,8 +1,9 @@
 //! End-loaded cantilever as plane strain between two symmetry planes: an exact cubic in three dimensions.
 //!
 //! ```text
-//! Source      Timoshenko & Goodier, Theory of Elasticity, bending of a cantilever loaded at the end; displacement in
-//!             the form of Augarde & Deeks (2008), with E' = E / (1 - nu^2) and nu' = nu / (1 - nu) for plane strain.
+//! Source      Timoshenko & Goodier, Theory of Elasticity, bending of a cantilever loaded at the end;
+//!             displacement in the form of Augarde & Deeks (2008), with E' = E / (1 - nu^2) and
+//!             nu' = nu / (1 - nu) for plane strain.
 //!
 //!   y                                        ^ P (N per metre of width), parabolic shear
 //!   |//+-------------------------------------+
@@ -13,9 +14,11 @@
 //! Field       u_x = -P y / (6 E' I) ((6 L - 3 x) x + (2 + nu') (y^2 - D^2/4)),
 //!             u_y =  P / (6 E' I) (3 nu' y^2 (L - x) + (4 + 5 nu') D^2 x / 4 + (3 L - x) x^2),   u_z = 0,
 //!             sigma_xx = -P (L - x) y / I,  sigma_xy = P (D^2/4 - y^2) / (2 I),  sigma_zz = nu sigma_xx.
-//! Conditions  exact displacement on x = 0; exact shear on x = L; y = +-D/2 free; u_z = 0 (free slip) on both z faces.
-//! Must hold   zero traction on y = +-D/2, end shear of resultant P and no moment; any width; nu < 0.5. At the root the
-//!             displacement is not zero but that of the formula: clamping it instead adds a singular corner.
+//! Conditions  exact displacement on x = 0; exact shear on x = L; y = +-D/2 free; u_z = 0 (free slip) on both
+//!             z faces.
+//! Must hold   zero traction on y = +-D/2, end shear of resultant P and no moment; any width; nu < 0.5. At
+//!             the root the displacement is not zero but given by the formula: clamping it instead adds a
+//!             singular corner.
 //! ```
 
 use super::{
@@ -76,7 +79,7 @@ impl Exact for CantileverPlaneStrain {
         scale * h
     }
 
-    /// Written out: by way of Hooke's law, digits cancel as nu nears 0.5.
+    /// Cauchy stress, Pa, written out: Hooke's law loses digits as nu nears 0.5.
     fn stress(&self, p: &Point3) -> Matrix3 {
         let inertia = self.inertia();
         let axial = -self.load * (self.length - p.x) * p.y / inertia;

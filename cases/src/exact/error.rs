@@ -1,35 +1,35 @@
-//! What makes an exact solution impossible to build.
+//! Errors in constructing an exact solution.
 
 use catalogue::Problem;
 
-/// Constants that a solution refuses.
+/// Constants that a solution does not accept.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum ExactError {
-    /// A parameter outside of its range.
+    /// A parameter out of its range.
     #[error("'{name}' of {solution} is {value}; it must be {need}")]
     BadParameter {
-        /// The solution.
+        /// Name of the solution.
         solution: &'static str,
-        /// The parameter.
+        /// Name of the parameter.
         name: &'static str,
-        /// Its value, SI.
+        /// Value of the parameter, SI.
         value: f64,
-        /// What would do.
+        /// Valid values.
         need: String,
     },
-    /// A modulus or Poisson's ratio that no material has.
+    /// An impossible modulus or Poisson's ratio.
     #[error("'{what}' is {value}; it must be {need}")]
     Material {
         /// "young" or "poisson".
         what: &'static str,
-        /// Its value.
+        /// Value of the constant.
         value: f64,
-        /// What would do.
+        /// Valid values.
         need: &'static str,
     },
 }
 
-/// At the parameter that a scene gives.
+/// The problem at the parameter given by a scene.
 impl From<ExactError> for Problem {
     fn from(bad: ExactError) -> Problem {
         match bad {

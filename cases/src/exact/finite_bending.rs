@@ -1,8 +1,8 @@
 //! Finite bending: a block bent into a sector of a cylinder, in plane strain.
 //!
 //! ```text
-//! Source      Rivlin (1949), flexure; Ogden, Non-linear Elastic Deformations (1984), ch. 5.2. Here compressible: one
-//!             ordinary differential equation.
+//! Source      Rivlin (1949), flexure; Ogden, Non-linear Elastic Deformations (1984), ch. 5.2. A compressible
+//!             law leads to one ordinary differential equation.
 //!
 //!    Y ^                      .--.
 //!      |---.                .'    '.
@@ -21,16 +21,16 @@ use super::{
     numbers,
 };
 
-/// Intervals across the thickness: fourth-order Runge-Kutta is below 1e-10 of the radius.
+/// Intervals across the thickness: the error of fourth-order Runge-Kutta is below 1e-10 of the radius.
 const INTERVALS: usize = 100;
 
-/// A block of one thickness bent to one curvature.
+/// A block bent to a constant curvature.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FiniteBending {
     law: Hyperelastic,
     curvature: f64,
     thickness: f64,
-    /// `r` (m) and `r'` at the ends of the intervals.
+    /// Radius `r` (m) and slope `r'` at the ends of the intervals.
     radius: Vec<(f64, f64)>,
 }
 
@@ -47,7 +47,8 @@ impl FiniteBending {
                 need,
             });
         }
-        // The inner face shortens to a radius below 1 / k; too small a one leaves the outer face pressed outwards.
+        // The inner face shortens to a radius below 1 / k. If the radius is too small, the outer face is
+        // under pressure.
         let (mut low, mut high) = (1.0 / curvature - thickness, 1.0 / curvature);
         let shoot = |start: f64| shoot(law, thickness, curvature, start);
         for _ in 0..60 {
@@ -62,7 +63,7 @@ impl FiniteBending {
         self.fibre(x).0
     }
 
-    /// The radius (m) and its slope: the cubic through both ends of the interval.
+    /// Radius (m) and slope at `X`, from the cubic through both ends of the interval.
     fn fibre(&self, x: f64) -> (f64, f64) {
         let step = self.thickness / INTERVALS as f64;
         let at = (x / self.thickness + 0.5) * INTERVALS as f64;
@@ -83,7 +84,7 @@ impl FiniteBending {
 }
 
 impl Exact for FiniteBending {
-    /// `X` within the thickness.
+    /// Displacement, m; `X` has to lie within the thickness.
     fn displacement(&self, x: &Point3) -> Vector3 {
         let (r, angle) = (self.radius(x.x), self.curvature * x.y);
         Vector3::new(r * angle.cos() - self.radius(0.0) - x.x, r * angle.sin() - x.y, 0.0)
@@ -127,7 +128,8 @@ pub(super) const ENTRY: SolutionEntry = Entry {
     },
 };
 
-/// From the inner face with `r = start` and `P_r = 0`: `(r, r')` across and `P_r` at the outer face, Pa.
+/// Integrates from the inner face with `r = start` and `P_r = 0`; returns `(r, r')` across the thickness and
+/// `P_r` at the outer face, Pa.
 fn shoot(law: &Hyperelastic, thickness: f64, curvature: f64, start: f64) -> (Vec<(f64, f64)>, f64) {
     let step = thickness / INTERVALS as f64;
     // (r', dP_r/dX) of a state (r, P_r).
@@ -151,7 +153,7 @@ fn shoot(law: &Hyperelastic, thickness: f64, curvature: f64, start: f64) -> (Vec
     (path, state.1)
 }
 
-/// The stretch between 1/8 and 8 at which the radial stress is `pressed`, by bisection.
+/// Radial stretch between 1/8 and 8 at which the radial stress is `pressed`, by bisection.
 fn radial_stretch(law: &Hyperelastic, hoop: f64, pressed: f64) -> f64 {
     let (mut low, mut high) = (0.125, 8.0);
     for _ in 0..56 {

@@ -9,9 +9,10 @@
 //!             '-'   2 a
 //!       half space z <= 0        far away: the field of a point force (Boussinesq), off by (a / |x|)^2
 //!
-//! Conditions  a << R (small slopes); the far field on the outer faces of a finite block stands in for the half space.
-//! Must hold   force, contact radius and peak pressure converge; the error that is left is of the order of d / R and
-//!             of (a / L)^2, L the size of the block.
+//! Conditions  a << R (small slopes); the far field on the outer faces of a finite block replaces the half
+//!             space.
+//! Must hold   force, contact radius and peak pressure converge; the remaining error is of the order of d / R
+//!             and of (a / L)^2, with L the size of the block.
 //! ```
 
 use std::f64::consts::PI;
@@ -31,7 +32,7 @@ pub struct Hertz {
 }
 
 impl Hertz {
-    /// Radius of the sphere (m) and how far it is pressed in (m), both above zero.
+    /// Radius of the sphere (m) and its depth in the half space (m), both positive.
     pub fn new(elastic: Elastic, radius: f64, depth: f64) -> Result<Hertz, ExactError> {
         for (name, value) in [("radius", radius), ("depth", depth)] {
             if !(value > 0.0 && value.is_finite()) {
@@ -42,12 +43,12 @@ impl Hertz {
         Ok(Hertz { elastic, radius, depth, share: 1.0 })
     }
 
-    /// Of a body that is a part of the half space only, the rest left out for its symmetry: 0.25 for a quarter.
+    /// The solution for a part of the half space, reduced by symmetry; `share` is 0.25 for a quarter.
     pub fn of_share(self, share: f64) -> Hertz {
         Hertz { share, ..self }
     }
 
-    /// `E* = E / (1 - nu^2)`, Pa.
+    /// Contact modulus `E* = E / (1 - nu^2)`, Pa.
     pub fn modulus(&self) -> f64 {
         self.elastic.young() / (1.0 - self.elastic.poisson().powi(2))
     }
@@ -62,7 +63,7 @@ impl Hertz {
         (self.radius * self.depth).sqrt()
     }
 
-    /// Pressure in the middle, Pa.
+    /// Pressure at the centre of the contact, Pa.
     pub fn peak_pressure(&self) -> f64 {
         2.0 * self.modulus() * self.contact_radius() / (PI * self.radius)
     }
@@ -73,7 +74,7 @@ impl Hertz {
     }
 }
 
-/// Far from the contact, `z <= 0`: the field of the whole force in one point.
+/// Far field of the contact, `z <= 0`: the field of the whole force acting at one point.
 ///
 /// ```text
 /// u_r = F / (4 pi mu |x|) (r s / |x|^2 - (1 - 2 nu) r / (|x| + s)),   s = -z
@@ -90,7 +91,7 @@ impl Exact for Hertz {
     fn gradient(&self, x: &Point3) -> Matrix3 {
         let (nu, d, s) = (self.elastic.poisson(), x.coords.norm(), -x.z);
         let part = (1.0 - 2.0 * nu) / (d * (d + s)).powi(2);
-        // u_r = c r A, u_z = -c B; by r (over r) and by z.
+        // u_r = c r A, u_z = -c B; derivatives by r (divided by r) and by z.
         let a = s / d.powi(3) - (1.0 - 2.0 * nu) / (d * (d + s));
         let a_r = -3.0 * s / d.powi(5) + part * (2.0 * d + s) / d;
         let a_z = -(1.0 / d.powi(3) - 3.0 * s * s / d.powi(5) + part * (s * (2.0 * d + s) / d + d));

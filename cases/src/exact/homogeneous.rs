@@ -11,17 +11,17 @@
 //!   F = diag(m, m, l)      F = diag(1, 1, l)        F = I + g e_x e_y^T
 //!   P_xx(m, m, l) = 0
 //!
-//! Conditions  plates without friction; sides free or on frictionless walls; for shear the displacement or the
-//!             tractions P N of all faces (unequal normal ones belong to it: Poynting's effect).
-//! Must hold   every consistent method returns F and P to rounding on any mesh; the plate's force is P_zz times the
-//!             undeformed area.
+//! Conditions  plates without friction; sides free or on frictionless walls; for shear the displacement or
+//!             the tractions P N of all faces, whose normal parts are unequal (Poynting's effect).
+//! Must hold   every consistent method returns F and P to rounding on any mesh; the plate's force is P_zz
+//!             times the undeformed area.
 //! ```
 
 use super::{
     Dimension, Entry, Exact, Hyperelastic, Matrix3, Parameter, Point3, Problem, Range, SolutionEntry, Vector3,
 };
 
-/// One deformation gradient everywhere.
+/// A state with one deformation gradient everywhere.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Homogeneous {
     /// `F` (3, 3), dimensionless.
@@ -31,9 +31,10 @@ pub struct Homogeneous {
 }
 
 impl Homogeneous {
-    /// Axial stretch `l > 0` along z between frictionless plates, sides free. The lateral stretch `m` makes the sides'
-    /// stress vanish; it is bracketed between 1/16 and 16 and bisected to the last digit. `None` where none does: Saint
-    /// Venant-Kirchhoff bars are without width from `l^2 = 1 + 1 / nu` on.
+    /// Axial stretch `l > 0` along z between frictionless plates, with free sides. The lateral stretch `m`
+    /// makes the stress of the sides vanish; it is bracketed between 1/16 and 16 and bisected to the last
+    /// digit. `None` if there is no such stretch: Saint Venant-Kirchhoff bars have no width from `l^2 = 1 + 1
+    /// / nu` on.
     pub fn free_slip(law: &Hyperelastic, stretch: f64) -> Option<Homogeneous> {
         let side = |m: f64| law.principal_stress([m, m, stretch])[0];
         let (mut low, mut high) = (0.0625, 16.0);
@@ -54,7 +55,7 @@ impl Homogeneous {
         })
     }
 
-    /// Axial stretch `l > 0` along z between walls that hold x and y.
+    /// Axial stretch `l > 0` along z between walls that fix x and y.
     pub fn confined(law: &Hyperelastic, stretch: f64) -> Homogeneous {
         Homogeneous {
             deformation: Matrix3::from_diagonal(&Vector3::new(1.0, 1.0, stretch)),
@@ -79,7 +80,7 @@ impl Exact for Homogeneous {
         self.deformation - Matrix3::identity()
     }
 
-    /// `P F^T / J`.
+    /// Cauchy stress `P F^T / J`, Pa.
     fn stress(&self, _x: &Point3) -> Matrix3 {
         self.stress * self.deformation.transpose() / self.deformation.determinant()
     }

@@ -1,16 +1,17 @@
-//! Isotropic hyperelastic laws by their principal stretches, written out once more for the exact solutions.
+//! Isotropic hyperelastic laws in principal stretches, written out separately for the exact solutions.
 //!
 //! ```text
-//! P_a = dW / dl_a           principal first Piola-Kirchhoff stresses of the stretches l_1, l_2, l_3;  J = l_1 l_2 l_3
-//! P   = sum_a P_a n_a N_a^T   with the spatial and the material principal directions, F = sum_a l_a n_a N_a^T
+//! P_a = dW / dl_a             principal first Piola-Kirchhoff stresses for the stretches l_1, l_2, l_3
+//! P   = sum_a P_a n_a N_a^T   with the spatial and material principal directions, F = sum_a l_a n_a N_a^T
+//! J   = l_1 l_2 l_3
 //! ```
 //!
-//! Source: Ogden, Non-linear Elastic Deformations (1984), ch. 4.3. Solvers work with tensors; here there are only three
-//! numbers, so a solver's material never judges itself.
+//! Source: Ogden, Non-linear Elastic Deformations (1984), ch. 4.3. Solvers work with tensors; here there are
+//! only three numbers, so a solver's material is never its own judge.
 
 use super::{Elastic, Matrix3, Vector3};
 
-/// A stored energy `W(l_1, l_2, l_3)`, Pa, with the constants in the form the law is known by.
+/// A stored energy `W(l_1, l_2, l_3)`, Pa, with the usual constants of the law.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Hyperelastic {
     /// `lambda/2 (tr E)^2 + mu E : E`, `E_a = (l_a^2 - 1) / 2`.
@@ -19,7 +20,8 @@ pub enum Hyperelastic {
     NeoHookean(Elastic),
     /// `mu sum (ln l_a)^2 + lambda/2 (ln J)^2`.
     Hencky(Elastic),
-    /// `C10 (J^(-2/3) I1 - 3) + C01 (J^(-4/3) I2 - 3) + kappa/2 (J - 1)^2`; with `C01 = 0` the isochoric neo-Hookean.
+    /// `C10 (J^(-2/3) I1 - 3) + C01 (J^(-4/3) I2 - 3) + kappa/2 (J - 1)^2`. With `C01 = 0` this is the
+    /// isochoric neo-Hookean law.
     MooneyRivlin {
         /// `C10`, Pa.
         c10: f64,
@@ -78,8 +80,9 @@ impl Hyperelastic {
         }
     }
 
-    /// First Piola-Kirchhoff stress `P` (3, 3), Pa, of a deformation gradient with `det F > 0`, by the eigenvectors
-    /// of `F^T F` (good to about 1e-14; where two stretches are equal any pair of directions will do).
+    /// First Piola-Kirchhoff stress `P` (3, 3), Pa, of a deformation gradient with `det F > 0`, by the
+    /// eigenvectors of `F^T F`. Accurate to about 1e-14. If two stretches are equal, any pair of directions
+    /// is valid.
     pub fn stress(&self, gradient: &Matrix3) -> Matrix3 {
         let right = (gradient.transpose() * gradient).symmetric_eigen();
         let stretch: [f64; 3] = std::array::from_fn(|a| right.eigenvalues[a].sqrt());

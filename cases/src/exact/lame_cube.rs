@@ -1,21 +1,22 @@
-//! A free cube that vibrates in Lame's modes: the equivoluminal ones, whatever its Poisson's ratio.
+//! A free cube that vibrates in Lame's modes, which keep the volume at any Poisson's ratio.
 //!
 //! ```text
-//! Source      Lame, Lecons sur la theorie mathematique de l'elasticite des corps solides (1852); Ekstein & Schiffman,
-//!             J. Appl. Phys. 27 (1956) 405-412: free vibrations of isotropic cubes.
+//! Source      Lame, Lecons sur la theorie mathematique de l'elasticite des corps solides (1852);
+//!             Ekstein & Schiffman, J. Appl. Phys. 27 (1956) 405-412: free vibrations of isotropic cubes.
 //!
 //!       ^ y
 //!     L +-------+
-//!       | <-  ^ |            side L from the origin, free all around; each face across the axis stays as it is, the four
-//!       | v  -> |            others turn about it, one against the next
+//!       | <-  ^ |            side L from the origin, free all around; each face across the axis keeps its
+//!       | v  -> |            plane, the other four turn about the axis in alternating directions
 //!     0 +-------+--> x
 //!       0       L
 //!
 //! Field       u = A cos(omega t) (cos kx sin ky, -sin kx cos ky, 0),  k = pi / L; two more about x and y
 //! Frequency   omega^2 = 2 k^2 mu / rho
-//! Conditions  div u = 0 and du_x/dy + du_y/dx = 0, so that sigma = 2 mu diag(du_x/dx, du_y/dy, 0), both -+ A k sin kx sin ky:
-//!             zero on all faces.
-//! Must hold   three modes of this frequency, not one on another: the integral of u_z . u_x is -4 / pi^2 of that of u_z^2.
+//! Conditions  div u = 0 and du_x/dy + du_y/dx = 0, so that sigma = 2 mu diag(du_x/dx, du_y/dy, 0), both
+//!             -+ A k sin kx sin ky: zero on all faces.
+//! Must hold   three modes of this frequency, which are not orthogonal: the integral of u_z . u_x is -4 /
+//!             pi^2 of that of u_z^2.
 //! ```
 
 use std::f64::consts::PI;
@@ -25,7 +26,7 @@ use super::{
     Vibrations, numbers,
 };
 
-/// Lame's mode about z; as a field it stands still at its largest until [`Exact::at`] gives it a time.
+/// Lame's mode about z. As a field it is fixed at its largest amplitude until [`Exact::at`] sets a time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LameCube {
     elastic: Elastic,
@@ -36,7 +37,7 @@ pub struct LameCube {
 }
 
 impl LameCube {
-    /// Side (m) and density (kg/m^3), both above zero, and amplitude (m); at time 0.
+    /// Side (m) and density (kg/m^3), both positive, and amplitude (m); at time 0.
     pub fn new(elastic: Elastic, side: f64, density: f64, amplitude: f64) -> Result<LameCube, ExactError> {
         for (name, value) in [("side", side), ("density", density)] {
             if !(value > 0.0 && value.is_finite()) {
@@ -51,7 +52,7 @@ impl LameCube {
         self.amplitude * (self.omega() * self.time).cos()
     }
 
-    /// The mode about an axis, of amplitude 1.
+    /// Displacement of the mode about an axis, with amplitude 1.
     fn about(&self, axis: usize, p: &Point3) -> Vector3 {
         let (a, b) = ((axis + 1) % 3, (axis + 2) % 3);
         let [(sin_a, cos_a), (sin_b, cos_b)] = [a, b].map(|axis| (PI / self.side * p[axis]).sin_cos());

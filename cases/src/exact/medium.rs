@@ -1,26 +1,26 @@
-//! The material that an exact solution is of.
+//! The material of an exact solution.
 
 use super::{Elastic, Hyperelastic};
 use catalogue::Problem;
 
-/// A material as the exact solutions take it.
+/// A material in the form used by the exact solutions.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Medium {
-    /// Its moduli at small strain.
+    /// Moduli at small strain.
     pub elastic: Elastic,
-    /// Its stored energy, where that is written out in [`Hyperelastic`].
+    /// Stored energy, if [`Hyperelastic`] has it.
     pub law: Option<Hyperelastic>,
 }
 
 impl Medium {
-    /// For solutions at large strain.
+    /// The law for solutions at large strain; an error if there is none.
     pub(super) fn hyperelastic(&self) -> Result<&Hyperelastic, Problem> {
         let help = "take law = \"neo-hookean\" or another of large strain";
         self.law.as_ref().ok_or_else(|| Problem::new("is at large strain, which the law is not").help(help))
     }
 }
 
-/// At small strain alone.
+/// A medium at small strain only.
 impl From<Elastic> for Medium {
     fn from(elastic: Elastic) -> Medium {
         Medium { elastic, law: None }

@@ -1,12 +1,14 @@
-//! Exact solutions, each a closed form in three dimensions: what the solvers are judged by.
+//! Exact solutions, each a closed form in three dimensions, by which the solvers are judged.
 //!
-//! Every solution is a file with a card, a field (displacement, displacement gradient, stress and body force at a point) and
-//! the [`SolutionEntry`] by which scenes name it, and a line of the list below. Stresses follow from laws written out here
-//! ([`Elastic`], [`Hyperelastic`]), so that a solver's material never judges itself.
+//! Every solution is a file with a card, a field (displacement, displacement gradient, stress and body force
+//! at a point) and the [`SolutionEntry`] by which scenes name it, and a line of the list below. Stresses
+//! follow from laws written out here ([`Elastic`], [`Hyperelastic`]), so that a solver's material is never
+//! its own judge.
 //!
-//! A solution may move ([`BarWave`]), vibrate ([`LameCube`], [`RollerBox`]) or relax ([`RelaxingCompression`]): it is a field
-//! at one time and gives that at any other. It may be at large strain ([`Homogeneous`], [`FiniteBending`]), or know a contact
-//! alone ([`Hertz`]). [`VibratingCantilever`] is a period, no field.
+//! A solution may move ([`BarWave`]), vibrate ([`LameCube`], [`RollerBox`]) or relax
+//! ([`RelaxingCompression`]). It is then the field at one time and gives the field at any other time. It may
+//! be at large strain ([`Homogeneous`], [`FiniteBending`]), or describe only a contact ([`Hertz`]).
+//! [`VibratingCantilever`] is a period, not a field.
 
 mod elastic;
 mod error;
@@ -34,7 +36,7 @@ macro_rules! solutions {
             pub use $file::$solution;
         )*
 
-        /// Every solution, in the order tables list them.
+        /// Every solution, in the order of tables.
         pub static SOLUTIONS: &[SolutionEntry] = &[$($($file::$entry),*),*];
     };
 }
@@ -76,33 +78,37 @@ pub trait Exact: Send + Sync {
     /// Cauchy stress at the material point, (3, 3), Pa.
     fn stress(&self, x: &Point3) -> Matrix3;
 
-    /// Body force per reference volume, `b = -Div P`, N/m^3; none unless a solution needs one. Of a motion it is that of
-    /// inertia, `-rho u''`.
+    /// Body force per reference volume, `b = -Div P`, N/m^3; zero by default. For a motion this is the
+    /// inertia force, `-rho u''`.
     fn body_force(&self, _x: &Point3) -> Vector3 {
         Vector3::zeros()
     }
 
-    /// Traction on a surface of outward unit normal `n`, Pa: `P N` per reference area, which at small strain is `sigma n`.
+    /// Traction on a surface with outward unit normal `n`, Pa: `P N` per reference area; at small strain
+    /// `sigma n`.
     fn traction(&self, x: &Point3, normal: &Vector3) -> Vector3 {
         self.stress(x) * normal
     }
 
-    /// Whether the field is of large strain, of the body's own law; else it is of Hooke's, and the limit of every law.
+    /// Whether the field is at large strain and uses the body's own law. Otherwise it uses Hooke's law, the
+    /// small-strain limit of every law.
     fn is_large_strain(&self) -> bool {
         false
     }
 
-    /// What is known of a contact, where that is all: the field is then that far from it, and no error is taken of it.
+    /// Contact quantities of a solution that gives only these. Its field is then the far field, and no error
+    /// of the field is computed.
     fn contact(&self) -> Option<Contact> {
         None
     }
 
-    /// The field at another time (s) since its start, for a solution that moves or relaxes; one made by name is at time 0.
+    /// The field at another time (s) after the start, for a solution that moves or relaxes; `exact_by_name`
+    /// gives time 0.
     fn at(&self, _time: f64) -> Option<Box<dyn Exact>> {
         None
     }
 
-    /// What is known of free vibrations, where the solution is one.
+    /// Free vibrations, if the solution describes any.
     fn vibrations(&self) -> Option<&dyn Vibrations> {
         None
     }
@@ -113,28 +119,28 @@ pub trait Vibrations {
     /// Angular frequency of the solution's own field, rad/s.
     fn omega(&self) -> f64;
 
-    /// All modes of that frequency at a point, linearly independent, of any size.
+    /// All modes of that frequency at a point: linearly independent vectors of arbitrary scale.
     fn shapes(&self, x: &Point3) -> Vec<Vector3>;
 
-    /// The lowest `count` angular frequencies of the body, ascending and each as often as it has modes, rad/s; `None` where
-    /// not all are known.
+    /// The lowest `count` angular frequencies of the body, rad/s, ascending and repeated by multiplicity;
+    /// `None` if not all are known.
     fn lowest(&self, count: usize) -> Option<Vec<f64>>;
 }
 
-/// A tool pressed into a body.
+/// Force and area of the contact of a tool pressed into a body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Contact {
-    /// Force on the tool against its motion, N.
+    /// Force on the tool opposite to its motion, N.
     pub force: f64,
-    /// Area of the contact, m^2.
+    /// Contact area, m^2.
     pub area: f64,
 }
 
-/// The solution of that name for a material, with the parameters given in SI.
+/// The solution with the given name for a material; parameters in SI.
 pub fn exact_by_name(name: &str, medium: &Medium, given: &[(&str, f64)]) -> Result<Box<dyn Exact>, Problem> {
     let entry = find(SOLUTIONS, name)?;
     let mut values = Values::new(entry.parameters);
-    // A file has the text of what it gives; here there is none.
+    // A file keeps the text of its values; here the message is built from the number.
     let with_value = |bad: Problem, name: &str| match given.iter().find(|(given, _)| *given == name) {
         Some((name, value)) if bad.found.is_none() => bad.found(format!("{name} = {value}")),
         _ => bad,
@@ -154,7 +160,7 @@ pub fn exact_by_name(name: &str, medium: &Medium, given: &[(&str, f64)]) -> Resu
     }
 }
 
-/// Numbers of these names.
+/// The numbers with the given names.
 fn numbers<const N: usize>(values: &Values, names: [&'static str; N]) -> Result<[f64; N], Problem> {
     let mut numbers = [0.0; N];
     for (number, name) in numbers.iter_mut().zip(names) {

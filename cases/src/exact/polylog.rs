@@ -1,10 +1,12 @@
-//! Closed sums of the alternating Fourier series `L_p(s, t) = sum_n (-1)^n n^-p e^(-n s) e^(i n t)`, p = 2 and 3.
+//! Closed sums of the series `L_p(s, t) = sum_n (-1)^n n^-p e^(-n s) e^(i n t)`, an alternating Fourier
+//! series, for p = 2 and 3.
 //!
-//! They are the polylogarithms `Li_p(-e^(-s + i t))`. On the edge s = 0 the series converges like `n^-p` only, and its
-//! derivatives not at all; the closed sums hold 1e-15 everywhere, corners included, at a fixed cost.
+//! The sums are the polylogarithms `Li_p(-e^(-s + i t))`. On the edge s = 0 the series converges like `n^-p`
+//! only, and its derivatives not at all. The closed sums are accurate to 1e-15 everywhere, corners included,
+//! at a fixed cost.
 //!
-//! Source: Lewin, Polylogarithms and Associated Functions (1981), ch. 7; with `mu = -s + i (t -+ pi)`, `|mu| < 2 pi`,
-//! `Li_p(e^mu) = mu^(p-1)/(p-1)! (H_(p-1) - ln(-mu)) + sum_(k != p-1) zeta(p - k) mu^k / k!`.
+//! Source: Lewin, Polylogarithms and Associated Functions (1981), ch. 7. With `mu = -s + i (t -+ pi)` and
+//! `|mu| < 2 pi`, `Li_p(e^mu) = mu^(p-1)/(p-1)! (H_(p-1) - ln(-mu)) + sum_(k != p-1) zeta(p - k) mu^k / k!`.
 
 use std::f64::consts::PI;
 use std::sync::LazyLock;
@@ -12,8 +14,8 @@ use std::sync::LazyLock;
 /// A complex number.
 pub type Complex = nalgebra::Complex<f64>;
 
-/// Above this decay the power series is summed, below it the logarithmic one: there `|mu| < 3.44`, so that the terms
-/// fall at least as `(3.44 / 2 pi)^2 = 0.30` each and 30 are enough.
+/// Decay `s` above which the power series is summed, and below which the logarithmic series. In the latter
+/// `|mu| < 3.44`, so each term is smaller by at least `(3.44 / 2 pi)^2 = 0.30`, and 30 terms are enough.
 const SWITCH: f64 = 1.4;
 const LOG_TERMS: usize = 30;
 
@@ -35,19 +37,20 @@ static TAIL: LazyLock<[f64; LOG_TERMS]> = LazyLock::new(|| {
     })
 });
 
-/// `x^n` by products from the left: `powi` rounds differently where the compiler sees the exponent, so that its bits
-/// depend on how the build is cut into units (1e-16 to 3e-14 in the results).
+/// `x^n` by products from the left. `powi` rounds differently if the compiler knows the exponent, so that its
+/// bits depend on the division of the build into units (1e-16 to 3e-14 in the results).
 fn power(x: f64, n: i32) -> f64 {
     (0..n).fold(1.0, |product, _| product * x)
 }
 
-/// `mu` and `ln(-mu)` of the logarithmic series; `None` at the singular corner, where every term with them vanishes.
+/// `mu` and `ln(-mu)` of the logarithmic series; `None` at the singular corner, at which every term with them
+/// vanishes.
 fn logarithm(s: f64, t: f64) -> Option<(Complex, Complex)> {
     let mu = Complex::new(-s, if t > 0.0 { t - PI } else { t + PI });
     (mu.norm_sqr() > 0.0).then(|| (mu, (-mu).ln()))
 }
 
-/// `sum_n (-1)^n n^-p e^(n (-s + i t))` by its terms, for a decay above [`SWITCH`].
+/// `sum_n (-1)^n n^-p e^(n (-s + i t))`, summed by terms, for a decay above [`SWITCH`].
 fn power_series(s: f64, t: f64, weight: impl Fn(f64) -> f64) -> Complex {
     let w = Complex::from_polar((-s).exp(), t) * -1.0;
     let terms = (38.0 / s).ceil() as i32;
@@ -84,7 +87,7 @@ pub fn alternating_3(s: f64, t: f64) -> Complex {
 mod tests {
     use super::*;
 
-    /// Plain sum of the series; good to 1e-15 once `e^(-n s)` has died out.
+    /// Plain sum of the series; accurate to 1e-15 if `e^(-n s)` has decayed.
     fn brute(p: i32, s: f64, t: f64) -> Complex {
         (1..20_000).rev().fold(Complex::ZERO, |sum, n| {
             let n_f = f64::from(n);
@@ -110,7 +113,7 @@ mod tests {
         assert!((alternating_3(0.0, 0.0).re + 0.75 * ZETA_3).abs() < 1e-15);
         assert!((alternating_2(0.0, PI).re - ZETA_2).abs() < 1e-15);
         assert!((alternating_3(0.0, PI).re - ZETA_3).abs() < 1e-15);
-        // sum (-1)^n cos(n t) / n^2 = t^2/4 - pi^2/12, the parabola that the flexure series stands for
+        // sum (-1)^n cos(n t) / n^2 = t^2/4 - pi^2/12, the parabola that the flexure series represents
         for t in [0.4, 1.5, 3.0] {
             assert!((alternating_2(0.0, t).re - (t * t / 4.0 - PI * PI / 12.0)).abs() < 1e-15);
         }

@@ -6,12 +6,12 @@
 //!   y
 //!   |   .-----------------------.
 //!   |  M(                       )M       curvature k = M / (E I), any section centred on the x axis
-//!   +---'-----------------------'---x    that has y and z as principal axes
+//!   +---'-----------------------'---x    whose principal axes are y and z
 //!
 //! Field       u = (k x y, -k/2 (x^2 + nu (y^2 - z^2)), -k nu y z),   sigma_xx = E k y, all else zero.
 //! Conditions  exact displacement on x = 0, exact traction E k y on the far end; sides free; no body force.
-//! Must hold   quadratic elements return it to rounding; linear ones show locking as nu -> 0.5. The mean stress is
-//!             E k y / 3 whatever nu is, so the pressure error is well defined.
+//! Must hold   quadratic elements return it to rounding; linear ones show locking as nu -> 0.5. The mean
+//!             stress is E k y / 3 for any nu, so the pressure error is well defined.
 //! ```
 
 use super::{Dimension, Elastic, Entry, Exact, Matrix3, Parameter, Point3, SolutionEntry, Vector3};
@@ -24,7 +24,7 @@ pub struct PureBending {
 }
 
 impl PureBending {
-    /// The field of a curvature `k` in 1/m; positive stretches the side of positive y.
+    /// The field with curvature `k` in 1/m; a positive value stretches the side of positive y.
     pub fn new(elastic: Elastic, curvature: f64) -> PureBending {
         PureBending { elastic, curvature }
     }
@@ -47,7 +47,7 @@ impl Exact for PureBending {
         self.curvature * h
     }
 
-    /// `sigma_xx = E k y`, written out: by way of Hooke's law, digits cancel as nu nears 0.5.
+    /// Cauchy stress `sigma_xx = E k y`, Pa, written out: Hooke's law loses digits as nu nears 0.5.
     fn stress(&self, p: &Point3) -> Matrix3 {
         Matrix3::from_diagonal(&Vector3::new(self.elastic.young() * self.curvature * p.y, 0.0, 0.0))
     }

@@ -8,9 +8,11 @@
 //!      | .   . |         \ .   .  |     b constant
 //!      +-------+          `------'
 //!
-//! Conditions  the exact displacement on the boundary (or traction on a part), the constant body force inside.
-//! Must hold   quadratic elements and quadratic bases with consistent integration return the field to rounding; linear
-//!             ones converge at order 2 (displacement) and 1 (energy). The body force grows with lambda near nu = 0.5.
+//! Conditions  the exact displacement on the boundary (or traction on a part), the constant body force
+//!             inside.
+//! Must hold   quadratic elements and quadratic bases with consistent integration return the field to
+//!             rounding; linear ones converge at order 2 (displacement) and 1 (energy). The body force grows
+//!             with lambda near nu = 0.5.
 //! ```
 
 use super::{Dimension, Elastic, Entry, Exact, Matrix3, Parameter, Point3, SolutionEntry, Vector3};
@@ -32,7 +34,7 @@ const GENERIC: [[f64; 6]; 3] = [
 ];
 
 impl QuadraticPatch {
-    /// The field of the second derivatives `C_i = grad grad u_i` (1/m); only their symmetric parts count.
+    /// The field with the second derivatives `C_i = grad grad u_i` (1/m); only their symmetric parts count.
     pub fn new(elastic: Elastic, second: [Matrix3; 3]) -> QuadraticPatch {
         let second = second.map(|c| 0.5 * (c + c.transpose()));
         let laplacian = Vector3::from_fn(|i, _| second[i].trace());
@@ -41,7 +43,7 @@ impl QuadraticPatch {
         QuadraticPatch { elastic, second, force }
     }
 
-    /// A field in which every second derivative is present, scaled by `amplitude` (1/m).
+    /// A field with all second derivatives nonzero, scaled by `amplitude` (1/m).
     pub fn generic(elastic: Elastic, amplitude: f64) -> QuadraticPatch {
         let second = GENERIC
             .map(|[xx, yy, zz, xy, xz, yz]| amplitude * Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz));

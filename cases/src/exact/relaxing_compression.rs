@@ -1,8 +1,10 @@
-//! Free-slip compression of tissue that relaxes: shortened at a constant rate between frictionless plates, then held.
+//! Free-slip compression of tissue that relaxes: shortened at a constant rate between frictionless plates,
+//! then held.
 //!
 //! ```text
-//! Source      Tschoegl, The Phenomenological Theory of Linear Viscoelastic Behavior (1989), standard solid; the modulus in
-//!             tension by the correspondence principle, 1 / E = 1 / (3 G) + 1 / (9 K) of the transforms.
+//! Source      Tschoegl, The Phenomenological Theory of Linear Viscoelastic Behavior (1989), standard solid;
+//!             the modulus in tension by the correspondence principle, 1 / E = 1 / (3 G) + 1 / (9 K) of the
+//!             transforms.
 //!
 //!   z   ======= plate =======
 //!   |     |           |  ^
@@ -10,12 +12,14 @@
 //!   +--   |           |  |
 //!       ======= plate =======                   sides free, plates slip, no inertia
 //!
-//! Material    G(t) = mu (1 - g + g exp(-t / tau)) and K: the shear response relaxes, that of the volume does not.
+//! Material    G(t) = mu (1 - g + g exp(-t / tau)) and K: the shear response relaxes, the volumetric response
+//!             does not.
 //! Field       E(t) = E_inf + (E - E_inf) exp(-t / T'),  E_inf = 9 K G_inf / (3 K + G_inf),
 //!             T' = tau (3 K + mu) / (3 K + G_inf),  sigma_zz = -integral_0^t E(t - s) de(s),
 //!             u = (l x, l y, -e z),  l = e / 2 + sigma_zz / (6 K).
-//! Conditions  as of `uniaxial-compression`, whose state it is at the time 0 of a compression put on at once.
-//! Must hold   homogeneous: exact to what the steps in time leave, of order 2. While held the sides move out to keep free.
+//! Conditions  as for `uniaxial-compression`, which is the state at time 0 of a sudden compression.
+//! Must hold   homogeneous: exact up to the error of the time steps, of order 2. In the hold phase the sides
+//!             move outwards.
 //! ```
 
 use super::{
@@ -34,8 +38,8 @@ pub struct RelaxingCompression {
 }
 
 impl RelaxingCompression {
-    /// Shortening `strain` per unit height reached after `over` (s, 0 for at once); a share `0 <= g < 1` of the shear modulus
-    /// relaxes with the time `tau` (s, above zero). At time 0.
+    /// Shortening `strain` per unit height, reached after `over` (s; 0 for a sudden load). A share `0 <= g <
+    /// 1` of the shear modulus relaxes with the time `tau` (s, positive). At time 0.
     pub fn new(
         elastic: Elastic,
         strain: f64,
@@ -59,7 +63,7 @@ impl RelaxingCompression {
         Ok(RelaxingCompression { elastic, strain, over, share, tau, time: 0.0 })
     }
 
-    /// `e` and `-sigma_zz` (Pa).
+    /// Strain `e` and compressive stress `-sigma_zz` (Pa).
     fn state(&self) -> (f64, f64) {
         let (bulk, mu) = (3.0 * self.elastic.bulk(), self.elastic.mu());
         let relaxed = mu * (1.0 - self.share);
@@ -86,7 +90,7 @@ impl Exact for RelaxingCompression {
         Matrix3::from_diagonal(&Vector3::new(lateral, lateral, -strain))
     }
 
-    /// That of its past: Hooke's law of its gradient is another.
+    /// Stress of the strain history; Hooke's law of the present gradient would give another.
     fn stress(&self, _x: &Point3) -> Matrix3 {
         Matrix3::from_diagonal(&Vector3::new(0.0, 0.0, -self.state().1))
     }

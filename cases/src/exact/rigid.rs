@@ -7,8 +7,9 @@
 //!      |       |   ->   |       |  turned      u = t + w x x
 //!      +-------+        +-------+
 //!
-//! Conditions  the exact displacement on a part of the boundary that holds the body; nothing else.
-//! Must hold   the body follows to rounding; stress, energy and reactions vanish; the stiffness has exactly six such modes.
+//! Conditions  the exact displacement on a part of the boundary that constrains the body; nothing else.
+//! Must hold   the body follows to rounding; stress, energy and reactions vanish; the stiffness has exactly
+//!             six such modes.
 //! ```
 
 use super::{Dimension, Elastic, Entry, Exact, Matrix3, Parameter, Point3, SolutionEntry, Vector3, numbers};
@@ -27,7 +28,7 @@ impl Rigid {
         Rigid { elastic, shift, rotation }
     }
 
-    /// A motion with all six components different from zero and from each other.
+    /// A motion whose six components are all nonzero and different.
     pub fn generic(elastic: Elastic) -> Rigid {
         Rigid {
             elastic,

@@ -1,11 +1,12 @@
 //! A box on rollers all around: every mode of vibration in closed form.
 //!
 //! ```text
-//! Source      separation of variables (Graff, Wave Motion in Elastic Solids, 1975, ch. 5: plane waves between smooth walls)
+//! Source      separation of variables (Graff, Wave Motion in Elastic Solids, 1975, ch. 5: plane waves
+//!             between smooth walls)
 //!
 //!     o o o o
 //!   o +-------+ o
-//!   o |       | o            from the origin to (L1, L2, L3); no face moves along its normal, none is held along itself
+//!   o |       | o      from the origin to (L1, L2, L3); faces slip freely and do not move along their normal
 //!   o +-------+ o
 //!     o o o o
 //!
@@ -14,8 +15,9 @@
 //! Frequency   compression, (A, B, C) along k:   omega = |k| sqrt((lambda + 2 mu) / rho)
 //!             shear, (A, B, C) across k:        omega = |k| sqrt(mu / rho)
 //! Conditions  u_x = 0 on the faces across x, and sigma_xy, sigma_xz there are products of sin ax.
-//! Must hold   of each k one mode of compression and, with n of i, j, l above zero, n - 1 of shear: a component whose number is
-//!             zero is zero itself. These fields are a basis, so there is no other mode, and none at zero.
+//! Must hold   each k has one mode of compression and, if n of i, j, l are positive, n - 1 of shear: a
+//!             component with the number zero vanishes. These fields are a basis, so there is no other mode,
+//!             and none at zero frequency.
 //! ```
 
 use std::f64::consts::PI;
@@ -25,7 +27,7 @@ use super::{
     Vibrations, numbers,
 };
 
-/// The lowest mode; as a field it stands still at its largest until [`Exact::at`] gives it a time.
+/// The lowest mode. As a field it is fixed at its largest amplitude until [`Exact::at`] sets a time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RollerBox {
     elastic: Elastic,
@@ -35,7 +37,7 @@ pub struct RollerBox {
     time: f64,
 }
 
-/// One mode.
+/// A mode of vibration.
 #[derive(Clone, Copy)]
 struct Mode {
     omega: f64,
@@ -46,7 +48,7 @@ struct Mode {
 }
 
 impl RollerBox {
-    /// Sides (m) and density (kg/m^3), all above zero, and amplitude (m); at time 0.
+    /// Sides (m) and density (kg/m^3), all positive, and amplitude (m); at time 0.
     pub fn new(
         elastic: Elastic,
         size: [f64; 3],
@@ -63,7 +65,7 @@ impl RollerBox {
         Ok(RollerBox { elastic, size, density, amplitude, time: 0.0 })
     }
 
-    /// Frequencies of compression and of shear for three numbers of half waves, with the wave vector.
+    /// Frequencies of compression and of shear (rad/s) for three numbers of half waves, with the wave vector.
     fn of(&self, numbers: [usize; 3]) -> (f64, f64, Vector3) {
         let wave = Vector3::from_fn(|a, _| PI * numbers[a] as f64 / self.size[a]);
         let (lambda, mu) = (self.elastic.lambda(), self.elastic.mu());
@@ -71,7 +73,8 @@ impl RollerBox {
         (wave.norm() * speed(lambda + 2.0 * mu), wave.norm() * speed(mu), wave)
     }
 
-    /// The lowest mode: one half wave of compression along the longest side, or one of shear along each of the two longest.
+    /// The lowest mode: one half wave of compression along the longest side, or of shear along each of the
+    /// two longest.
     fn first(&self) -> Mode {
         let mut axes = [0, 1, 2];
         axes.sort_by(|&a, &b| self.size[b].total_cmp(&self.size[a]));
@@ -94,13 +97,13 @@ impl RollerBox {
 }
 
 impl Mode {
-    /// The field, of amplitude 1.
+    /// Displacement of the mode, with amplitude 1.
     fn value(&self, p: &Point3) -> Vector3 {
         let (sin, cos) = self.waves(p);
         Vector3::from_fn(|i, _| self.along[i] * sin[i] * cos[(i + 1) % 3] * cos[(i + 2) % 3])
     }
 
-    /// Its gradient, 1/m.
+    /// Displacement gradient of the mode, 1/m.
     fn slope(&self, p: &Point3) -> Matrix3 {
         let (sin, cos) = self.waves(p);
         Matrix3::from_fn(|i, j| {
@@ -156,7 +159,8 @@ impl Vibrations for RollerBox {
     }
 
     fn lowest(&self, count: usize) -> Option<Vec<f64>> {
-        // Shear with one half wave along y and 1 to `count` along x: so many modes are no faster than this.
+        // Shear modes with one half wave along y and 1 to `count` along x: these `count` modes are no faster
+        // than this.
         let highest = self.of([count, 1, 0]).1 * (1.0 + 1e-9);
         let mut modes = Vec::new();
         let within = |axis: usize, numbers: [usize; 3]| {

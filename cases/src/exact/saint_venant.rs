@@ -4,11 +4,11 @@
 //! Source      Saint-Venant (1856); Love, A Treatise on the Mathematical Theory of Elasticity, ch. XV;
 //!             Timoshenko & Goodier, Theory of Elasticity, bending of bars, rectangular cross-section.
 //!
-//!   y                                            ^ P            y
-//!   |//+-----------------------------------------+           +--|--+  2a = depth
-//!   +//|- - - - - - - - - - - - - - - - - - - - -|--- x      |  +--|-- z
-//!    //+-----------------------------------------+           +-----+
-//!      x = 0                                   x = L          2b = width,  I = 2b (2a)^3 / 12,  k = P / (E I)
+//!   y                                            ^ P          y
+//!   |//+-----------------------------------------+         +--|--+  2a = depth
+//!   +//|- - - - - - - - - - - - - - - - - - - - -|--- x    |  +--|-- z
+//!    //+-----------------------------------------+         +-----+
+//!      x = 0                                   x = L        2b = width,  I = 2b (2a)^3 / 12,  k = P / (E I)
 //!
 //! Field       u_x = -k y (L x - x^2/2) + k chi(y, z),
 //!             u_y =  k (nu/2 (L - x)(y^2 - z^2) + L x^2/2 - x^3/6),
@@ -18,17 +18,18 @@
 //! Warping     lap chi = -2 y  with  chi_y = nu/2 (y^2 - z^2) on y = +-a  and  chi_z = nu y z on z = +-b:
 //!             chi = ((1 + nu) a^2 - nu b^2/3) y - (2 + nu) y^3/6 + nu y z^2/2
 //!                   - 4 nu b^3/pi^3 sum_n (-1)^n/n^3 sinh(n pi y/b) / cosh(n pi a/b) cos(n pi z/b).
-//! Conditions  exact displacement on x = 0, exact shear traction on x = L (resultant P along +y, no moment, zero normal
-//!             part), the four sides free, no body force.
-//! Rigid part  u = 0, d(u_y)/dx = 0 and no twist at the centroid of the root: the axis leaves the root horizontally. The
-//!             section there still turns by shear, d(u_x)/dy = k chi_y(0, 0), and warps.
-//! Must hold   lateral tractions vanish, strains obey Hooke with three normal stresses of which two are zero; any nu.
-//!             At the four corner lines of the bar the second derivatives of chi have a logarithmic singularity.
+//! Conditions  exact displacement on x = 0, exact shear traction on x = L (resultant P along +y, no moment,
+//!             zero normal part), the four sides free, no body force.
+//! Rigid part  u = 0, d(u_y)/dx = 0 and no twist at the centroid of the root: the axis leaves the root
+//!             horizontally. The section there still turns by shear, d(u_x)/dy = k chi_y(0, 0), and warps.
+//! Must hold   lateral tractions vanish; strains obey Hooke's law with three normal stresses, of which two
+//!             are zero; any nu. At the four corner lines of the bar the second derivatives of chi have a
+//!             logarithmic singularity.
 //! ```
 //!
-//! The series is not truncated. With `1 / cosh` expanded in images of the section, each image is a polylogarithm in
-//! closed form, and the images fall as `exp(-2 pi a/b)` each: displacement, gradient and stress are right to rounding
-//! up to and on faces, edges and corners.
+//! The series is not truncated. With `1 / cosh` expanded in images of the section, each image is a
+//! polylogarithm in closed form, and each further image is smaller by `exp(-2 pi a/b)`. Displacement,
+//! gradient and stress are exact to rounding up to and on faces, edges and corners.
 
 use std::f64::consts::PI;
 
@@ -37,7 +38,8 @@ use super::{
     Dimension, Elastic, Entry, Exact, ExactError, Matrix3, Parameter, Point3, SolutionEntry, Vector3, numbers,
 };
 
-/// Smallest depth to width ratio: the number of images grows as `6 width / depth`, so that 1/50 costs some 300.
+/// Smallest depth to width ratio: the number of images grows as `6 width / depth`, so that 1/50 needs about
+/// 300.
 const FLATTEST: f64 = 0.02;
 
 /// Cantilever of rectangular section along x, root at x = 0, axis through the origin, loaded along y.
@@ -53,7 +55,8 @@ pub struct SaintVenantFlexure {
 }
 
 impl SaintVenantFlexure {
-    /// End load `P` along +y (N), length along x, full depth along y and full width along z (m).
+    /// A bar under the end load `P` along +y (N), with length along x, full depth along y and full width
+    /// along z (m).
     pub fn new(
         elastic: Elastic,
         load: f64,
@@ -76,8 +79,9 @@ impl SaintVenantFlexure {
         Ok(SaintVenantFlexure { elastic, length, half, scale: load / (elastic.young() * inertia), images })
     }
 
-    /// `sum_m (-1)^m L(s_m, t)` over the images above (`s_m = pi (a (2m + 1) - y) / b`) and below (`+ y`) the section,
-    /// with `t = pi z / b`: their difference is the series of `sinh / cosh`, their sum that of `cosh / cosh`.
+    /// `sum_m (-1)^m L(s_m, t)` over the images above (`s_m = pi (a (2m + 1) - y) / b`) and below (`+ y`) the
+    /// section, with `t = pi z / b`: their difference is the series of `sinh / cosh`, their sum that of `cosh
+    /// / cosh`.
     fn images(&self, y: f64, z: f64, term: impl Fn(f64, f64) -> Complex) -> (Complex, Complex) {
         let [a, b] = self.half;
         (0..=self.images).rev().fold((Complex::ZERO, Complex::ZERO), |(above, below), m| {
@@ -128,7 +132,7 @@ impl Exact for SaintVenantFlexure {
         self.scale * h
     }
 
-    /// Written out: by way of Hooke's law, digits cancel as nu nears 0.5.
+    /// Cauchy stress, Pa, written out: Hooke's law loses digits as nu nears 0.5.
     fn stress(&self, p: &Point3) -> Matrix3 {
         let (y, z, nu) = (p.y, p.z, self.elastic.poisson());
         let (chi_y, chi_z) = self.warping_slope(y, z);

@@ -5,21 +5,23 @@
 //!
 //!   y                                               y
 //!   +-----------------------------------------+   +--|--+  2a = depth
-//!   |- - - - - - - - - - - - - - - - - - - - -|x  |  +--|-- z      the section at x turns by k x about the axis
+//!   |- - - - - - - - - - - - - - - - - - - - -|x  |  +--|-- z   the section at x turns by k x about the axis
 //!   +-----------------------------------------+   +-----+
 //!   x = 0                                          2b = width
 //!
 //! Field       u_x = k (psi(y, z) - y z),  u_y = -k x z,  u_z = k x y;
 //!             sigma_xy = mu k (psi_y - 2 z),  sigma_xz = mu k psi_z,  all others 0.
 //! Warping     lap psi = 0  with  psi_y = 2 z on y = +-a  and  psi_z = 0 on z = +-b:
-//!             psi = 32 b^2/pi^3 sum_m i^(m-1)/m^3 sinh(m pi y/2b) / cosh(m pi a/2b) sin(m pi z/2b),  m = 1, 3, 5, ...
-//! Conditions  exact displacement on x = 0, exact shear traction on the other end (a torque alone), the four sides free,
-//!             no body force.
-//! Must hold   lateral tractions vanish, the volume stays, any nu; of a square the torque is 0.1406 mu k (2a)^4.
+//!             psi = 32 b^2/pi^3 sum_m i^(m-1)/m^3 sinh(m pi y/2b) / cosh(m pi a/2b) sin(m pi z/2b),
+//!             m = 1, 3, 5, ...
+//! Conditions  exact displacement on x = 0, exact shear traction on the other end (a torque alone), the four
+//!             sides free, no body force.
+//! Must hold   lateral tractions vanish, the volume stays, any nu; a square has the torque 0.1406 mu k
+//!             (2a)^4.
 //! ```
 //!
-//! The series is not truncated: with `1 / cosh` expanded in images of the section, each image is a polylogarithm in
-//! closed form, as in [`super::SaintVenantFlexure`].
+//! The series is not truncated. With `1 / cosh` expanded in images of the section, each image is a
+//! polylogarithm in closed form, as in [`super::SaintVenantFlexure`].
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -28,7 +30,8 @@ use super::{
     Dimension, Elastic, Entry, Exact, ExactError, Matrix3, Parameter, Point3, SolutionEntry, Vector3, numbers,
 };
 
-/// Smallest depth to width ratio: the number of images grows as `12 width / depth`, so that 1/50 costs some 600.
+/// Smallest depth to width ratio: the number of images grows as `12 width / depth`, so that 1/50 needs about
+/// 600.
 const FLATTEST: f64 = 0.02;
 
 /// A bar along x, its axis through the origin, whose sections turn in proportion to x.
@@ -43,7 +46,7 @@ pub struct Torsion {
 }
 
 impl Torsion {
-    /// Angle per length (rad/m), full depth along y and full width along z (m).
+    /// A bar with the given angle per length (rad/m), full depth along y and full width along z (m).
     pub fn new(elastic: Elastic, twist: f64, [depth, width]: [f64; 2]) -> Result<Torsion, ExactError> {
         for (name, value) in [("depth", depth), ("width", width)] {
             if !(value > 0.0 && value.is_finite()) {
@@ -59,8 +62,9 @@ impl Torsion {
         Ok(Torsion { elastic, twist, half: [0.5 * depth, 0.5 * width], images })
     }
 
-    /// `sum_j (-1)^j S(s_j, t)` over the images above and below the section, with `s_j = pi (a (2j + 1) -+ y) / 2b` and
-    /// `t = pi z / 2b`, of `S(s, t) = sum_m i^(m-1) m^-p e^(-m s) e^(i m t)`: of the alternating sum over all m what is odd.
+    /// `sum_j (-1)^j S(s_j, t)` over the images above and below the section, with `s_j = pi (a (2j + 1) -+ y)
+    /// / 2b` and `t = pi z / 2b`. `S(s, t) = sum_m i^(m-1) m^-p e^(-m s) e^(i m t)` is the odd part of the
+    /// alternating sum over all m.
     fn images(&self, y: f64, z: f64, alternating: impl Fn(f64, f64) -> Complex) -> (Complex, Complex) {
         let [a, b] = self.half;
         let t = FRAC_PI_2 * z / b;
@@ -74,13 +78,13 @@ impl Torsion {
         })
     }
 
-    /// `psi`, m^2.
+    /// Warping `psi`, m^2.
     fn warping(&self, y: f64, z: f64) -> f64 {
         let (above, below) = self.images(y, z, alternating_3);
         32.0 * self.half[1] * self.half[1] / (PI * PI * PI) * (above - below).im
     }
 
-    /// `(d psi/dy, d psi/dz)`, m.
+    /// Slopes of the warping, `(d psi/dy, d psi/dz)`, m.
     fn warping_slope(&self, y: f64, z: f64) -> (f64, f64) {
         let (above, below) = self.images(y, z, alternating_2);
         let factor = 16.0 * self.half[1] / (PI * PI);

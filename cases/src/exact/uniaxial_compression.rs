@@ -10,8 +10,9 @@
 //!       ======= plate =======                  z = 0 stays
 //!
 //! Field       u = (nu e x, nu e y, -e z),   sigma_zz = -E e, all else zero.
-//! Conditions  u_z = 0 on z = 0 and u_z = -e h on z = h (or the pressure E e), the axis held against drift and turning.
-//! Must hold   every consistent method returns it to rounding at every nu; the plate force is E e times the area.
+//! Conditions  u_z = 0 on z = 0 and u_z = -e h on z = h (or the pressure E e); the axis cannot drift or turn.
+//! Must hold   every consistent method returns it to rounding at every nu; the plate force is E e times the
+//!             area.
 //! ```
 
 use super::{Dimension, Elastic, Entry, Exact, Matrix3, Parameter, Point3, SolutionEntry, Vector3};
@@ -24,7 +25,7 @@ pub struct UniaxialCompression {
 }
 
 impl UniaxialCompression {
-    /// The state of a shortening `e` per unit height; negative stretches.
+    /// The state with a shortening `e` per unit height; a negative value stretches.
     pub fn new(elastic: Elastic, strain: f64) -> UniaxialCompression {
         UniaxialCompression { elastic, strain }
     }
@@ -44,7 +45,7 @@ impl Exact for UniaxialCompression {
         Matrix3::from_diagonal(&self.stretches())
     }
 
-    /// `sigma_zz = -E e`, written out: by way of Hooke's law, digits cancel as nu nears 0.5.
+    /// Cauchy stress `sigma_zz = -E e`, Pa, written out: Hooke's law loses digits as nu nears 0.5.
     fn stress(&self, _x: &Point3) -> Matrix3 {
         Matrix3::from_diagonal(&Vector3::new(0.0, 0.0, -self.elastic.young() * self.strain))
     }

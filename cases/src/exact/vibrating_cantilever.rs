@@ -1,17 +1,17 @@
-//! First bending vibration of a slender cantilever: not a field but a period, by beam theory.
+//! First bending vibration of a slender cantilever by beam theory: a period, not a field.
 //!
 //! ```text
 //! Source      Huang, J. Appl. Mech. 28 (1961) 579-584: Timoshenko's beam, clamped and free.
 //!
 //!   |//+-----------------------------+   ^ v
-//!   +//|                             |                square section of side D, length L, r^2 = D^2 / (12 L^2)
+//!   +//|                             |           square section of side D, length L, r^2 = D^2 / (12 L^2)
 //!    //+-----------------------------+
 //!
 //! Period      2 pi / omega,  omega = b sqrt(E I / (rho A)) / L^2,  b the root near 1.8751^2 of
 //!             2 + (b^2 (r^2 - s^2)^2 + 2) cosh(b alpha) cos(b beta)
 //!               - b (r^2 + s^2) / sqrt(1 - b^2 r^2 s^2) sinh(b alpha) sin(b beta) = 0,
 //!             (alpha, beta)^2 = (-+ (r^2 + s^2) + sqrt((r^2 - s^2)^2 + 4 / b^2)) / 2,  s^2 = r^2 E / (k G).
-//! Conditions  small amplitude; k = 5/6, and nu = 0 so that the clamp hinders nothing but the rotation.
+//! Conditions  small amplitude; k = 5/6, and nu = 0 so that the clamp constrains only the rotation.
 //! Must hold   longer than Euler and Bernoulli's by 7.9 D^2 / (12 L^2) to first order, 0.66 % at L = 10 D.
 //! ```
 
@@ -22,9 +22,9 @@ use super::Elastic;
 pub struct VibratingCantilever {
     /// Material.
     pub elastic: Elastic,
-    /// kg/m^3.
+    /// Density, kg/m^3.
     pub density: f64,
-    /// m.
+    /// Length, m.
     pub length: f64,
     /// Side of the section, m.
     pub side: f64,
@@ -34,7 +34,7 @@ pub struct VibratingCantilever {
 const ROOT: f64 = 1.875_104_068_711_961;
 
 impl VibratingCantilever {
-    /// Period by Euler and Bernoulli, s: neither shear nor rotary inertia.
+    /// Period by Euler and Bernoulli, s: without shear and rotary inertia.
     pub fn bernoulli(&self) -> f64 {
         self.period_of(ROOT * ROOT)
     }

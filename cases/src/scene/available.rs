@@ -1,4 +1,4 @@
-//! What a sound scene may ask for and can't have yet.
+//! Valid requests of a scene that no solver supports yet.
 
 use catalogue::Problem;
 
@@ -8,7 +8,7 @@ use super::model::Scene;
 use super::procedure::{Procedure, ProcedureKind};
 
 impl Scene {
-    /// Every part of the scene that no solver here runs yet; empty if all of it runs.
+    /// Every part of the scene that no solver here supports yet; empty if all parts can run.
     pub fn unavailable(&self) -> Vec<SceneError> {
         let mut errors = Vec::new();
         let mut add = |key: &str, what: String, help: &str| {

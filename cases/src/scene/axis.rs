@@ -1,4 +1,4 @@
-//! An axis of a study: one thing of a scene, driven from value to value until methods bend and break.
+//! An axis of a study: one setting of a scene, varied from value to value until methods bend and break.
 //!
 //! ```toml
 //! [run.axis]
@@ -8,8 +8,9 @@
 //! set = { "body.size[2]" = "{40 / x} mm" }
 //! ```
 //!
-//! A key of `set` is one of the scene's as messages name them, `method[]` standing for every method that the run names. What
-//! stands in braces is an expression of the value, `x`; a text of nothing but braces becomes a number.
+//! A key of `set` is a key of the scene as messages name it; `method[]` stands for every method of the run.
+//! Text in braces is an expression of the value `x`. A text that consists of one pair of braces becomes a
+//! number.
 
 use std::collections::BTreeMap;
 
@@ -26,47 +27,47 @@ use super::model::Scene;
 use super::report::Report;
 use super::{resolved, shared};
 
-/// What drives a scene through its values, and what tells whether a result is right.
+/// An axis along which a scene is varied, and the criterion for a correct result.
 #[derive(Clone, Debug)]
 pub struct Axis {
-    /// What is driven, as figures and tables name it.
+    /// Name of the varied setting in figures and tables.
     pub name: String,
     /// Unit of the values in figures; empty for a bare number.
     pub unit: String,
-    /// Its values, in their order.
+    /// Values of the axis, in their order.
     pub values: Vec<f64>,
-    /// The value that a method's error is compared with.
+    /// Value at which a method's reference error is taken.
     pub base: f64,
-    /// The error that judges.
+    /// Metric of the error by which results are judged.
     pub judge: &'static Metric,
-    /// From this error on a result is wrong.
+    /// Smallest error that makes a result wrong.
     pub wrong: f64,
     set: BTreeMap<String, Value>,
     unset: Vec<String>,
 }
 
-/// One thing of the scene, driven from value to value until methods bend and break
+/// One setting of the scene, varied from value to value until methods bend and break
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct AxisKeys {
-    /// What is driven, as figures and tables name it
+    /// Name of the varied setting in figures and tables
     name: String,
-    /// Unit of the values, for figures; a bare number unless given
+    /// Unit of the values, for figures; none unless given
     #[serde(default)]
     unit: String,
-    /// Its values
+    /// Values of the axis
     values: Vec<f64>,
-    /// The value that the error is compared with: a method bends where the error is twice as large; the first unless given
+    /// Value for comparison: a method bends at twice the error it has here; the first value unless given
     base: Option<f64>,
-    /// The metric that judges, such as "l2" or "relative-rms"
+    /// Metric of the error that is judged, such as "l2" or "relative-rms"
     judge: String,
-    /// From this error on a result is wrong; 0.25 unless given
+    /// Smallest error that makes a result wrong; 0.25 unless given
     wrong: Option<f64>,
-    /// Keys of the scene, such as "material.poisson" or "method[].support_scale" for every method of the run, with their
-    /// values: in braces, expressions of the value x, such as "{40 / x} mm"
+    /// Keys of the scene, such as "material.poisson" or "method[].support_scale" for every method of the run,
+    /// with their values. Text in braces is an expression of the value x, such as "{40 / x} mm"
     #[schemars(with = "BTreeMap<String, serde_json::Value>")]
     set: BTreeMap<String, Value>,
-    /// Keys of the scene to leave out, such as "method[].support_scale" where neighbours are set
+    /// Keys of the scene to remove, such as "method[].support_scale" if neighbours are set
     #[serde(default)]
     unset: Vec<String>,
 }
@@ -95,10 +96,10 @@ pub(crate) fn axis(keys: AxisKeys, key: &str, report: &mut Report) -> Option<Axi
 }
 
 impl Axis {
-    /// A scene at one value of the axis, with these of its methods (all where none is named).
+    /// The scene at one value of the axis, with the named methods (all if `methods` is empty).
     ///
-    /// # Errors
-    /// What the scene is refused for, there or as it is; a key of the axis that the scene cannot have.
+    /// # Errors All findings about the scene, as given or at this value; or a key of the axis that the scene
+    /// cannot have.
     pub fn at(&self, scene: &Scene, methods: &[String], value: f64) -> Result<Scene, Vec<SceneError>> {
         let refuse = |key: &str, problem: Problem| {
             vec![scene.error(
@@ -115,7 +116,7 @@ impl Axis {
         let filled = filled.collect::<Result<Vec<_>, _>>()?;
         let mut document = Document::parse(scene.text(), scene.file())?;
         document.keep(methods);
-        // They are of the scene as it is.
+        // Checks apply to the unvaried scene.
         document.root.get_mut().remove("check");
         let left_out = self.unset.iter().map(|key| (key.as_str(), None));
         let driver = format!("{} along '{}' at {value}", scene.file(), self.name);
@@ -129,7 +130,7 @@ impl Axis {
     }
 }
 
-/// A template with the value in its braces.
+/// Replaces the braces of a template by the value of their expression at `x`.
 fn fill(template: &Value, x: f64) -> Result<Value, Problem> {
     Ok(match template {
         Value::String(text) => fill_text(text, x)?,

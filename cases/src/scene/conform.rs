@@ -1,5 +1,5 @@
-//! A spanned TOML value against the schema of the types it will become: every unknown key, missing key, wrong type and
-//! unreadable quantity at its place, not only the first.
+//! Checks a spanned TOML value against the schema of its target types. Every unknown key, missing key, wrong
+//! type and unreadable quantity is reported at its place, not only the first.
 
 use std::ops::Range;
 
@@ -15,7 +15,7 @@ use super::region::Region;
 use catalogue::Dimension;
 use catalogue::Problem;
 
-/// Keys that were renamed: old and new.
+/// Renamed keys: old name and new name.
 const RENAMED: [(&str, &str); 3] =
     [("dilatation", "support_scale"), ("dilatations", "support_scales"), ("support", "neighbourhood")];
 
@@ -27,14 +27,14 @@ pub(crate) struct Finding {
     pub problem: Problem,
 }
 
-/// Everything in `value` that `schema` doesn't allow.
+/// Finds all parts of `value` that `schema` doesn't allow.
 pub(crate) fn check(value: &DeValue<'_>, span: Range<usize>, schema: &Value) -> Vec<Finding> {
     let mut findings = Vec::new();
     any(value, span, "", schema, &mut findings);
     findings
 }
 
-/// `method[1]` and `size` into `method[1].size`.
+/// Joins `method[1]` and `size` into `method[1].size`.
 pub(crate) fn join(path: &str, key: &str) -> String {
     if path.is_empty() { key.to_string() } else { format!("{path}.{key}") }
 }
@@ -47,7 +47,8 @@ fn any(value: &DeValue<'_>, span: Range<usize>, path: &str, schema: &Value, find
     match (value, fitting.as_slice()) {
         (_, []) if forms.is_empty() => {}
         (_, []) => add(wrong_type(value, &forms)),
-        // A text where the only text is a word, as "1 kPa" where [x, y, z] or "exact" belongs: the other forms say more.
+        // Only one form is a text, and it is a word, as if "1 kPa" is given for [x, y, z] or "exact". The
+        // other forms give a better message.
         (DeValue::String(text), [form])
             if forms.len() > 1 && words_of(form).is_some_and(|words| nearest(text, words).is_none()) =>
         {
@@ -75,7 +76,7 @@ fn any(value: &DeValue<'_>, span: Range<usize>, path: &str, schema: &Value, find
     }
 }
 
-/// Alternatives of a schema, `null` left out: an absent key is all that `null` means in TOML.
+/// Alternatives of a schema without `null`, which stands for an absent key in TOML.
 fn flatten<'s>(schema: &'s Value, forms: &mut Vec<&'s Map<String, Value>>) {
     let Some(map) = schema.as_object() else { return };
     match map.get("anyOf").or(map.get("oneOf")).and_then(Value::as_array) {
@@ -133,7 +134,7 @@ fn wrong_type(value: &DeValue<'_>, forms: &[&Map<String, Value>]) -> Problem {
     }
 }
 
-/// What may stand in a place: forms that are single words as one list of words.
+/// Describes the values allowed at a place; all single words are joined into one list.
 fn describe_all(forms: &[&Map<String, Value>]) -> String {
     let listed: Vec<&str> = forms.iter().flat_map(words).collect();
     let mut wanted: Vec<String> = Vec::new();
@@ -174,13 +175,13 @@ fn describe(form: &Map<String, Value>) -> String {
     }
 }
 
-/// A sentence as the second half of another one.
+/// Turns a sentence into the second half of another sentence: its first letter becomes lower case.
 fn clause(sentence: &str) -> String {
     let mut letters = sentence.chars();
     letters.next().into_iter().flat_map(char::to_lowercase).chain(letters).collect()
 }
 
-/// What a list of quantities looks like; nothing for other lists.
+/// An example of a list of quantities; empty for other lists.
 fn example(list: &Map<String, Value>, count: u64) -> String {
     let mut forms = Vec::new();
     list.get("items").into_iter().for_each(|items| flatten(items, &mut forms));
@@ -192,7 +193,7 @@ fn example(list: &Map<String, Value>, count: u64) -> String {
     format!(" such as [{}]", items.collect::<Vec<_>>().join(", "))
 }
 
-/// A table by the keys of which it has one, or else by all of them.
+/// Describes a table by its mutually exclusive keys if it has any, or else by all its keys.
 fn describe_table(form: &Map<String, Value>) -> String {
     let names = |list: &Value| -> Option<Vec<String>> {
         list.as_array()?.iter().map(|name| Some(name.as_str()?.to_string())).collect()
@@ -206,7 +207,7 @@ fn describe_table(form: &Map<String, Value>) -> String {
     }
 }
 
-/// The words a form is limited to, if it is.
+/// The words that a form allows, if it is restricted to words.
 fn words_of(form: &Map<String, Value>) -> Option<Vec<&str>> {
     if let Some(word) = form.get("const").and_then(Value::as_str) {
         return Some(vec![word]);
@@ -223,7 +224,7 @@ fn not_one_of(value: &DeValue<'_>, words: &[&str]) -> Problem {
     Problem::new("is not known").found(&text).help(suggest(&text, words))
 }
 
-/// Of several tables distinguished by the word under one key (`shape = "box"`), the one meant.
+/// Selects the table that is meant, among tables distinguished by the word under one key (`shape = "box"`).
 fn tagged<'s>(
     table: &DeTable<'_>,
     span: Range<usize>,
@@ -339,13 +340,13 @@ fn items(
     }
 }
 
-/// The key that distinguishes a form from others, and its word.
+/// The key that distinguishes a form from the others, and its word.
 fn tag(form: &Map<String, Value>) -> Option<(&str, &str)> {
     let keys = form.get("properties")?.as_object()?;
     keys.iter().find_map(|(key, schema)| Some((key.as_str(), schema.get("const")?.as_str()?)))
 }
 
-/// A key that other forms have.
+/// The problem with a key that belongs to another form; `None` if no other form has the key.
 fn of_another(name: &str, form: &Map<String, Value>, others: &[&Map<String, Value>]) -> Option<Problem> {
     let (key, word) = tag(form)?;
     let has = |other: &&&Map<String, Value>| {
@@ -356,7 +357,7 @@ fn of_another(name: &str, form: &Map<String, Value>, others: &[&Map<String, Valu
     (!words.is_empty()).then(|| problem.help(format!("leave it out; it goes with {}", words.join(", "))))
 }
 
-/// `others` are the forms that the table might have had, distinguished by a word as [`tagged`] does.
+/// Checks the keys of a table; `others` are the alternative forms, distinguished by a word as in [`tagged`].
 fn keys(
     table: &DeTable<'_>,
     span: Range<usize>,
@@ -372,7 +373,7 @@ fn keys(
         let name = key.get_ref().as_ref();
         let other = form.get("additionalProperties").filter(|schema| !schema.is_boolean());
         if form.get("additionalProperties") == Some(&Value::Bool(true)) {
-            // Keys of another file: whoever reads them there has more to say.
+            // The keys belong to another file, and its reader gives better messages.
             continue;
         }
         if let Some(schema) = known.get(name).or(other) {

@@ -1,4 +1,4 @@
-//! Whether a study has every scene of a folder: a case that was taken out of it, or never put in, is named.
+//! Coverage of a folder by a study: a scene that was removed from the study, or never added, is reported.
 
 use std::path::{Path, PathBuf};
 
@@ -9,17 +9,18 @@ use serde::Deserialize;
 use super::report::Report;
 use super::study::Run;
 
-/// A scene that the study leaves out
+/// A scene that the study leaves out on purpose
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct LeftOutKeys {
     /// The scene file, relative to the study's folder
     pub scene: String,
-    /// Why no run has it
+    /// Reason why no run has the scene
     pub reason: String,
 }
 
-/// Reports every scene in the folder `all_of` and below it that is neither in a run nor left out with a reason.
+/// Reports every scene in the folder `all_of` and below it that is neither in a run nor left out with a
+/// reason.
 pub(crate) fn check(all_of: Option<&str>, left_out: &[LeftOutKeys], runs: &[Run], report: &mut Report) {
     let Some(folder) = all_of else {
         let help = "name the folder of scenes that the study is of: all_of = \"../scenes\"";
@@ -69,10 +70,11 @@ pub(crate) fn check(all_of: Option<&str>, left_out: &[LeftOutKeys], runs: &[Run]
     }
 }
 
-/// Files and folders that are looked at: beyond, it is the wrong folder, such as `/`.
+/// Most files and folders to search: a larger folder is the wrong one, such as `/`.
 const MOST_FILES: usize = 10_000;
 
-/// The TOML files in a folder and below it; false where it has too many files to look at them all.
+/// Finds the TOML files in a folder and below it; returns false if there are more than [`MOST_FILES`]
+/// entries.
 fn list(folder: &Path, found: &mut Vec<PathBuf>, seen: &mut usize) -> std::io::Result<bool> {
     for entry in std::fs::read_dir(folder)? {
         *seen += 1;
@@ -91,7 +93,7 @@ fn list(folder: &Path, found: &mut Vec<PathBuf>, seen: &mut usize) -> std::io::R
     Ok(true)
 }
 
-/// One path for one file, however it is written.
+/// The canonical path of a file.
 fn whole(path: &Path) -> PathBuf {
     path.canonicalize().unwrap_or_else(|_| path.into())
 }

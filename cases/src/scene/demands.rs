@@ -1,4 +1,4 @@
-//! What a procedure and the other parts of a scene demand of each other.
+//! Mutual demands of the procedure and the other parts of a scene.
 
 use super::field::{Prescribed, ScalarField};
 use super::method::{Cloud, Dilation, Efg, Element, Essential, Family, Regions};
@@ -10,7 +10,7 @@ use super::tool::Drive;
 use catalogue::Problem;
 use material::Material as _;
 
-/// Notes every contradiction.
+/// Reports every contradiction.
 pub(crate) fn scene(scene: &Scene, report: &mut Report) {
     laws(scene, report);
     tools(scene, report);
@@ -47,7 +47,7 @@ pub(crate) fn scene(scene: &Scene, report: &mut Report) {
     }
 }
 
-/// Whether a procedure knows this way to constrain a cloud; if not, what is wrong.
+/// The problem if the procedure does not support this essential condition of a cloud; `None` if it does.
 pub(super) fn unheld(essential: &Essential, kind: ProcedureKind) -> Option<Problem> {
     let linear = matches!(kind, ProcedureKind::Linear | ProcedureKind::Modes | ProcedureKind::Prepare);
     let (Essential::Nitsche { .. } | Essential::Multipliers | Essential::Elimination { .. }) = essential
@@ -58,10 +58,10 @@ pub(super) fn unheld(essential: &Essential, kind: ProcedureKind) -> Option<Probl
     (!linear).then(|| Problem::new(problem).help("take \"penalty\" or \"coupling\""))
 }
 
-/// How clouds are constrained.
+/// Checks the essential conditions of clouds.
 fn held(scene: &Scene, report: &mut Report) {
     let kind = scene.procedure.kind();
-    // A cloud in explicit dynamics is refused as such.
+    // A cloud in explicit dynamics is refused elsewhere.
     for (i, method) in scene.methods.iter().enumerate().filter(|_| kind != ProcedureKind::Explicit) {
         let Family::Efg(efg) = &method.family else { continue };
         if let Some(problem) = unheld(&efg.essential, kind) {
@@ -72,7 +72,7 @@ fn held(scene: &Scene, report: &mut Report) {
     }
 }
 
-/// Where there is one material, there is no border.
+/// Refuses separate regions in a scene with one material, which has no borders.
 fn parted(scene: &Scene, report: &mut Report) {
     for (i, method) in scene.methods.iter().enumerate() {
         let Family::Efg(Efg { regions: Regions::Separate, .. }) = &method.family else { continue };
@@ -85,7 +85,7 @@ fn parted(scene: &Scene, report: &mut Report) {
     }
 }
 
-/// A cloud that follows an error is solved for again and again.
+/// Refuses clouds refined by their error in nonlinear procedures: each refinement needs another solution.
 fn refined(scene: &Scene, report: &mut Report) {
     for (i, method) in scene.methods.iter().enumerate() {
         let Family::Efg(Efg { cloud: Cloud::Refined { .. }, .. }) = &method.family else { continue };
@@ -98,7 +98,7 @@ fn refined(scene: &Scene, report: &mut Report) {
     }
 }
 
-/// Where nothing is solved there is no displacement to compare, transfer or report.
+/// Refuses output of displacements if nothing is solved.
 fn unsolved(scene: &Scene, report: &mut Report) {
     if scene.procedure.kind() != ProcedureKind::Prepare {
         return;
@@ -117,7 +117,7 @@ fn unsolved(scene: &Scene, report: &mut Report) {
     }
 }
 
-/// Vibrations are free: mass and stiffness are all there is, and what they report is no displacement.
+/// Checks scenes of free vibrations: they need mass and stiffness only, and report no displacements.
 fn vibrating(scene: &Scene, report: &mut Report) {
     let vibrates = scene.procedure.kind() == ProcedureKind::Modes;
     for (i, method) in scene.methods.iter().enumerate() {
@@ -197,7 +197,8 @@ fn tools(scene: &Scene, report: &mut Report) {
     }
 }
 
-/// A pressure field of its own, linear between the corners, is stable with elements of second order only.
+/// Requires elements of second order for a mixed pressure field: linear between corners, it is stable with
+/// these only.
 fn mixed(scene: &Scene, report: &mut Report) {
     for (i, method) in scene.methods.iter().enumerate() {
         let Family::Fem(fem) = &method.family else { continue };

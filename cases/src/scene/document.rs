@@ -1,4 +1,4 @@
-//! A TOML document with the place of every key, read in one pass that collects what is wrong.
+//! A TOML document with the place of every key, read in one pass that collects all errors.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -16,7 +16,7 @@ use catalogue::{Problem, clip};
 use super::error::{ErrorKind, SceneError};
 use super::sources::{Files, Place, Sources};
 
-/// Line and column of the keys of a file, for messages that come long after reading.
+/// Places of the keys of a file by line and column, for messages long after reading.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Origin {
     files: Files,
@@ -24,7 +24,7 @@ pub struct Origin {
     places: Places,
 }
 
-/// Of a key: its place, and its value as written if that is a scalar.
+/// By key: its place, and its value as written if the value is a scalar.
 type Places = BTreeMap<String, (Place, Option<String>)>;
 
 impl Origin {
@@ -33,12 +33,12 @@ impl Origin {
         self.files.own()
     }
 
-    /// The text of the file; where methods are taken from another one, what it comes to with them written out.
+    /// The text of the file; with shared methods, the equivalent text in which these are written out.
     pub(crate) fn text(&self) -> &str {
         &self.text
     }
 
-    /// The file that has the value of `key`.
+    /// The file that contains the value of `key`.
     pub(crate) fn file_of(&self, key: &str) -> &str {
         self.places.get(key).map_or(self.file(), |(place, _)| self.files.name(place.file))
     }
@@ -48,8 +48,8 @@ impl Origin {
         self.places.contains_key(key)
     }
 
-    /// An error at `key`, such as `method[1].size.nodes`, with the value the file has there; at the nearest key above it
-    /// if the file doesn't have it.
+    /// An error at `key`, such as `method[1].size.nodes`, with the value in the file. If the file does not
+    /// have the key, the error is at the nearest key above it.
     pub(crate) fn error(&self, kind: ErrorKind, key: &str, problem: Problem) -> SceneError {
         let mut at = key;
         let place = loop {
@@ -67,7 +67,7 @@ impl Origin {
     }
 }
 
-/// A file whose syntax is right.
+/// A file with valid TOML syntax.
 pub(crate) struct Document<'t> {
     pub root: Spanned<DeTable<'t>>,
     pub sources: Sources<'t>,
@@ -75,7 +75,8 @@ pub(crate) struct Document<'t> {
 }
 
 impl<'t> Document<'t> {
-    /// The first error of syntax alone: what a parser says after it is mostly its own confusion.
+    /// Parses the text; reports the first syntax error only, because later ones are mostly consequences of
+    /// it.
     pub fn parse(text: &'t str, file: &str) -> Result<Document<'t>, Vec<SceneError>> {
         let (sources, files) = (Sources::new(text), Files::new(file));
         if text.len() > limits::MOST_BYTES {
@@ -119,7 +120,7 @@ impl<'t> Document<'t> {
         self.files.error(ErrorKind::Invalid, self.sources.place(span), key, problem)
     }
 
-    /// Holds every key against a schema.
+    /// Checks every key against a schema.
     pub fn check(&self, schema: &Value) -> Result<(), Vec<SceneError>> {
         let root = DeValue::Table(self.root.get_ref().clone());
         let findings = conform::check(&root, self.root.span(), schema);
@@ -128,7 +129,7 @@ impl<'t> Document<'t> {
         if errors.is_empty() { Ok(()) } else { Err(sorted(errors)) }
     }
 
-    /// Without the keys at the top that are wrong or have something wrong below them.
+    /// Values of the document without the top-level keys that have errors in or below them.
     pub fn sound<T: DeserializeOwned>(&self, errors: &[SceneError]) -> Option<(T, Origin)> {
         let top = |error: &SceneError| error.key.split(['.', '[']).next().unwrap_or_default().to_string();
         let wrong: Vec<String> = errors.iter().map(top).collect();
@@ -139,13 +140,13 @@ impl<'t> Document<'t> {
         Some((keys, self.origin(String::new())))
     }
 
-    /// Every key against the schema of `T`, then the values.
+    /// Checks every key against the schema of `T`, then reads the values.
     pub fn read<T: JsonSchema + DeserializeOwned>(self) -> Result<(T, Origin), Vec<SceneError>> {
         self.check(&schema::<T>())?;
         self.values()
     }
 
-    /// The values of keys that are sound.
+    /// Reads the values; the keys are already checked.
     pub fn values<T: DeserializeOwned>(self) -> Result<(T, Origin), Vec<SceneError>> {
         let values = || Deserializer::from(self.root.clone());
         let wrong =
@@ -169,11 +170,11 @@ impl<'t> Document<'t> {
     }
 }
 
-/// The number with a decimal comma that a parser stops at or behind; `column` counts from 1.
+/// A number with a decimal comma at or before the parser's error position; `column` counts from 1.
 fn decimal_comma(line: &str, column: usize) -> Option<String> {
     let letters: Vec<char> = line.chars().collect();
     let is = |at: usize, fits: fn(&char) -> bool| letters.get(at).is_some_and(fits);
-    // What follows the comma may be read as a key, whose '=' is missed behind it.
+    // The parser may read the digits after the comma as a key and report the missing '=' behind them.
     let mut at = column - 1;
     while at > 0 && is(at - 1, |c| c.is_ascii_digit() || *c == ' ') {
         at -= 1;
@@ -199,13 +200,13 @@ pub(crate) fn schema<T: JsonSchema>() -> Value {
     settings.into_generator().into_root_schema_for::<T>().to_value()
 }
 
-/// By file, then line, then column, then key.
+/// Sorts errors by file, then line, then column, then key.
 pub(crate) fn sorted(mut errors: Vec<SceneError>) -> Vec<SceneError> {
     errors.sort_by(|a, b| (&a.file, a.line, a.column, &a.key).cmp(&(&b.file, b.line, b.column, &b.key)));
     errors
 }
 
-/// Places of every key below `path`.
+/// Records the place of every key below `path`.
 fn note(value: &DeValue<'_>, path: &str, sources: &Sources<'_>, places: &mut Places) {
     let mut add = |path: String, span: Range<usize>, value: &DeValue<'_>| {
         note(value, &path, sources, places);
@@ -225,7 +226,7 @@ fn note(value: &DeValue<'_>, path: &str, sources: &Sources<'_>, places: &mut Pla
     }
 }
 
-/// A scalar as the file has it, without quotes.
+/// A scalar as written in the file, without quotes.
 pub(crate) fn written(value: &DeValue<'_>) -> Option<String> {
     match value {
         DeValue::String(text) => Some(clip(text)),

@@ -1,19 +1,19 @@
-//! What is wrong with a scene or a study: where, which key, what was found and what would be right.
+//! Errors in a scene or a study: the place, the key, the value found and the value that would be right.
 
 use std::fmt;
 
-/// Whether a file is wrong, or right but ahead of what can run, or beyond its method.
+/// Kind of an error: a wrong file, an unsupported request, or a method that failed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ErrorKind {
     /// The input is wrong: exit code 2.
     Invalid,
-    /// The input is well formed, but asks for something that can't run yet: exit code 3.
+    /// The input is well formed, but asks for something that is not supported yet: exit code 3.
     NotAvailable,
-    /// The input is well formed, but the method could not run on it or did not converge: exit code 3.
+    /// The input is well formed, but the method could not run or did not converge: exit code 3.
     NotRun,
 }
 
-/// Why a file can't be read, in words.
+/// Describes why a file can't be read.
 pub(crate) fn unread(bad: &std::io::Error) -> String {
     match bad.kind() {
         std::io::ErrorKind::NotFound => "there is no such file".into(),
@@ -27,21 +27,22 @@ pub(crate) fn unread(bad: &std::io::Error) -> String {
 /// One finding about an input file. Prints as `file:line: key 'path': 'found' problem; help`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SceneError {
-    /// Invalid, or not available yet.
+    /// Kind of the error.
     pub kind: ErrorKind,
     /// File name as given by the caller.
     pub file: String,
-    /// Line, from 1; 0 when the file could not be read at all.
+    /// Line, from 1; 0 if the file could not be read at all.
     pub line: usize,
-    /// Column in characters, from 1; 0 when the file could not be read at all.
+    /// Column in characters, from 1; 0 if the file could not be read at all.
     pub column: usize,
-    /// Path of the key, such as `method[1].size.spacing` (tables of a list count from 0); empty for a syntax error.
+    /// Path of the key, such as `method[1].size.spacing` (tables of a list count from 0); empty for a syntax
+    /// error.
     pub key: String,
-    /// The value as the file has it.
+    /// The value as written in the file.
     pub found: Option<String>,
-    /// What is wrong with it.
+    /// Description of the problem.
     pub problem: String,
-    /// What would be right.
+    /// Suggested correction.
     pub help: Option<String>,
 }
 

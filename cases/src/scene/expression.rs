@@ -1,8 +1,9 @@
 //! Expressions in x, y and z (metres), such as `20 * (1 - z^2 / 0.01)`.
 //!
-//! The usual rules: `^` before a sign before `*` and `/` before `+` and `-`, a power of a power from the right, all others
-//! from the left. Our own reader in 200 lines, because the crate tried first (exmex 0.21) takes `sqrt(x^2 + y^2 + 3)` for
-//! `x^2 + sqrt(y^2 + 3)`, `-x^2` for `(-x)^2` and doesn't know `1e-3`, and because a message must point at the place.
+//! The usual rules: `^` binds before a sign, a sign before `*` and `/`, these before `+` and `-`. Powers
+//! associate from the right, all other operators from the left. The reader is our own, in 200 lines, for two
+//! reasons. The crate tried first (exmex 0.21) takes `sqrt(x^2 + y^2 + 3)` for `x^2 + sqrt(y^2 + 3)`, `-x^2`
+//! for `(-x)^2` and doesn't know `1e-3`. And a message must point at the place of an error.
 
 use std::borrow::Cow;
 use std::iter::Peekable;
@@ -22,7 +23,7 @@ pub struct Expression {
     program: Vec<Op>,
 }
 
-/// An expression that has no finite value somewhere.
+/// An error: an expression without a finite value at a point.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("expression '{expression}' is {value} at ({}, {}, {}) m", at[0], at[1], at[2])]
 pub struct NotFinite {
@@ -30,7 +31,7 @@ pub struct NotFinite {
     pub expression: String,
     /// NaN or an infinity.
     pub value: f64,
-    /// Where, in metres.
+    /// The point, in metres.
     pub at: [f64; 3],
 }
 
@@ -71,13 +72,14 @@ const ONE: [(&str, OfOne); 19] = [
 const TWO: [(&str, OfTwo); 4] =
     [("min", f64::min), ("max", f64::max), ("atan2", f64::atan2), ("hypot", f64::hypot)];
 
-/// Nesting allowed: it bounds the recursion of the reader and, at four values a level (those that wait
-/// for the rest of a sum, a product, a power and the second argument), the stack of the evaluation.
+/// Deepest nesting allowed. It bounds the recursion of the reader and the stack of the evaluation, with four
+/// values per level: those that wait for the rest of a sum, a product and a power, and for the second
+/// argument.
 const MAX_DEPTH: usize = 40;
 const STACK: usize = 4 * (MAX_DEPTH + 1);
 
 impl Expression {
-    /// Value at `x` (metres), in the unit that stands beside the expression.
+    /// Value at `x` (metres), in the unit given next to the expression.
     pub fn value(&self, x: [f64; 3]) -> Result<f64, NotFinite> {
         if let [Op::Number(value)] = self.program[..]
             && value.is_finite()
@@ -154,7 +156,7 @@ impl<'t> Reader<'t> {
         Problem::new(format!("can't be read: {problem} at character {column}")).found(self.text)
     }
 
-    /// The next character that is no space, left in place.
+    /// The next character that is not a space; it is not consumed.
     fn next(&mut self) -> Option<(usize, char)> {
         while self.chars.next_if(|(_, c)| c.is_whitespace()).is_some() {}
         self.chars.peek().copied()
@@ -209,7 +211,7 @@ impl<'t> Reader<'t> {
         Ok(())
     }
 
-    /// A power of a power counts as nesting: `x^y^z` is read as `x^(y^z)`.
+    /// Reads a power. A power of a power counts as nesting: `x^y^z` is read as `x^(y^z)`.
     fn power(&mut self) -> Result<(), Problem> {
         self.atom()?;
         if self.take("^").is_some() {
@@ -220,7 +222,7 @@ impl<'t> Reader<'t> {
             }
             self.signed()?;
             self.depth -= 1;
-            // The power that fields mostly have, without exponential and logarithm.
+            // The most common power in fields, without exponential and logarithm.
             if let Some(Op::Number(2.0)) = self.program.last() {
                 self.program.pop();
                 self.program.push(Op::One(|a| a * a));

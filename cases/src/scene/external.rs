@@ -1,4 +1,4 @@
-//! Methods of solvers outside this program: finite elements of our meshes, solved by a program that an adapter calls.
+//! Methods of external solvers: finite elements on our meshes, solved by a program that an adapter calls.
 
 use std::collections::BTreeMap;
 
@@ -11,23 +11,23 @@ use super::report::Report;
 use super::resolve::{jitter, positive, size};
 use super::units::{Q, Time};
 
-/// Seconds that a run of another solver may take where the file gives none.
+/// Time limit of a run of an external solver if the file gives none, s.
 const TIME_LIMIT: f64 = 600.0;
-/// Bytes that its processes may have together where the file gives none: 4 GB.
+/// Memory limit of all its processes together if the file gives none, bytes: 4 GB.
 const MEMORY_LIMIT: u64 = 4 << 30;
 
-/// Settings of a method of another solver.
+/// Settings of a method of an external solver.
 #[derive(Clone, Debug, PartialEq)]
 pub struct External {
     /// Name of the adapter.
     pub adapter: String,
-    /// The elements, their functions those of ours of that name: errors are measured with these.
+    /// Elements of the method; errors are measured with our shape functions of the same name.
     pub elements: Fem,
-    /// What the adapter takes beside the problem.
+    /// Settings passed to the adapter together with the problem.
     pub settings: BTreeMap<String, Setting>,
-    /// Seconds that a run may take.
+    /// Time limit of a run, s.
     pub time_limit: f64,
-    /// Bytes that its processes may have together.
+    /// Memory limit of all its processes together, bytes.
     pub memory_limit: u64,
 }
 
@@ -49,21 +49,21 @@ pub(crate) struct ExternalKeys {
     pub id: String,
     /// Methods of one series differ in size only; the id unless given
     pub series: Option<String>,
-    /// Name of the adapter, as `tissuebench adapter list` has it
+    /// Name of the adapter, as `tissuebench adapter list` prints it
     pub adapter: String,
     pub element: Element,
     pub size: SizeKeys,
     pub jitter: Option<JitterKeys>,
-    /// What the adapter takes beside the problem; its page says what
+    /// Settings for the adapter; its page lists them
     #[serde(default)]
     pub settings: BTreeMap<String, Setting>,
-    /// Time that a run may take; 600 s unless given
+    /// Time limit of a run; 600 s unless given
     pub time_limit: Option<Q<Time>>,
-    /// Memory that all processes of a run may have together, such as "500 MB"; "4 GB" unless given
+    /// Memory limit of all processes of a run together, such as "500 MB"; "4 GB" unless given
     pub memory_limit: Option<String>,
 }
 
-/// The method that the keys at `key` ask for.
+/// The method described by the keys at `key`.
 pub(crate) fn external(keys: ExternalKeys, key: &str, report: &mut Report) -> Option<Method> {
     let at = |name: &str| format!("{key}.{name}");
     report.require(is_adapter(&keys.adapter), &at("adapter"), NO_ADAPTER, ADAPTERS);
@@ -86,7 +86,8 @@ pub(crate) fn external(keys: ExternalKeys, key: &str, report: &mut Report) -> Op
 }
 
 impl Method {
-    /// The same elements of the same size by another solver; `None` where they are none that others have.
+    /// The same elements of the same size, solved by another solver; `None` unless they are plain finite
+    /// elements, which other solvers have too.
     pub fn solved_by(&self, adapter: &str) -> Option<Method> {
         let Family::Fem(fem) = &self.family else { return None };
         if fem.dilation != Dilation::Standard || fem.reduced {
@@ -104,29 +105,29 @@ impl Method {
         Some(Method { id, series, family: Family::External(external), mass: None })
     }
 
-    /// Whether it is another one, of whatever size, solved by another solver.
+    /// Whether the method is `other`, at any size, solved by another solver.
     pub fn is_twin_of(&self, other: &Method) -> bool {
         let Family::External(external) = &self.family else { return false };
         other.solved_by(&external.adapter).is_some_and(|twin| twin.id == self.id)
     }
 }
 
-/// What is wrong with a name that can be none of an adapter, and where the others are.
+/// Message for an invalid adapter name, and the help that goes with it.
 pub(crate) const NO_ADAPTER: &str = "is no name of an adapter";
 pub(crate) const ADAPTERS: &str = "tissuebench adapter list has them";
 
-/// Whether a name can be that of an adapter.
+/// Whether a text is a valid adapter name.
 pub(crate) fn is_adapter(name: &str) -> bool {
     !name.is_empty() && name.chars().all(|c| c.is_ascii_alphanumeric() || "-_".contains(c))
 }
 
-/// What a size is.
+/// Help for a size that can't be read.
 const BYTES: &str = "give a size such as 500MB or 2GB";
 
-/// A size as people write it, in bytes.
+/// Reads a size such as `500MB` or `2 GB`, in bytes.
 ///
 /// # Errors
-/// What would be one.
+/// An example of a valid size, if the text is none.
 pub fn bytes(text: &str) -> Result<u64, String> {
     let digits = text.trim_end_matches(|c: char| !c.is_ascii_digit());
     let unit = match text[digits.len()..].trim().to_ascii_uppercase().as_str() {

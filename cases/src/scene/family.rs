@@ -1,4 +1,5 @@
-//! Families beside finite elements and element-free Galerkin: each is a crate and a line of [`FAMILIES`].
+//! Method families in addition to finite elements and element-free Galerkin: each is a crate and a line of
+//! [`FAMILIES`].
 
 use std::borrow::Cow;
 use std::fmt;
@@ -21,15 +22,15 @@ pub static FAMILIES: &[FamilyEntry] = &[];
 /// Settings of a method of one of these families.
 #[derive(Clone)]
 pub struct OverMesh {
-    /// Which family.
+    /// The family.
     pub entry: &'static FamilyEntry,
-    /// Its parameters.
+    /// Parameters of the family.
     pub values: Values,
-    /// What they make.
+    /// The family constructed with these parameters.
     pub family: MeshFamily,
     /// Treatment of the volume change.
     pub dilation: Dilation,
-    /// How fine.
+    /// Size of the mesh.
     pub size: Size,
     /// Random displacement of inner nodes.
     pub jitter: Option<Jitter>,
@@ -72,7 +73,7 @@ pub(crate) struct OverMeshKeys {
     given: Given<Families>,
 }
 
-/// What a method over a mesh has whatever its family is.
+/// Keys that every method over a mesh has, whatever its family.
 #[derive(Deserialize, JsonSchema)]
 struct BesideFamily {
     id: String,
@@ -81,7 +82,7 @@ struct BesideFamily {
     dilation: Option<Dilation>,
     size: SizeKeys,
     jitter: Option<JitterKeys>,
-    /// What moves in vibrations; kind = "modes" only
+    /// Mass matrix for vibrations; kind = "modes" only
     mass: Option<Mass>,
 }
 
@@ -95,7 +96,7 @@ impl JsonSchema for OverMeshKeys {
     }
 }
 
-/// The method that the keys at `key` ask for.
+/// The method described by the keys at `key`.
 pub(crate) fn over_mesh(keys: OverMeshKeys, key: &str, report: &mut Report) -> Option<Method> {
     let BesideFamily { id, series, dilation, size: fineness, jitter: shaken, mass } = keys.beside;
     let size = size(fineness, &format!("{key}.size"), report);
@@ -109,7 +110,7 @@ pub(crate) fn over_mesh(keys: OverMeshKeys, key: &str, report: &mut Report) -> O
 }
 
 impl Method {
-    /// The size of the mesh that its nodes are of; `None` for a cloud that is of none.
+    /// Size of the mesh that supplies the nodes; `None` for a cloud without a mesh.
     pub fn size(&self) -> Option<&Size> {
         match &self.family {
             Family::Fem(fem) => Some(&fem.size),
@@ -124,7 +125,7 @@ impl Method {
         }
     }
 
-    /// Gives it another size; a cloud of an exact count becomes the nodes of a mesh of that size.
+    /// Replaces the size; a cloud of an exact count becomes the nodes of a mesh of the new size.
     pub fn resize(&mut self, size: &Size) {
         match &mut self.family {
             Family::Fem(fem) => fem.size = size.clone(),
@@ -141,7 +142,7 @@ impl Method {
         }
     }
 
-    /// How many nodes its mesh is to have, where its size says so.
+    /// Requested number of nodes of the mesh, if the size is given by nodes.
     pub fn nodes_of_size(&self) -> Option<usize> {
         match self.size()? {
             Size::Nodes(nodes) => Some(*nodes),
@@ -149,7 +150,7 @@ impl Method {
         }
     }
 
-    /// The word of its family in files.
+    /// Name of the family in files.
     pub fn family_name(&self) -> &'static str {
         match &self.family {
             Family::Fem(_) => "fem",
@@ -159,12 +160,12 @@ impl Method {
         }
     }
 
-    /// Whether its number of nodes can be given, as that of a cloud.
+    /// Whether the method is a cloud, whose number of nodes can be given.
     pub fn is_cloud(&self) -> bool {
         matches!(self.family, Family::Efg(_))
     }
 
-    /// Files that it reads.
+    /// Files that the method reads.
     pub fn files(&self) -> Vec<PathBuf> {
         let mut files: Vec<PathBuf> = self.size().and_then(Size::file).into_iter().collect();
         if let Family::Efg(efg) = &self.family {
@@ -178,7 +179,7 @@ impl Method {
 }
 
 impl Size {
-    /// The mesh file that it is.
+    /// The mesh file, if the size is given by a file.
     pub fn file(&self) -> Option<PathBuf> {
         match self {
             Size::File(file) => Some(file.path.clone()),

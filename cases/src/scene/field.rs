@@ -1,13 +1,13 @@
-//! Given values over space: a constant, an expression, or those of the exact solution.
+//! Prescribed values over space: a constant, an expression, or the values of the exact solution.
 
 use super::expression::{Expression, NotFinite};
 
 /// A scalar over space, in SI.
 #[derive(Clone, Debug)]
 pub enum ScalarField {
-    /// The same everywhere.
+    /// One value everywhere.
     Constant(f64),
-    /// An expression in the coordinates, times the factor of its unit to SI.
+    /// An expression in the coordinates, multiplied by the conversion factor of its unit to SI.
     Expression {
         /// The expression, in metres.
         of: Expression,
@@ -24,7 +24,7 @@ impl ScalarField {
             ScalarField::Expression { of, factor } => {
                 let value = of.value(x)? * factor;
                 let wrong = || NotFinite { expression: of.text().into(), value, at: x };
-                // The unit may take a large number out of range.
+                // The factor may overflow a large value.
                 value.is_finite().then_some(value).ok_or_else(wrong)
             }
         }
@@ -34,17 +34,17 @@ impl ScalarField {
 /// A vector over space, in SI.
 #[derive(Clone, Debug)]
 pub enum VectorField {
-    /// By components.
+    /// Three scalar components.
     Components([ScalarField; 3]),
-    /// That of the exact solution in `[reference]`.
+    /// The field of the exact solution in `[reference]`.
     Exact,
 }
 
-/// What a support prescribes along one axis, in metres.
+/// Prescribed displacement of a support along one axis, in metres.
 #[derive(Clone, Debug)]
 pub enum Prescribed {
     /// A given displacement.
     Field(ScalarField),
-    /// That of the exact solution in `[reference]`.
+    /// The displacement of the exact solution in `[reference]`.
     Exact,
 }

@@ -1,4 +1,5 @@
-//! What no scene or study needs: checks compare the parts of a file with each other, which takes their number squared.
+//! Limits on the size of scene and study files: checks compare the parts of a file with each other, at
+//! quadratic cost.
 
 use std::ops::Range;
 
@@ -15,10 +16,10 @@ const MOST_ENTRIES: usize = 1000;
 /// Most values of a file.
 const MOST_VALUES: usize = 20_000;
 
-/// Where a file is beyond a limit: span, key, and what is wrong.
+/// A part of a file beyond a limit: span, key and problem.
 pub(crate) type Excess = (Range<usize>, String, Problem);
 
-/// The first list or table that is too long, or where the file has too many values.
+/// Finds the first list or table that is too long, or the first value beyond the limit.
 pub(crate) fn excess(root: &Spanned<DeValue<'_>>) -> Option<Excess> {
     below(root, "", &mut 0)
 }

@@ -5,20 +5,20 @@ use material::{Law, LawEntry, Material as _};
 
 use crate::exact::{Elastic, ExactError, Hyperelastic, Medium};
 
-/// A law with the constants that the scene gives, and what goes with any law.
+/// A law with the constants given by the scene, and its density and relaxation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Material {
     entry: &'static LawEntry,
     values: Values,
     law: Law,
-    /// Density in kilograms per cubic metre, where one is given.
+    /// Density in kilograms per cubic metre, if given.
     pub density: Option<f64>,
-    /// Its relaxation over time; nothing relaxes where empty.
+    /// Prony series of the relaxation; empty for a material that does not relax.
     pub prony: Vec<Relaxation>,
 }
 
 impl Material {
-    /// `law` is what `entry` makes of `values`.
+    /// A material; `law` is the result of `entry` for `values`.
     pub(crate) fn new(
         entry: &'static LawEntry,
         values: Values,
@@ -44,7 +44,7 @@ impl Material {
         self.values.get(name)
     }
 
-    /// The law with another Poisson's ratio; as it is where the scene gives it none.
+    /// The law with another Poisson's ratio; unchanged if the law has no such constant.
     pub fn at_poisson(&self, poisson: f64) -> Result<Law, Problem> {
         let mut values = self.values.clone();
         if values.has("poisson") {
@@ -54,8 +54,9 @@ impl Material {
     }
 }
 
-/// A law as the exact solutions take it, of these moduli at small strain: their energies are written out apart from the
-/// solvers', and share the constants alone. A law that is not among them has solutions at small strain only.
+/// The medium of the exact solutions for a law, with its moduli at small strain. The energies of
+/// [`Hyperelastic`] are written separately from the solvers' laws and share only the constants. Other laws
+/// have solutions at small strain only.
 pub fn medium(law: &Law, young: f64, poisson: f64) -> Result<Medium, ExactError> {
     let elastic = Elastic::new(young, poisson)?;
     let law = match law {
@@ -77,8 +78,8 @@ pub fn medium(law: &Law, young: f64, poisson: f64) -> Result<Medium, ExactError>
 /// A term of a Prony series: a share of the shear response that relaxes exponentially.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Relaxation {
-    /// The share, between 0 and 1.
+    /// Share `g` of the shear response, between 0 and 1.
     pub g: f64,
-    /// Its time in seconds, positive.
+    /// Relaxation time in seconds, positive.
     pub tau: f64,
 }

@@ -1,4 +1,4 @@
-//! Methods of a scene: finite elements and element-free Galerkin, every setting stated.
+//! Methods of a scene: finite elements and element-free Galerkin, with all settings explicit.
 
 use std::path::PathBuf;
 
@@ -7,27 +7,27 @@ use super::family::OverMesh;
 use super::region::Region;
 use super::words::words;
 
-/// A way to solve the scene.
+/// A method that solves the scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Method {
-    /// Unique within the scene.
+    /// Id, unique within the scene.
     pub id: String,
-    /// Name shared with the methods that differ from it in size only: in reports they are one curve.
+    /// Name shared by methods that differ in size only: reports join them into one curve.
     pub series: String,
-    /// Its family and settings.
+    /// Family with its settings.
     pub family: Family,
-    /// What moves in vibrations (`kind = "modes"`, which needs one).
+    /// Mass matrix for vibrations (`kind = "modes"`, which requires it).
     pub mass: Option<Mass>,
 }
 
 words! {
-    /// How mass is distributed among the nodes.
+    /// Distribution of the mass among the nodes.
     pub enum Mass {
         /// The integral of density and both shape functions, `M_IJ`.
         Consistent = "consistent",
-        /// Diagonal, on the nodal parameters: row sums; for quadratic elements the scaled diagonal.
+        /// Diagonal, on the nodal parameters: row sums, or the scaled diagonal for quadratic elements.
         Lumped = "lumped",
-        /// The lumped masses on the displacements of the nodes, which a cloud's parameters are not.
+        /// Lumped masses on the displacements of the nodes, which differ from a cloud's nodal parameters.
         Transformed = "transformed",
     }
 }
@@ -39,7 +39,7 @@ pub enum Family {
     Fem(Fem),
     /// Element-free Galerkin.
     Efg(Efg),
-    /// A solver outside this program.
+    /// An external solver.
     External(External),
     /// Another family over a mesh.
     OverMesh(OverMesh),
@@ -52,9 +52,10 @@ pub struct Fem {
     pub element: Element,
     /// Treatment of the volume change.
     pub dilation: Dilation,
-    /// Hex20 with 2 x 2 x 2 points for 3 x 3 x 3: does not lock where there is bending and compression at once.
+    /// Whether hex20 has 2 x 2 x 2 points instead of 3 x 3 x 3: avoids locking in combined bending and
+    /// compression.
     pub reduced: bool,
-    /// How fine.
+    /// Size of the mesh.
     pub size: Size,
     /// Random displacement of inner nodes.
     pub jitter: Option<Jitter>,
@@ -63,19 +64,19 @@ pub struct Fem {
 /// Settings of an element-free Galerkin method.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Efg {
-    /// Where the nodes are.
+    /// Nodes of the method.
     pub cloud: Cloud,
     /// Shape functions.
     pub functions: Functions,
     /// Integration rule.
     pub integration: Integration,
-    /// How prescribed displacements are imposed.
+    /// Method of imposing prescribed displacements.
     pub essential: Essential,
     /// Treatment of the volume change.
     pub dilation: Dilation,
-    /// Whether shape functions reach across the borders of material regions.
+    /// Treatment of the borders of material regions by the shape functions.
     pub regions: Regions,
-    /// Mesh to integrate over, where it is not the one the cloud is taken from.
+    /// Mesh of integration cells, if it differs from the mesh that supplies the nodes.
     pub background: Option<Size>,
 }
 
@@ -88,20 +89,20 @@ pub enum Functions {
         kernel: efg::Kernel,
         /// Support radius.
         support: SupportRule,
-        /// Balls, or ellipsoids that follow the cells of the mesh the cloud is taken from.
+        /// Balls, or ellipsoids that follow the cells of the mesh that supplies the nodes.
         shape: SupportShape,
         /// Polynomial basis.
         basis: Basis,
     },
     /// Local maximum entropy: positive, exact on linear fields.
     MaximumEntropy {
-        /// Locality: `beta h^2`.
+        /// Locality `gamma = beta h^2`, dimensionless.
         gamma: f64,
     },
 }
 
 impl Functions {
-    /// Locality of maximum-entropy functions unless a scene gives one (Arroyo and Ortiz 2006 find 0.8 to 4 sound).
+    /// Default locality of maximum-entropy functions (Arroyo and Ortiz 2006 recommend 0.8 to 4).
     pub const GAMMA: f64 = 1.8;
 
     /// Name of the basis in files and tables.
@@ -128,30 +129,30 @@ words! {
 }
 
 words! {
-    /// Treatment of the volume change: which integration points share one dilation.
+    /// Treatment of the volume change: the integration points that share one dilation.
     pub enum Dilation {
-        /// Each point has its own.
+        /// Each integration point has its own dilation.
         Standard = "standard",
         /// One per element (B-bar).
         ElementMean = "element-mean",
         /// One per node and material.
         NodalMean = "nodal-mean",
-        /// One per node and material, of the points at which it is among the four that count most: of a cloud
-        /// fewer couplings.
+        /// One per node and material, over the points at which the node is among the four largest shape
+        /// functions: fewer couplings for a cloud.
         NodalNear = "nodal-near",
         /// An independent pressure field in each material.
         Mixed = "mixed",
     }
 }
 
-/// How fine a mesh or cloud is.
+/// Size of a mesh or cloud.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Size {
     /// About this many nodes.
     Nodes(usize),
     /// Mean edge length in metres.
     Spacing(f64),
-    /// Level of a family of meshes, from 1; each is twice as fine as the one before.
+    /// Level of a family of meshes, from 1; each level is twice as fine as the one before.
     Level(u32),
     /// Cells along the axes of a structured mesh.
     Cells {
@@ -167,20 +168,20 @@ pub enum Size {
 /// A file of a mesh or of positions.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MeshFile {
-    /// Path, relative ones taken from the folder of the file that names it.
+    /// Path; relative paths are resolved from the folder of the file that names it.
     pub path: PathBuf,
-    /// Metres per unit of its numbers.
+    /// Metres per unit of the numbers in the file.
     pub unit: f64,
-    /// Whether pieces of the mesh are joined where their faces coincide.
+    /// Whether pieces of the mesh are joined at faces that coincide.
     pub join: bool,
 }
 
-/// A cloud that follows an error.
+/// Refinement of a cloud by its error.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Refine {
-    /// Clouds after the first, which is uniform.
+    /// Number of clouds after the first, which is uniform.
     pub steps: usize,
-    /// Coarsest over finest spacing at most.
+    /// Largest ratio of coarsest to finest spacing.
     pub ratio: f64,
 }
 
@@ -193,7 +194,7 @@ pub struct Jitter {
     pub seed: u64,
 }
 
-/// Where the nodes of a cloud are.
+/// Source of the nodes of a cloud.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Cloud {
     /// The nodes of a mesh.
@@ -203,7 +204,7 @@ pub enum Cloud {
         /// Random displacement of inner nodes.
         jitter: Option<Jitter>,
     },
-    /// Quasi-uniform, of an exact count.
+    /// Quasi-uniform, with an exact number of nodes.
     Uniform {
         /// Number of nodes.
         nodes: usize,
@@ -214,31 +215,31 @@ pub enum Cloud {
     File {
         /// Lines of x, y, z, or a mesh file.
         file: MeshFile,
-        /// How many nodes the scene says it has.
+        /// Number of nodes stated in the scene.
         nodes: Option<usize>,
     },
-    /// Denser where the gradients of the solution before differ most from recovered ones, of an exact count.
+    /// Denser where the solution's gradients differ most from recovered gradients; exact number of nodes.
     Refined {
         /// Number of nodes.
         nodes: usize,
         /// Seed of the generator.
         seed: u64,
-        /// How often.
+        /// Refinement settings.
         refine: Refine,
     },
-    /// Denser towards a region, of an exact count.
+    /// Denser towards a region, with an exact number of nodes.
     Graded {
         /// Number of nodes.
         nodes: usize,
         /// Seed of the generator.
         seed: u64,
-        /// The region it is denser in.
+        /// Region of higher density.
         towards: Region,
     },
 }
 
 impl Method {
-    /// The method on a cloud of another seed, if chance has a part in its cloud.
+    /// The method on a cloud with another seed; `None` if its cloud has no random part.
     pub fn seeded(&self, new: u64) -> Option<Method> {
         let mut method = self.clone();
         let Family::Efg(efg) = &mut method.family else { return None };
@@ -253,14 +254,14 @@ impl Method {
     }
 }
 
-/// How the support radius of a node is found.
+/// Rule for the support radius of a node.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum SupportRule {
-    /// This factor times the local spacing.
+    /// Factor times the local spacing.
     Scale(f64),
-    /// This factor times the distance to the k-th neighbour.
+    /// Factor times the distance to the k-th neighbour.
     Neighbours {
-        /// Which neighbour.
+        /// Number `k` of the neighbour.
         k: usize,
         /// Factor on its distance.
         factor: f64,
@@ -270,20 +271,21 @@ pub enum SupportRule {
 words! {
     /// Shape of the support of a node.
     pub enum SupportShape {
-        /// A ball; used unless given.
+        /// A ball; the default.
         Ball = "ball",
-        /// An ellipsoid: a ball in the metric in which the cells around the node are isotropic. It follows the cells of the mesh
-        /// whose nodes form the cloud.
+        /// An ellipsoid: a ball in the metric in which the cells around the node are isotropic. It follows
+        /// the cells of the mesh whose nodes form the cloud.
         Ellipsoid = "ellipsoid",
     }
 }
 
 words! {
-    /// What shape functions of a cloud do at the borders of material regions.
+    /// Treatment of the borders of material regions by a cloud's shape functions.
     pub enum Regions {
-        /// They reach across and smooth the jump of the strain; used unless given.
+        /// Shape functions reach across and smooth the jump of the strain; the default.
         Blended = "blended",
-        /// They end there: linear finite elements along the border, coupled to the cloud, keep the displacement continuous.
+        /// Shape functions end at the border. Linear finite elements along it, coupled to the cloud, keep the
+        /// displacement continuous.
         Separate = "separate",
     }
 }
@@ -314,30 +316,31 @@ pub enum Integration {
         /// Points per cell.
         points: usize,
     },
-    /// Gauss points in the cells of a grid, those outside the body left out.
+    /// Gauss points in the cells of a grid, without the points outside the body.
     Grid {
         /// Points per cell, a cube number.
         points: usize,
-        /// Edge of a cell in metres; the mean node spacing unless given.
+        /// Edge length of a cell in metres; the mean node spacing if `None`.
         spacing: Option<f64>,
     },
     /// Conforming smoothing over the tetrahedra of the background mesh.
     CellSmoothed {
-        /// Displacements it is exact for: 1 linear (constant gradients per cell), 2 quadratic (linear gradients).
+        /// Order of exactness: 1 for linear displacements (constant gradients per cell), 2 for quadratic ones
+        /// (linear gradients).
         order: u32,
         /// Points per face: 1, 3 or 6.
         face_points: usize,
     },
     /// Smoothing over the quarters of the tetrahedra around each vertex of the background mesh.
     NodeSmoothed {
-        /// Share of the weight that the tetrahedra keep, from 0 to below 1.
+        /// Share of the weight that stays on the tetrahedra, from 0 to below 1.
         stabilisation: f64,
         /// Points per face: 1, 3 or 6.
         face_points: usize,
     },
 }
 
-/// How prescribed displacements are imposed; a factor left out takes the default of the method.
+/// Method of imposing prescribed displacements. A factor of `None` is the default of the method.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Essential {
     /// Nitsche's method.
@@ -354,15 +357,16 @@ pub enum Essential {
     Multipliers,
     /// Exact elimination of constraint rows.
     Elimination {
-        /// What the rows say.
+        /// Displacements prescribed by the rows.
         rows: ConstraintRows,
     },
-    /// Finite elements along what is held, coupled to the cloud; their nodes are held exactly.
+    /// Finite elements along the constrained surface, coupled to the cloud; their nodes are constrained
+    /// exactly.
     Coupling,
 }
 
 impl Essential {
-    /// Which of them it is.
+    /// Kind of the condition, without its settings.
     pub fn kind(&self) -> EssentialKind {
         match self {
             Essential::Nitsche { .. } => EssentialKind::Nitsche,
@@ -385,16 +389,17 @@ words! {
         Multipliers = "multipliers",
         /// Exact elimination of constraint rows.
         Elimination = "elimination",
-        /// Linear finite elements along the constrained surface, coupled consistently to the cloud; their nodes are constrained
-        /// exactly.
+        /// Linear finite elements along the constrained surface, coupled consistently to the cloud; their
+        /// nodes are constrained exactly.
         Coupling = "coupling",
     }
 }
 
 words! {
-    /// What the eliminated rows of a constrained surface prescribe, one row for each of its nodes.
+    /// Displacements prescribed by the eliminated rows of a constrained surface, one row for each of its
+    /// nodes.
     pub enum ConstraintRows {
-        /// The mean displacement over the tributary area of the node; used unless given.
+        /// The mean displacement over the tributary area of the node; the default.
         Means = "means",
         /// The displacement at the point of the surface nearest to the node.
         Points = "points",

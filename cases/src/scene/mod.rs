@@ -1,8 +1,9 @@
-//! Scene and study files: read, checked and turned into plain numbers in SI, or refused with every finding at its place.
+//! Scene and study files: parsed, checked and turned into SI numbers, or refused with all findings at their
+//! places.
 //!
-//! A scene is one TOML file. Its keys are types (`keys`), the schema is generated from them, and a file is checked
-//! against that schema, so that the two can't drift apart. What passes is turned into [`Scene`], in which no text is
-//! left to parse. Methods that several scenes share are in a file of their own (`shared`).
+//! A scene is one TOML file. Its keys are types (`keys`) from which the schema is generated. A file is
+//! checked against that schema, so the two cannot diverge. A valid file becomes a [`Scene`], which has no
+//! text left to parse. Methods that several scenes share are in a separate file (`shared`).
 
 mod available;
 mod axis;
@@ -61,22 +62,23 @@ pub use set::Override;
 pub use study::{Run, Study, load_study, load_study_for, parse_study};
 pub use tool::{Drive, Friction, Tool};
 
-/// Reads the scene in a file. The name in messages is `path` as given.
+/// Reads the scene in a file. Messages name the file by `path` as given.
 pub fn load(path: &Path) -> Result<Scene, Vec<SceneError>> {
     load_with(path, &[])
 }
 
-/// The same with some keys set from outside of the file.
+/// Reads the scene in a file, with some keys set from outside of the file.
 pub fn load_with(path: &Path, overrides: &[Override]) -> Result<Scene, Vec<SceneError>> {
     parse_with(&text_of(path)?, &path.display().to_string(), overrides)
 }
 
-/// Reads a scene from text. `file` names it in messages; paths in the scene are relative to the folder of `file`.
+/// Reads a scene from text. Messages name it by `file`; paths in the scene are relative to the folder of
+/// `file`.
 pub fn parse(text: &str, file: &str) -> Result<Scene, Vec<SceneError>> {
     parse_with(text, file, &[])
 }
 
-/// The same with some keys set from outside of the text.
+/// Reads a scene from text, with some keys set from outside of the text.
 pub fn parse_with(text: &str, file: &str, overrides: &[Override]) -> Result<Scene, Vec<SceneError>> {
     let (keys, origin) = shared::read(text, file, overrides)?;
     resolved(keys, origin)
@@ -85,7 +87,8 @@ pub fn parse_with(text: &str, file: &str, overrides: &[Override]) -> Result<Scen
 fn resolved(keys: keys::SceneKeys, origin: Origin) -> Result<Scene, Vec<SceneError>> {
     let mut report = report::Report::new(&origin);
     let scene = resolve::scene(keys, &mut report);
-    // Parts that could not be resolved are left out of the scene: what the rest demands of them can't be judged.
+    // Parts that could not be resolved are left out of the scene, so the demands of the other parts on them
+    // cannot be checked.
     if let (Some(scene), true) = (&scene, report.is_clean()) {
         validate::scene(scene, &mut report);
         demands::scene(scene, &mut report);

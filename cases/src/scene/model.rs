@@ -1,4 +1,4 @@
-//! A scene as the program works with it: every quantity an f64 in SI, every choice an enum.
+//! A scene as the program uses it: every quantity is an `f64` in SI, every choice an enum.
 
 use super::document::Origin;
 use catalogue::Problem;
@@ -17,19 +17,19 @@ use super::tool::Tool;
 /// A checked scene.
 #[derive(Clone, Debug)]
 pub struct Scene {
-    /// One line that says what the scene is.
+    /// Title of the scene in one line.
     pub title: String,
-    /// Where the case and its reference come from.
+    /// Source of the case and its reference.
     pub source: Option<String>,
-    /// What the scene is for.
+    /// Purpose of the scene.
     pub purpose: Purpose,
-    /// The published comparison that the results are set against.
+    /// Published comparison that the results are compared with.
     pub published: Option<Publication>,
     /// The body in its undeformed state.
     pub body: Body,
-    /// The material wherever no region has its own.
+    /// Material of the body outside the regions with their own material.
     pub material: Material,
-    /// Parts of the body with a material of their own; later ones win.
+    /// Parts of the body with their own material; in an overlap the later region counts.
     pub regions: Vec<MaterialRegion>,
     /// Prescribed displacements.
     pub supports: Vec<Support>,
@@ -37,17 +37,17 @@ pub struct Scene {
     pub loads: Vec<Load>,
     /// Rigid tools.
     pub tools: Vec<Tool>,
-    /// How the scene is stepped.
+    /// Solution procedure.
     pub procedure: Procedure,
-    /// At least one, with unique ids.
+    /// Methods to run: at least one, with unique ids.
     pub methods: Vec<Method>,
-    /// What to report.
+    /// Requested output.
     pub output: Output,
-    /// What to compare with.
+    /// Reference that results are compared with.
     pub reference: Option<Reference>,
-    /// What must hold.
+    /// Bounds on the results.
     pub checks: Vec<Check>,
-    /// The axis of a study that drives the scene and its value there; `None` for the scene as it is in its file.
+    /// Axis of a study along which the scene is varied, with its value; `None` for the scene of the file.
     pub varied: Option<(String, f64)>,
     pub(crate) origin: Origin,
 }
@@ -58,26 +58,26 @@ impl Scene {
         self.origin.file()
     }
 
-    /// The text of the file; where methods are taken from another one, what it comes to with them written out. It has all
-    /// that the scene says, but for the meshes it names.
+    /// The text of the file; with shared methods, the equivalent text in which these are written out. It
+    /// contains the whole scene except the meshes that it names.
     pub fn text(&self) -> &str {
         self.origin.text()
     }
 
-    /// Every material with its key: that of the body, then those of the regions in their order.
+    /// Every material with its key: the body's material, then those of the regions in their order.
     pub fn materials(&self) -> impl Iterator<Item = (String, &Material)> {
         let regions = self.regions.iter().enumerate();
         std::iter::once(("material".to_string(), &self.material))
             .chain(regions.map(|(i, r)| (format!("region[{i}].material"), &r.material)))
     }
 
-    /// The method of that id.
+    /// The method with the id `id`.
     pub fn method(&self, id: &str) -> Option<&Method> {
         self.methods.iter().find(|method| method.id == id)
     }
 
-    /// Whether something moves the body: a load, a tool or a support that is not held still. Vibrations are free, and a
-    /// scene that only prepares moves nothing.
+    /// Whether the body moves: by a load, a tool, or a support with a prescribed displacement other than
+    /// zero. Also true for free vibrations and for scenes that only prepare, which need no load.
     pub fn is_moved(&self) -> bool {
         let still = |p: &Prescribed| matches!(p, Prescribed::Field(ScalarField::Constant(0.0)));
         let moves = |support: &Support| !support.motion.iter().flatten().all(still);
@@ -90,8 +90,9 @@ impl Scene {
         self.origin.has(key)
     }
 
-    /// An error about `key`, such as `support[0].where` or `method[1].size.nodes` (tables of a list count from 0), found
-    /// only while running: an empty region, an inverted element. It names file, line and value.
+    /// An error at `key`, such as `support[0].where` or `method[1].size.nodes` (tables of a list count from
+    /// 0), that is found only while running: an empty region, an inverted element. The error names file, line
+    /// and value.
     pub fn error(&self, kind: ErrorKind, key: &str, problem: &str, help: Option<&str>) -> SceneError {
         let mut bad = Problem::new(problem);
         bad.help = help.map(str::to_string);
@@ -99,13 +100,13 @@ impl Scene {
     }
 }
 
-/// Parts of a surface, and "surface" for all of it.
+/// Names of the parts of a surface, followed by "surface" for all of it.
 pub(crate) fn with_all(parts: &[&'static str]) -> Vec<&'static str> {
     let all = surfaces::BALL[0];
     parts.iter().copied().filter(|part| *part != all).chain([all]).collect()
 }
 
-/// Bodies; lengths in metres.
+/// Shape of the body; lengths in metres.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Body {
     /// An axis-parallel box.
@@ -115,14 +116,14 @@ pub enum Body {
         /// Upper corner.
         max: [f64; 3],
     },
-    /// About the z axis, the base at z = 0.
+    /// A cylinder about the z axis, with its base at z = 0.
     Cylinder {
         /// Radius.
         radius: f64,
         /// Height.
         height: f64,
     },
-    /// About the origin.
+    /// A ball about the origin.
     Ball {
         /// Radius.
         radius: f64,
@@ -133,14 +134,14 @@ pub enum Body {
         inner: f64,
         /// Outer radius.
         outer: f64,
-        /// Only x, y, z >= 0.
+        /// Whether only the octant x, y, z >= 0 is present.
         octant: bool,
     },
-    /// The kidney, by its map from the ball.
+    /// The kidney, as a map of the ball.
     Kidney {
-        /// Only z >= 0, in cells drawn together around the z axis.
+        /// Whether only the half z >= 0 is present, with cells graded towards the z axis.
         half: bool,
-        /// These cells are drawn together less.
+        /// Whether these cells are graded less.
         mildly_graded: bool,
     },
     /// The mesh of a file.
@@ -160,7 +161,8 @@ impl Body {
         }
     }
 
-    /// Names of the parts of its surface; `None` where only the mesh file knows them. "surface" is all of it.
+    /// Names of the parts of its surface, including "surface" for all of it; `None` if only the mesh file has
+    /// names.
     pub fn surfaces(&self) -> Option<Vec<&'static str>> {
         let (parts, further): (&[_], &[_]) = match self {
             Body::Box { .. } => (&surfaces::BOX, &[]),
@@ -175,23 +177,23 @@ impl Body {
     }
 }
 
-/// A part of the body with a material of its own.
+/// A part of the body with its own material.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MaterialRegion {
-    /// Its name in tables.
+    /// Name in tables.
     pub name: String,
-    /// Where it is; names are those of volumes in the mesh file.
+    /// Selection of its cells; names refer to volumes in the mesh file.
     pub place: Place,
-    /// Its material.
+    /// Material of the region.
     pub material: Material,
 }
 
-/// Where something acts.
+/// Selection of a part of the body.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Place {
-    /// On named parts.
+    /// Named parts.
     On(Vec<String>),
-    /// Where comparisons hold.
+    /// Points that satisfy comparisons.
     Where(Region),
     /// Everywhere (body forces).
     Everywhere,
@@ -200,18 +202,18 @@ pub enum Place {
 /// Prescribed displacement of a part of the body.
 #[derive(Clone, Debug)]
 pub struct Support {
-    /// Where.
+    /// Constrained part of the body.
     pub place: Place,
-    /// Along x, y, z; free where `None`. At least one is prescribed.
+    /// Prescribed displacements along x, y, z; `None` for a free axis. At least one is prescribed.
     pub motion: [Option<Prescribed>; 3],
 }
 
-/// A given load.
+/// A load.
 #[derive(Clone, Debug)]
 pub struct Load {
-    /// Where.
+    /// Loaded part of the body.
     pub place: Place,
-    /// What.
+    /// Kind and value.
     pub kind: LoadKind,
 }
 
@@ -227,7 +229,7 @@ pub enum LoadKind {
 }
 
 impl LoadKind {
-    /// Whether it is another one from point to point.
+    /// Whether the load varies in space.
     pub fn varies(&self) -> bool {
         let constant = |field: &ScalarField| matches!(field, ScalarField::Constant(_));
         match self {

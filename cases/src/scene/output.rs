@@ -1,4 +1,4 @@
-//! What a scene reports, what it compares with, and what must hold.
+//! Output, reference and checks of a scene.
 
 use std::path::PathBuf;
 
@@ -8,44 +8,44 @@ use crate::exact::SolutionEntry;
 use catalogue::Values;
 use catalogue::metric::Metric;
 
-/// What a scene reports.
+/// Output of a scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Output {
-    /// Points to report, in metres.
+    /// Points at which results are reported, in metres.
     pub probes: Vec<[f64; 3]>,
     /// Parts of the surface whose mean displacement is reported.
     pub means: Vec<Place>,
     /// Transfers of the nodal displacements to other points.
     pub transfers: Vec<Transfer>,
-    /// Id of a method that every run is compared with at the targets, beside the reference.
+    /// Id of the secondary reference: a method that every run is also compared with at the targets.
     pub beside: Option<String>,
-    /// The loading repeated in frames.
+    /// Repetition of the loading in frames.
     pub repeated: Option<Repeated>,
 }
 
-/// A simulator's loop: the loading goes up and down, a frame at a time, prepared once.
+/// A simulator's loop: prepared once, the loading goes up and down frame by frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Repeated {
-    /// Frames in all.
+    /// Total number of frames.
     pub frames: usize,
-    /// Frames of one way up and down.
+    /// Frames of one cycle up and down.
     pub cycle: usize,
-    /// Time after which no further frame is started, s.
+    /// Time after which no further frame starts, s.
     pub within: f64,
-    /// Relative residual of a frame, where it is not the procedure's.
+    /// Relative residual of a frame; the procedure's tolerance if `None`.
     pub tolerance: Option<f64>,
 }
 
 /// A transfer of nodal displacements to other points.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Transfer {
-    /// The points.
+    /// Target points.
     pub to: Target,
     /// The scheme and the values of its parameters; `None` for the solver's own rows.
     pub scheme: Option<(interp::Scheme, Values)>,
 }
 
-/// Points of a transfer.
+/// Target points of a transfer.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Target {
     /// The nodes of the reference method.
@@ -56,57 +56,58 @@ pub enum Target {
     File(MeshFile),
 }
 
-/// What results are compared with.
+/// Reference that results are compared with.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Reference {
     /// An exact solution.
     Exact {
-        /// Which one.
+        /// Entry of the solution.
         entry: &'static SolutionEntry,
-        /// Its parameters.
+        /// Parameters of the solution.
         values: Values,
     },
     /// A method of this scene.
     Method {
-        /// Its id.
+        /// Id of the method.
         id: String,
-        /// Another size to run it at.
+        /// Size of the reference run, if it differs from the method's own size.
         size: Option<Size>,
     },
     /// A stored record.
     Record(PathBuf),
 }
 
-/// What must hold of the results.
+/// A bound on the results.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Check {
     /// The metric.
     pub metric: &'static Metric,
-    /// Ids of the methods it holds for; all of them where empty.
+    /// Ids of the methods that the check applies to; empty for all.
     pub methods: Vec<String>,
     /// The bound, in the SI unit of the metric.
     pub bound: Bound,
-    /// Its place, `file:line`.
+    /// Location in the file, `file:line`.
     pub at: String,
 }
 
 /// Bound of a metric.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Bound {
-    /// Passes if no value is beyond.
+    /// A range: passes if no value is outside.
     Within {
-        /// Smallest value allowed.
+        /// Smallest allowed value.
         at_least: Option<f64>,
-        /// Largest value allowed.
+        /// Largest allowed value.
         at_most: Option<f64>,
     },
-    /// A known defect: the value is reported as not passing, and the check holds only while it stays in the band.
+    /// A known defect: the value is reported as not passing, and the check holds only while the value is in
+    /// the band.
     KnownBand {
         /// Low end.
         low: f64,
         /// High end.
         high: f64,
-        /// Why the method can't do better.
+        /// Reason why the method can't do better.
         reason: String,
     },
 }

@@ -1,4 +1,4 @@
-//! Regions by comparison: `z == 0 mm and x >= 3 mm`.
+//! Regions defined by comparisons: `z == 0 mm and x >= 3 mm`.
 
 use std::borrow::Cow;
 
@@ -28,13 +28,13 @@ pub enum Relation {
 pub struct Comparison {
     /// Coordinate: 0, 1, 2 for x, y, z.
     pub axis: usize,
-    /// How it compares.
+    /// Relation of the coordinate to the length.
     pub relation: Relation,
-    /// With which length, in metres.
+    /// Length to compare with, in metres.
     pub value: f64,
 }
 
-/// All points that satisfy every one of its comparisons.
+/// Set of all points that satisfy every comparison.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Region {
     /// The text in the file.
@@ -47,8 +47,8 @@ const HELP: &str = "write comparisons of x, y or z with a length, joined by 'and
                     \"z == 0 mm and x >= 3 mm\" (==, <, <=, >, >=)";
 
 impl Region {
-    /// Whether `x` (metres) belongs to the region. `tolerance` (metres) is what counts as equal; [`Region::TOLERANCE`]
-    /// times the diagonal of the body is a good one.
+    /// Whether `x` (metres) belongs to the region. Lengths within `tolerance` (metres) count as equal; a good
+    /// value is [`Region::TOLERANCE`] times the diagonal of the body.
     pub fn contains(&self, x: [f64; 3], tolerance: f64) -> bool {
         self.comparisons.iter().all(|c| {
             let ahead = x[c.axis] - c.value;
@@ -62,7 +62,7 @@ impl Region {
         })
     }
 
-    /// What counts as equal, relative to the diagonal of the body: far above rounding, far below any element.
+    /// Tolerance of equality relative to the diagonal of the body: far above rounding, far below any element.
     pub const TOLERANCE: f64 = 1e-9;
 
     pub(crate) fn read(text: &str) -> Result<Region, Problem> {

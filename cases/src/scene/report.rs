@@ -1,4 +1,4 @@
-//! Findings about one file, each at its key.
+//! Findings about one file, each with its key.
 
 use std::path::{Component, Path, PathBuf};
 
@@ -13,7 +13,7 @@ use super::error::{ErrorKind, SceneError};
 pub(crate) struct Report<'o> {
     origin: &'o Origin,
     errors: Vec<SceneError>,
-    /// Their keys in the scene; an error in a shared method has the key of its own file.
+    /// Keys of the errors in the scene; an error in a shared method has the key of its own file instead.
     keys: Vec<String>,
 }
 
@@ -27,12 +27,12 @@ impl<'o> Report<'o> {
         self.keys.push(key.to_string());
     }
 
-    /// Whether something is noted at `key`.
+    /// Whether a finding at `key` is recorded.
     pub fn has(&self, key: &str) -> bool {
         self.keys.iter().any(|noted| noted == key)
     }
 
-    /// Whether nothing is noted.
+    /// Whether there are no findings.
     pub fn is_clean(&self) -> bool {
         self.errors.is_empty()
     }
@@ -45,7 +45,8 @@ impl<'o> Report<'o> {
         self.origin
     }
 
-    /// The path that is the value of `key`, relative ones taken from the folder of the file it is in.
+    /// Path given as the value of `key`; a relative path is resolved from the folder of the file that
+    /// contains the key.
     pub fn path(&self, text: &str, key: &str) -> PathBuf {
         beside(self.origin.file_of(key), text)
     }
@@ -61,7 +62,8 @@ impl<'o> Report<'o> {
     }
 }
 
-/// A path from the folder of a file, without steps back: `studies/../scenes` is `scenes`, unless a link leads elsewhere.
+/// Joins a path to the folder of a file, without steps back: `studies/../scenes` is `scenes`, unless a link
+/// leads elsewhere.
 pub(crate) fn beside(file: &str, path: &str) -> PathBuf {
     let whole = Path::new(file).parent().unwrap_or(Path::new("")).join(path);
     let mut short = PathBuf::new();
@@ -75,7 +77,7 @@ pub(crate) fn beside(file: &str, path: &str) -> PathBuf {
     if real(&short) == real(&whole) { short } else { whole }
 }
 
-/// The nearest of the ids there are, as help.
+/// Help for an unknown id: the nearest known id, and the list of all.
 pub(crate) fn which<'a>(id: &str, known: impl Iterator<Item = &'a str> + Clone) -> String {
     let list = known.clone().collect::<Vec<_>>().join(", ");
     match nearest(id, known) {

@@ -13,12 +13,13 @@ use super::document::Document;
 use super::error::{ErrorKind, SceneError};
 use super::shared::moved;
 
-/// A key of the scene with the value that replaces the file's, as `KEY=VALUE` gives them.
+/// A key of the scene and the value that replaces the one in the file, as given by `KEY=VALUE`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Override {
-    /// Key as messages name it, such as `method[0].size.level`. `method[tet4]` is the method of that id.
+    /// Key in the form of messages, such as `method[0].size.level`. `method[tet4]` is the method with that
+    /// id.
     pub key: String,
-    /// Value as TOML. Text that is not valid TOML, such as `10 kPa`, stands for itself.
+    /// Value as TOML. Text that is not valid TOML, such as `10 kPa`, is used as a string.
     pub value: String,
 }
 
@@ -44,10 +45,10 @@ impl fmt::Display for Override {
 type Value<'t> = Spanned<DeValue<'t>>;
 
 impl<'t> Document<'t> {
-    /// Sets the keys in turn.
+    /// Sets the keys in order.
     ///
     /// # Errors
-    /// Keys that the document cannot have.
+    /// All keys that the document cannot have.
     pub fn set_all(&mut self, overrides: &'t [Override]) -> Result<(), Vec<SceneError>> {
         let mut errors = Vec::new();
         for each in overrides {
@@ -59,8 +60,8 @@ impl<'t> Document<'t> {
         if errors.is_empty() { Ok(()) } else { Err(errors) }
     }
 
-    /// Puts a value at a key such as `method[].size.cells[0]`, or removes the key. Missing tables on the way
-    /// are made. `driver` is named in place of a file where the value is wrong.
+    /// Sets a key such as `method[].size.cells[0]` to a value, or removes the key. Missing tables along the
+    /// path are created. An error in the value names `driver` in place of a file.
     pub fn set(&mut self, key: &str, value: Option<&'t str>, driver: &str) -> Result<(), Problem> {
         let value = value.map(|text| {
             self.files.add_override(driver.to_string());
@@ -73,7 +74,7 @@ impl<'t> Document<'t> {
     }
 }
 
-/// The part of a key before its first `.` or `[`, and the rest from there.
+/// Splits a key before its first `.` or `[`.
 fn split(key: &str) -> (&str, &str) {
     key.find(['.', '[']).map_or((key, ""), |end| key.split_at(end))
 }
@@ -89,7 +90,7 @@ fn set<'t>(table: &mut DeTable<'t>, key: &str, value: Option<&Value<'t>>) -> Res
     match (rest.is_empty(), value) {
         (true, None) => drop(table.remove(head)),
         (true, Some(value)) => {
-            // The key has to stand where the value is, so the old one goes first.
+            // The key has to be at the place of the new value, so the old key is removed first.
             table.remove(head);
             table.insert(owned(head, span), value.clone());
         }
@@ -108,7 +109,7 @@ fn owned<'t>(key: &str, span: Range<usize>) -> Spanned<Cow<'t, str>> {
     Spanned::new(span, Cow::Owned(key.to_string()))
 }
 
-/// Goes on at `.key` or `[index]` below a value, or replaces the value at the end of the key.
+/// Continues at `.key` or `[index]` below a value, or replaces the value at the end of the key.
 fn below<'t>(slot: &mut Value<'t>, rest: &str, value: Option<&Value<'t>>) -> Result<(), Problem> {
     if let Some(key) = rest.strip_prefix('.') {
         return match slot.get_mut() {
@@ -133,7 +134,7 @@ fn below<'t>(slot: &mut Value<'t>, rest: &str, value: Option<&Value<'t>>) -> Res
     below(item, behind, value)
 }
 
-/// Whether an entry of a list has this id or name.
+/// Whether an entry of a list has the id or name `name`.
 fn is_named(item: &Value<'_>, name: &str) -> bool {
     let named = |key: &str| item.get_ref().get(key).and_then(|value| value.get_ref().as_str()) == Some(name);
     named("id") || named("name") || named("use")

@@ -1,4 +1,5 @@
-//! Methods that several scenes share: one file of `[[method]]` tables, from which a scene takes some by their ids.
+//! Methods that several scenes share: one file of `[[method]]` tables, from which a scene takes methods by
+//! their ids.
 //!
 //! ```toml
 //! methods_from = "../../methods.toml"
@@ -8,8 +9,8 @@
 //! size = { level = 2 }
 //! ```
 //!
-//! A key beside `use` stands in place of the shared table's. What comes of it is read like a method written out; shared
-//! tables take nothing from elsewhere themselves.
+//! A key next to `use` replaces the key of the shared table. The result is read like a method written out in
+//! the scene. A shared table cannot take another shared method.
 
 use std::ops::Range;
 use std::sync::LazyLock;
@@ -28,19 +29,19 @@ use super::set::Override;
 use super::sources::Taken;
 use catalogue::Problem;
 
-/// The schemas, made once: to make one takes longer than to check a file.
+/// Schemas, generated once: generating a schema takes longer than checking a file.
 static SCENE: LazyLock<Value> = LazyLock::new(schema::<SceneKeys>);
 static SHARED: LazyLock<Value> = LazyLock::new(|| unfinished(schema::<SharedKeys>()));
 
 /// A file of shared methods
 #[derive(JsonSchema)]
 #[serde(deny_unknown_fields)]
-#[allow(dead_code)] // a schema to check the file against; the scene that takes a table reads it
+#[allow(dead_code)] // only a schema to check the file; a scene that takes a table reads it
 struct SharedKeys {
     method: Vec<MethodKeys>,
 }
 
-/// Reads a scene with the shared methods that it takes, and with some keys set from outside.
+/// Reads a scene together with its shared methods, and with some keys set from outside.
 pub(crate) fn read(
     text: &str,
     file: &str,
@@ -72,7 +73,7 @@ pub(crate) fn read(
     keys(document)
 }
 
-/// The keys of a scene; or what is wrong with them, and with the values of the parts whose keys are sound.
+/// Keys of a scene; or all errors in the keys, and in the values of the parts whose keys are valid.
 pub(crate) fn keys(document: Document<'_>) -> Result<(SceneKeys, Origin), Vec<SceneError>> {
     let Err(mut errors) = document.check(&SCENE) else { return document.values() };
     if let Some((parts, origin)) = document.sound(&errors) {
@@ -83,7 +84,7 @@ pub(crate) fn keys(document: Document<'_>) -> Result<(SceneKeys, Origin), Vec<Sc
     Err(sorted(errors))
 }
 
-/// The schema of a scene, in which a method may be a shared one.
+/// Extends the schema of a scene by shared methods.
 pub(crate) fn describe(mut schema: Value) -> Value {
     let shared = json!({
         "type": "object",
@@ -101,7 +102,7 @@ pub(crate) fn describe(mut schema: Value) -> Value {
     schema
 }
 
-/// A shared method may leave keys to the scenes, such as its size.
+/// The schema of shared methods, in which scenes may supply keys such as the size.
 fn unfinished(mut schema: Value) -> Value {
     for form in forms(&mut schema).into_iter().flatten() {
         form["required"] = json!(["id", "family"]);
@@ -109,7 +110,7 @@ fn unfinished(mut schema: Value) -> Value {
     schema
 }
 
-/// The kinds of methods.
+/// The alternative forms of a method in a schema.
 fn forms(schema: &mut Value) -> Option<&mut Vec<Value>> {
     schema.pointer_mut("/properties/method/items/oneOf")?.as_array_mut()
 }
@@ -123,7 +124,7 @@ fn tables<'a, 't>(document: &'a Document<'t>) -> &'a [Spanned<DeValue<'t>>] {
 }
 
 impl Document<'_> {
-    /// Leaves the methods out that are not among these; none where none is named.
+    /// Removes all methods except the named ones; removes none if `methods` is empty.
     pub fn keep(&mut self, methods: &[String]) {
         let Some(all) = self.root.get_mut().get_mut("method").filter(|_| !methods.is_empty()) else { return };
         let DeValue::Array(list) = all.get_ref() else { return };
@@ -140,7 +141,7 @@ fn value<'a, 't>(method: &'a Spanned<DeValue<'t>>, key: &str) -> Option<&'a Span
     method.get_ref().as_table()?.get(key)
 }
 
-/// No method can be taken where no file is named.
+/// Refuses `use` in a scene without a file of shared methods.
 fn unshared(document: &Document<'_>) -> Result<(), Vec<SceneError>> {
     let errors: Vec<SceneError> = (tables(document).iter().enumerate())
         .filter_map(|(i, method)| Some((i, value(method, "use")?)))
@@ -154,7 +155,7 @@ fn unshared(document: &Document<'_>) -> Result<(), Vec<SceneError>> {
     if errors.is_empty() { Ok(()) } else { Err(errors) }
 }
 
-/// Every shared method has an id of its own.
+/// Checks that the ids of the shared methods are unique.
 fn unique(shared: &Document<'_>) -> Result<(), Vec<SceneError>> {
     let ids: Vec<_> = tables(shared).iter().filter_map(|method| value(method, "id")).collect();
     let text = |id: &Spanned<DeValue<'_>>| written(id.get_ref());
@@ -169,7 +170,7 @@ fn unique(shared: &Document<'_>) -> Result<(), Vec<SceneError>> {
     if errors.is_empty() { Ok(()) } else { Err(errors) }
 }
 
-/// Puts the shared tables where the scene's methods name them.
+/// Inserts the shared tables into the scene's methods that name them.
 fn take<'t>(document: &mut Document<'t>, shared: Document<'t>) -> Result<(), Vec<SceneError>> {
     let known = tables(&shared);
     let ids: Vec<String> = known
@@ -208,7 +209,7 @@ fn take<'t>(document: &mut Document<'t>, shared: Document<'t>) -> Result<(), Vec
     Ok(())
 }
 
-/// A shared table with the scene's keys in place of its own. Its id stands where the scene names it.
+/// A shared table with its keys replaced by the scene's keys. Its id has the place of the scene's `use`.
 fn with<'t>(
     shared: &Spanned<DeValue<'t>>,
     base: usize,
@@ -220,14 +221,14 @@ fn with<'t>(
         *id = name;
     }
     for (key, value) in own.into_iter().filter(|(key, _)| key.get_ref() != "use") {
-        // Removed first, so that the key stands where the scene has it.
+        // The key is removed first, so that the new one has the scene's place.
         table.remove(key.get_ref().as_ref());
         table.insert(key, value);
     }
     table
 }
 
-/// The same value with all spans moved.
+/// The value with all spans shifted by `base`.
 pub(crate) fn moved<'t>(value: &DeValue<'t>, base: usize) -> DeValue<'t> {
     let span = |span: Range<usize>| span.start + base..span.end + base;
     let item = |value: &Spanned<DeValue<'t>>| Spanned::new(span(value.span()), moved(value.get_ref(), base));

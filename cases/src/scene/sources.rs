@@ -1,6 +1,5 @@
-//! The files that a scene is read from: its own, and that of the shared methods it takes; then values that
-//! are set from outside. Their texts are one range of byte offsets, so that a span says which of them it is
-//! in.
+//! The texts that a scene is read from: its own file, the file of shared methods, and values set from
+//! outside. Together the texts form one range of byte offsets, so that a span identifies its text.
 
 use std::ops::Range;
 
@@ -8,16 +7,16 @@ use catalogue::Problem;
 
 use super::error::{ErrorKind, SceneError};
 
-/// The texts while they are read.
+/// The texts during reading.
 pub(crate) struct Sources<'t> {
     texts: Vec<Text<'t>>,
 }
 
 struct Text<'t> {
     text: &'t str,
-    /// Offset of its first byte.
+    /// Offset of the first byte.
     base: usize,
-    /// Where its lines start, from its first byte.
+    /// Offsets of the starts of lines, from the first byte.
     starts: Vec<usize>,
 }
 
@@ -39,19 +38,19 @@ impl<'t> Sources<'t> {
         self.texts[0].text
     }
 
-    /// Adds a text; what its offsets are moved by.
+    /// Adds a text; returns the base of its offsets.
     pub fn add(&mut self, text: &'t str) -> usize {
         let base = self.texts.last().map_or(0, |last| last.base + last.text.len() + 1);
         self.texts.push(Text::new(text, base));
         base
     }
 
-    /// Start of the text that was added last.
+    /// Start of the last text added.
     pub fn last(&self) -> Place {
         Place { file: self.texts.len() - 1, line: 1, column: 1 }
     }
 
-    /// Where a span begins; the start of the scene where there is none.
+    /// Place at which a span begins; the start of the scene if there is no span.
     pub fn place(&self, span: Option<Range<usize>>) -> Place {
         let offset = span.map_or(0, |span| span.start);
         let file = self.texts.iter().rposition(|text| text.base <= offset).unwrap_or(0);
@@ -75,12 +74,12 @@ impl<'t> Text<'t> {
     }
 }
 
-/// The names of the files, and which methods are taken from the second.
+/// Names of the files, and the methods taken from the second file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Files {
     names: Vec<String>,
     taken: Vec<Taken>,
-    /// How many of the names, from the first, are those of files. The rest name values set from outside.
+    /// Number of names, from the first, that are files. The other names stand for values set from outside.
     files: usize,
 }
 
@@ -107,7 +106,7 @@ impl Files {
         self.files += 1;
     }
 
-    /// Adds what a value set from outside is called.
+    /// Adds the name of a value set from outside.
     pub fn add_override(&mut self, name: String) {
         self.names.push(name);
     }
@@ -121,12 +120,13 @@ impl Files {
         &self.names[file]
     }
 
-    /// Whether there is more than the scene's own.
+    /// Whether there are other sources than the scene's own file.
     pub fn are_several(&self) -> bool {
         self.names.len() > 1
     }
 
-    /// An error at a place. One in a shared method has the key that it has in its own file, and says which scene takes it.
+    /// An error at a place. An error in a shared method has its key in the shared file, and names the scene
+    /// that takes it.
     pub fn error(&self, kind: ErrorKind, place: Place, key: &str, problem: Problem) -> SceneError {
         let is_file = place.file < self.files;
         let taken = self.taken.iter().filter(|_| is_file && place.file > 0).find_map(|taken| {
@@ -143,7 +143,7 @@ impl Files {
         SceneError {
             kind,
             file: self.names[place.file].clone(),
-            // A value from outside has no lines.
+            // A value set from outside has no lines.
             line: if is_file { place.line } else { 0 },
             column: if is_file { place.column } else { 0 },
             key,

@@ -1,4 +1,4 @@
-//! Studies: many scenes and methods, with what is varied and what must hold.
+//! Studies: many scenes and methods, with their variations and checks.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -27,62 +27,65 @@ use catalogue::metric::Needs;
 /// A study.
 #[derive(Clone, Debug)]
 pub struct Study {
-    /// One line that says what the study is.
+    /// Title of the study in one line.
     pub title: String,
-    /// The scenes of its runs by their paths, but for those that can't be read: whoever runs one reads it again, and says why.
+    /// Scenes of the runs by path, without the scenes that can't be read. The run reads such a scene again
+    /// and reports the reason.
     pub scenes: BTreeMap<PathBuf, Scene>,
-    /// Its runs, in order.
+    /// Runs in their order.
     pub runs: Vec<Run>,
 }
 
-/// One scene with what is varied of it: methods times levels (or node counts) times kernels times support scales times essential
-/// conditions times seeds times Poisson's ratios.
+/// One scene with its variations: methods times levels (or node counts) times kernels times support scales
+/// times essential conditions times seeds times Poisson's ratios.
 #[derive(Clone, Debug)]
 pub struct Run {
     /// The scene file.
     pub scene: PathBuf,
-    /// Ids of its methods; all of them where empty.
+    /// Ids of the methods; empty for all.
     pub methods: Vec<String>,
-    /// Solvers outside this program that solve each plain finite element method once more, by the names of their adapters.
+    /// External solvers, by adapter name, that also solve each plain finite-element method.
     pub adapters: Vec<String>,
-    /// Levels in place of the methods' own sizes; their own where empty.
+    /// Levels in place of the methods' own sizes; empty for their own.
     pub levels: Vec<u32>,
-    /// Poisson's ratios in place of the scene's; its own where empty.
+    /// Poisson's ratios in place of the scene's ratio; empty for its own.
     pub poisson: Vec<f64>,
-    /// Node counts of clouds; their own where empty.
+    /// Node counts of clouds; empty for their own.
     pub nodes: Vec<usize>,
-    /// Kernels of clouds; their own where empty.
+    /// Kernels of clouds; empty for their own.
     pub kernels: Vec<efg::Kernel>,
-    /// Support scales of clouds: support radius over the local spacing; their own supports where empty.
+    /// Support scales of clouds, support radius over the local spacing; empty for their own supports.
     pub support_scales: Vec<f64>,
-    /// How prescribed displacements are imposed on clouds; their own way where empty.
+    /// Essential conditions of clouds; empty for their own.
     pub essentials: Vec<Essential>,
-    /// Every cloud is solved once more, integrated by this rule: what that changes is its error of integration, what is left
+    /// Integration rule with which every cloud is solved again. The change of the solution is the error of
+    /// integration; the remaining error is the error of discretisation.
     /// then is the error of its discretisation.
     pub split: Option<Integration>,
-    /// Clouds of the seeds 1 to this in place of their own; 0 for their own. How far a result depends on where nodes happen
-    /// to stand is their spread: the scene's checks, which are of its own cloud, are not asked of them.
+    /// Number of random clouds, with the seeds 1 to `seeds`, in place of the method's own cloud; 0 for its
+    /// own. The spread of their results shows the influence of the node positions. The scene's checks apply
+    /// to its own cloud only.
     pub seeds: u64,
-    /// What the scene is driven along, if anything: how each method fares there is a result, and the scene's checks, which are
-    /// of the scene as it is, are not asked.
+    /// Axis along which the scene is varied. The response of each method is a result; the scene's checks
+    /// apply to the unvaried scene only.
     pub axis: Option<Axis>,
     /// Whether the run belongs to the quick tier.
     pub quick: bool,
-    /// Whether the quick tier plays the loops of its scene too.
+    /// Whether the quick tier also runs the loops of the scene.
     pub loops: bool,
-    /// Words to choose it by.
+    /// Words by which a run can be selected.
     pub tags: Vec<String>,
-    /// What must hold, beside the scene's own checks.
+    /// Checks in addition to those of the scene.
     pub checks: Vec<Check>,
 }
 
 impl Run {
-    /// The methods of its scene that it names.
+    /// Methods of the scene that this run uses.
     pub fn chosen<'a>(&'a self, scene: &'a Scene) -> impl Iterator<Item = &'a Method> {
         scene.methods.iter().filter(|m| self.methods.is_empty() || self.methods.contains(&m.id))
     }
 
-    /// These as other solvers solve them.
+    /// The chosen methods as the external solvers of `adapters` solve them.
     fn twins(&self, scene: &Scene) -> Vec<Method> {
         let twins = |m| self.adapters.iter().filter_map(move |adapter| Method::solved_by(m, adapter));
         self.chosen(scene).flat_map(twins).collect()
@@ -94,7 +97,8 @@ impl Run {
 #[serde(deny_unknown_fields)]
 pub(crate) struct StudyKeys {
     pub title: String,
-    /// A folder, relative to the study's: every scene in it and below it is in a run or left out with a reason
+    /// A folder, relative to the study's; every scene in and below it has to be in a run or left out with a
+    /// reason
     pub all_of: Option<String>,
     #[serde(default)]
     pub left_out: Vec<LeftOutKeys>,
@@ -102,7 +106,7 @@ pub(crate) struct StudyKeys {
     pub run: Vec<RunKeys>,
 }
 
-/// One scene with what is varied
+/// One scene with its variations
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct RunKeys {
@@ -111,14 +115,14 @@ pub(crate) struct RunKeys {
     /// Ids of methods; all unless given
     #[serde(default)]
     pub methods: Vec<String>,
-    /// Solvers outside this program (`tissuebench adapter list`): each solves every method of plain finite elements too, on the
-    /// same mesh, as the method METHOD-ADAPTER
+    /// External solvers (`tissuebench adapter list`). Each also solves every method of plain finite elements,
+    /// on the same mesh, as the method METHOD-ADAPTER
     #[serde(default)]
     pub adapters: Vec<String>,
     /// Levels in place of the methods' own sizes
     #[serde(default)]
     pub levels: Vec<u32>,
-    /// Poisson's ratios in place of the scene's
+    /// Poisson's ratios in place of the scene's ratio
     #[serde(default)]
     pub poisson: Vec<f64>,
     /// Node counts of clouds
@@ -130,40 +134,40 @@ pub(crate) struct RunKeys {
     /// Support scales of clouds: support radius over the local spacing
     #[serde(default)]
     pub support_scales: Vec<f64>,
-    /// How prescribed displacements are imposed on clouds
+    /// Essential conditions of clouds
     #[serde(default)]
     pub essentials: Vec<EssentialKeys>,
-    /// Solves every cloud once more, integrated by this rule, to tell errors of integration and of discretisation apart
+    /// Integration rule with which every cloud is solved again, to separate errors of integration and of
+    /// discretisation
     pub split: Option<IntegrationKeys>,
-    /// Clouds of this many seeds, from 1 on, in place of their own
+    /// Number of random clouds, with seeds from 1 on, in place of the method's own cloud
     #[serde(default)]
     pub seeds: u32,
     pub axis: Option<AxisKeys>,
-    /// Part of the quick tier
+    /// Whether the run belongs to the quick tier
     #[serde(default)]
     pub quick: bool,
-    /// The quick tier plays the scene's loops (`output.repeated`) of this run too, which it leaves out
-    /// otherwise
+    /// Whether the quick tier also runs the scene's loops (`output.repeated`), which it omits otherwise
     #[serde(default)]
     pub loops: bool,
-    /// Words to choose the run by: `tissuebench verify --tag WORD`, and `--not WORD` to leave it out
+    /// Words by which the run can be selected (`tissuebench verify --tag WORD`) or left out (`--not WORD`)
     #[serde(default)]
     pub tags: Vec<String>,
     #[serde(default)]
     pub check: Vec<CheckKeys>,
 }
 
-/// Reads the study in a file. The name in messages is `path` as given.
+/// Reads the study in a file. Messages name the file by `path` as given.
 pub fn load_study(path: &Path) -> Result<Study, Vec<SceneError>> {
     parse_study(&text_of(path)?, &path.display().to_string())
 }
 
-/// The study in a file that has been read before, with the scene of one of its runs alone.
+/// Reads a study that was read before, with only the scene of the run with index `run`.
 pub fn load_study_for(path: &Path, run: usize) -> Result<Study, Vec<SceneError>> {
     parse(&text_of(path)?, &path.display().to_string(), Some(run))
 }
 
-/// Reads a study from text. `file` names it in messages; scenes are relative to the folder of `file`.
+/// Reads a study from text. Messages name it by `file`; scenes are relative to the folder of `file`.
 pub fn parse_study(text: &str, file: &str) -> Result<Study, Vec<SceneError>> {
     parse(text, file, None)
 }
@@ -180,7 +184,7 @@ fn parse(text: &str, file: &str, only: Option<usize>) -> Result<Study, Vec<Scene
     let mut all = (0.0, 0);
     for (i, run) in runs.iter().enumerate().filter(|(_, run)| wanted.as_ref().is_none_or(|w| run.scene == *w))
     {
-        // A scene that can't be read is the business of whoever runs it: its own findings say more.
+        // A scene that can't be read is reported by the run that needs it, with better messages.
         let scene = scenes.entry(run.scene.clone()).or_insert_with(|| load(&run.scene).ok());
         if let Some(scene) = scene {
             all = few_enough(run, scene, all, &format!("run[{i}]"), &mut report);
@@ -259,11 +263,11 @@ fn run(keys: RunKeys, index: usize, report: &mut Report) -> Run {
     }
 }
 
-/// Most runs of a study, and most scenes along its axes: each of these is read before the first run.
+/// Limits on the runs of a study and on the scenes along its axes, which are all read before the first run.
 const MOST_RUNS: f64 = 50_000.0;
 const MOST_SCENES: usize = 500;
 
-/// Notes the run table with which a study has too many runs or scenes; how many there are so far.
+/// Reports the run table at which a study exceeds the limits; returns the numbers of runs and scenes so far.
 fn few_enough(
     run: &Run,
     scene: &Scene,
@@ -288,12 +292,12 @@ fn few_enough(
     now
 }
 
-/// Whether each value is not among those before it.
+/// For each value, whether it differs from all values before it.
 fn first_times<T: PartialEq>(list: &[T]) -> Vec<bool> {
     list.iter().enumerate().map(|(i, value)| !list[..i].contains(value)).collect()
 }
 
-/// What a run demands of its scene.
+/// Checks the demands of a run on its scene.
 fn fit(run: &Run, scene: &Scene, key: &str, report: &mut Report) {
     known_methods(&run.methods, scene, &format!("{key}.methods"), report);
     if let Some(axis) = &run.axis

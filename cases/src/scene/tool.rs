@@ -1,28 +1,28 @@
-//! Rigid tools: their shapes, how they are driven and how they touch.
+//! Rigid tools: shape, drive and contact parameters.
 
 use contact::ToolShape;
 
 /// A rigid tool.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tool {
-    /// Unique within the scene.
+    /// Name, unique within the scene.
     pub name: String,
-    /// Its shape.
+    /// Shape of the tool.
     pub shape: ToolShape,
-    /// Centre at the start, in metres.
+    /// Initial position of the centre, in metres.
     pub at: [f64; 3],
     /// Unit direction of motion.
     pub along: [f64; 3],
-    /// Where the z axis of the shape's frame points, as a unit vector: the axis of a cylinder or capsule, the outward normal of
-    /// a plate's face; `None` for a shape that stands along the axes of the scene.
+    /// Direction of the z axis of the shape's frame, as a unit vector: the axis of a cylinder or capsule, the
+    /// outward normal of a plate's face. `None` for a shape aligned with the axes of the scene.
     pub axis: Option<[f64; 3]>,
-    /// How it is driven.
+    /// Drive of the tool.
     pub drive: Drive,
     /// Time of the ramp in seconds (dynamics).
     pub over: Option<f64>,
     /// Normal pressure per penetration, in pascals per metre.
     pub penalty: f64,
-    /// Friction; none if the file gives none, or a coefficient of 0.
+    /// Friction; `None` without a coefficient, or with a coefficient of 0.
     pub friction: Option<Friction>,
 }
 
@@ -35,12 +35,12 @@ pub struct Friction {
     pub stick: f64,
 }
 
-/// What drives a tool.
+/// Drive of a tool.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Drive {
-    /// Distance moved, in metres.
+    /// Displacement along the direction of motion, in metres.
     Closure(f64),
-    /// Total force along the way, in newtons.
+    /// Total force along the direction of motion, in newtons.
     Force(f64),
     /// Mean pressure on the tool's face, in pascals.
     Pressure(f64),

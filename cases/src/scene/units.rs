@@ -1,4 +1,4 @@
-//! Quantities as keys of a file: a dimension as a type.
+//! Quantities as keys of a file, with the dimension as a type.
 
 use std::borrow::Cow;
 use std::marker::PhantomData;
@@ -24,7 +24,7 @@ macro_rules! dims {
 }
 dims!(Length, Pressure, Density, Force, Time, BodyForce, ContactSlope, Rate);
 
-/// A quantity of dimension `D` in a file: text outside, SI inside.
+/// A quantity of dimension `D`: text in the file, SI value in the program.
 pub(crate) struct Q<D>(pub f64, PhantomData<D>);
 
 impl<'de, D: Dim> Deserialize<'de> for Q<D> {
@@ -51,7 +51,7 @@ impl<D: Dim> JsonSchema for Q<D> {
     }
 }
 
-/// The unit of a field, such as the `Pa` of `{ unit = "Pa", of = "z^2" }`: the factor to SI.
+/// Unit of a field, such as the `Pa` in `{ unit = "Pa", of = "z^2" }`: the conversion factor to SI.
 pub(crate) struct Unit<D>(pub f64, PhantomData<D>);
 
 impl<'de, D: Dim> Deserialize<'de> for Unit<D> {

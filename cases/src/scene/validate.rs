@@ -1,4 +1,4 @@
-//! What a scene's parts demand of each other.
+//! Mutual demands of the parts of a scene.
 
 use crate::exact::{Exact, SolutionEntry};
 use catalogue::{Values, suggest};
@@ -14,10 +14,10 @@ use super::report::{Report, which};
 use catalogue::Problem;
 use catalogue::metric::Needs;
 
-/// Characters of a method's id: many more make no name of a file.
+/// Longest id of a method, characters: the id is part of file names.
 const LONGEST_ID: usize = 64;
 
-/// Notes every contradiction.
+/// Reports every contradiction.
 pub(crate) fn scene(scene: &Scene, report: &mut Report) {
     if scene.methods.is_empty() {
         report.add("method", Problem::new("is missing").help("add a [[method]] with id, family and size"));
@@ -28,7 +28,7 @@ pub(crate) fn scene(scene: &Scene, report: &mut Report) {
             report.add(&format!("method[{i}].id"), problem.help("ids are unique"));
         }
         let plain = |c: char| c.is_ascii_alphanumeric() || "-_.".contains(c);
-        // It names files and folders, where one or two dots lead elsewhere.
+        // The id names files and folders, for which one or two dots have another meaning.
         let dots = method.id.chars().all(|c| c == '.');
         if dots || method.id.len() > LONGEST_ID || !method.id.chars().all(plain) {
             let help = format!("use up to {LONGEST_ID} letters, digits, '-', '_' and '.', not dots alone");
@@ -93,7 +93,7 @@ fn exact(scene: &Scene, entry: &SolutionEntry, values: &Values) -> Result<Box<dy
     (entry.build)(&medium(law, young, poisson)?, values)
 }
 
-/// What an exact solution demands of the scene.
+/// Checks the demands of an exact solution on the scene.
 fn exact_fits(scene: &Scene, name: &str, exact: &dyn Exact, report: &mut Report) {
     let kind = scene.procedure.kind();
     let mut add = |problem: String, help: &str| {
@@ -124,7 +124,7 @@ fn exact_fits(scene: &Scene, name: &str, exact: &dyn Exact, report: &mut Report)
     }
 }
 
-/// Transfers go to points that there are.
+/// Checks that the target points of transfers exist.
 fn targets(scene: &Scene, report: &mut Report) {
     let solved = is_solved(scene);
     for (i, transfer) in scene.output.transfers.iter().enumerate() {
@@ -144,25 +144,25 @@ fn targets(scene: &Scene, report: &mut Report) {
     }
 }
 
-/// Whether probes can be compared with an exact solution on their way.
+/// Whether probes can be compared with an exact solution over time.
 fn moves(scene: &Scene) -> bool {
     scene.procedure.ramp().is_some()
         && !scene.output.probes.is_empty()
         && matches!(scene.reference, Some(Reference::Exact { .. }))
 }
 
-/// Whether the exact solution is that of a contact.
+/// Whether the exact solution describes a contact.
 fn presses(scene: &Scene) -> bool {
     let Some(Reference::Exact { entry, values }) = &scene.reference else { return false };
     exact(scene, entry, values).is_ok_and(|exact| exact.contact().is_some())
 }
 
-/// Whether the reference is a solution, run or stored.
+/// Whether the reference is a numerical solution, run or stored.
 fn is_solved(scene: &Scene) -> bool {
     matches!(scene.reference, Some(Reference::Method { .. } | Reference::Record(_)))
 }
 
-/// What a check, in the scene or in a study of it, demands of the scene; `key` is the path of the check.
+/// Checks the demands of a check, in the scene or in a study, on the scene; `key` is the path of the check.
 pub(crate) fn check(check: &Check, scene: &Scene, key: &str, report: &mut Report) {
     known_methods(&check.methods, scene, &format!("{key}.method"), report);
     let solved = is_solved(scene);
@@ -231,7 +231,7 @@ pub(crate) fn check(check: &Check, scene: &Scene, key: &str, report: &mut Report
     report.add(&format!("{key}.metric"), Problem::new(lacks).found(check.metric.name));
 }
 
-/// Every id is that of a method of the scene.
+/// Checks that every id is the id of a method in the scene.
 pub(crate) fn known_methods(ids: &[String], scene: &Scene, key: &str, report: &mut Report) {
     for id in ids.iter().filter(|id| scene.method(id).is_none()) {
         let help = which(id, scene.methods.iter().map(|m| m.id.as_str()));
@@ -239,7 +239,7 @@ pub(crate) fn known_methods(ids: &[String], scene: &Scene, key: &str, report: &m
     }
 }
 
-/// "exact" needs an exact solution.
+/// Checks that a scene with the word "exact" has an exact solution.
 fn exact_words(scene: &Scene, report: &mut Report) {
     if matches!(scene.reference, Some(Reference::Exact { .. })) {
         return;
@@ -260,7 +260,7 @@ fn exact_words(scene: &Scene, report: &mut Report) {
     }
 }
 
-/// Names of surfaces are those of the shape; judged before the rest of the scene is known to be sound.
+/// Checks names of surfaces against the shape, even if other parts of the scene are not valid.
 pub(crate) fn surfaces(body: &Body, supports: &[Support], loads: &[Option<Load>], report: &mut Report) {
     let Some(known) = body.surfaces() else { return };
     let supports = supports.iter().enumerate().map(|(i, s)| (format!("support[{i}].on"), &s.place));

@@ -1,4 +1,4 @@
-//! Entries of the catalogue as keys of a file: a name, and settings beside it.
+//! Entries of the catalogue as keys of a file: a name, and settings next to it.
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;
@@ -12,13 +12,13 @@ use serde_json::{Map, json};
 use super::report::Report;
 use crate::exact::{Exact, Medium};
 
-/// A kind of entries that files name.
+/// A kind of catalogue entries that files can name.
 pub(crate) trait Vocabulary: 'static {
-    /// Their constructor.
+    /// Constructor of the entries.
     type Build: 'static;
-    /// What one of them is called.
+    /// Noun for one entry in messages.
     const NOUN: &'static str;
-    /// All of them.
+    /// All entries.
     const ENTRIES: &'static [Entry<Self::Build>];
 }
 
@@ -49,10 +49,10 @@ impl<V: Vocabulary> JsonSchema for Word<V> {
     }
 }
 
-/// What stands beside the name: parameters of any entry, which [`settings`] holds against the one that is named.
+/// Settings next to the name: parameters of any entry, which [`settings`] checks against the named entry.
 pub(crate) struct Given<V>(BTreeMap<String, Setting>, PhantomData<V>);
 
-/// One value as a file has it.
+/// One value in a file.
 #[derive(Clone, Deserialize)]
 #[serde(untagged)]
 enum Setting {
@@ -63,7 +63,7 @@ enum Setting {
 }
 
 impl<V> Given<V> {
-    /// The names that are given.
+    /// Names of the given settings.
     pub fn names(&self) -> impl Iterator<Item = &str> {
         self.0.keys().map(String::as_str)
     }
@@ -84,7 +84,8 @@ impl<V: Vocabulary> JsonSchema for Given<V> {
         let mut properties = Map::new();
         for parameter in V::ENTRIES.iter().flat_map(|entry| entry.parameters) {
             let known = properties.entry(parameter.name).or_insert_with(|| property(parameter));
-            // Of several dimensions: which one it is of hangs on the entry, and is seen when that is known.
+            // Entries use this name with several dimensions. The dimension is checked when the entry is
+            // known.
             if known["x-quantity"] != property(parameter)["x-quantity"] {
                 *known = json!({ "type": "string", "description": parameter.meaning });
             }
@@ -113,8 +114,8 @@ fn property(parameter: &Parameter) -> serde_json::Value {
     schema
 }
 
-/// The settings of an entry at `key`; notes those that it does not take, those out of their range, and those it lacks. What
-/// comes back is whole only where nothing was noted.
+/// Settings of an entry at `key`. Reports settings that the entry does not have, values out of range, and
+/// missing settings. Returns `None` if anything was reported.
 pub(crate) fn settings<V: Vocabulary>(
     word: &Word<V>,
     given: Given<V>,
@@ -148,7 +149,7 @@ pub(crate) fn settings<V: Vocabulary>(
     sound.then_some(values)
 }
 
-/// What is right in place of a setting that an entry has not.
+/// Help for a setting that the entry does not have.
 fn of_entry<B>(entry: &Entry<B>, name: &str) -> String {
     match nearest(name, entry.parameters.iter().map(|parameter| parameter.name)) {
         Some(near) => format!("did you mean '{near}'?"),
@@ -170,10 +171,11 @@ fn read(setting: Setting, dimension: Dimension) -> Result<Value, Problem> {
     }
 }
 
-/// An entry whose values are all that it is made of.
+/// An entry constructed from its values alone.
 pub(crate) type Makes<T> = Entry<fn(&Values) -> Result<T, Problem>>;
 
-/// Makes what an entry is of; what its constructor refuses is noted at the parameter below `key` that it names, or `at`.
+/// Constructs the object of an entry. An error of the constructor is reported at the parameter below `key`
+/// that it names, or else at `at`.
 pub(crate) fn build<T>(
     entry: &Makes<T>,
     values: &Values,
@@ -187,8 +189,9 @@ pub(crate) fn build<T>(
     (entry.build)(values).map_err(noted).ok()
 }
 
-/// The schema of a table that names an entry by the key `tag`, has its settings and the keys `K` of every entry of its kind:
-/// one form for each entry, so that a setting of another is no key of this one.
+/// The schema of a table that names an entry by the key `tag` and has its settings, together with the keys
+/// `K` of all entries of the kind. There is one form for each entry, so that a setting of another entry is
+/// not a valid key.
 pub(crate) fn tagged<V: Vocabulary, K: JsonSchema>(
     tag: &str,
     meaning: &str,

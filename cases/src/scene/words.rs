@@ -1,4 +1,4 @@
-//! Words that files choose from, declared once: what each is called in files and what it means.
+//! Words that files choose from, declared once: variant, name in files and meaning.
 
 use schemars::{Schema, json_schema};
 use serde::{Deserialize, Deserializer, de::Error as _};
@@ -6,8 +6,8 @@ use serde_json::json;
 
 use catalogue::suggest;
 
-/// Makes an enum whose variants are words of files. A variant's name in files stands behind it; its doc comment is what
-/// people read of it in the schema and in lists.
+/// Declares an enum whose variants are words in files. The name in files follows the variant. The doc comment
+/// of a variant is its meaning in the schema and in lists.
 macro_rules! words {
     (
         $(#[doc = $about:literal])+
@@ -22,7 +22,7 @@ macro_rules! words {
         }
 
         impl $Name {
-            /// All, in the order they are listed.
+            /// All variants, in the order of lists.
             $visibility const ALL: &[$Name] = &[$($Name::$Variant),+];
 
             /// The name in files and tables.
@@ -54,14 +54,14 @@ macro_rules! words {
 }
 pub(crate) use words;
 
-/// Which of the words a file has.
+/// Reads a word of a file; returns its index in `names`.
 pub(crate) fn read<'de, D: Deserializer<'de>>(deserializer: D, names: &[&str]) -> Result<usize, D::Error> {
     let text = String::deserialize(deserializer)?;
     let unknown = || D::Error::custom(format!("'{text}' is not known; {}", suggest(&text, names)));
     names.iter().position(|name| *name == text).ok_or_else(unknown)
 }
 
-/// The schema of a choice of words with their meanings; like that of a catalogue's entries.
+/// The schema of a choice of words with their meanings, in the form of a catalogue entry's schema.
 pub(crate) fn describe(about: &str, words: &[(&str, &str)]) -> Schema {
     let word = |(name, meaning): &(&str, &str)| json!({ "type": "string", "const": name, "description": meaning.trim() });
     json_schema!({ "description": about.trim(), "oneOf": words.iter().map(word).collect::<Vec<_>>() })

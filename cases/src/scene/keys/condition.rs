@@ -13,7 +13,7 @@ use crate::scene::vocabulary::{Given, ToolShapes, Word, tagged};
 use crate::scene::words::words;
 
 words! {
-    /// A field that is not written out.
+    /// A field that is given by its name.
     pub(crate) enum ExactWord {
         /// The values of the exact solution that `[reference]` names.
         Exact = "exact",
@@ -53,7 +53,7 @@ pub(crate) struct VectorOf<D: Dim> {
     pub of: [Expression; 3],
 }
 
-/// What a support prescribes along one axis
+/// Prescribed displacement along one axis
 #[derive(Deserialize, JsonSchema)]
 #[serde(untagged)]
 pub(crate) enum AxisKeys {
@@ -69,7 +69,7 @@ pub(crate) struct AxesKeys {
     pub z: Option<AxisKeys>,
 }
 
-/// Prescribed displacement: of some axes, of all three as [x, y, z], or "exact"
+/// Prescribed displacement: some axes, all three as [x, y, z], or "exact"
 #[derive(Deserialize, JsonSchema)]
 #[serde(untagged)]
 pub(crate) enum MoveKeys {
@@ -82,18 +82,18 @@ pub(crate) enum MoveKeys {
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct SupportKeys {
-    /// Names that the shape or the mesh file gives
+    /// Names given by the shape or the mesh file
     pub on: Option<Names>,
     /// Comparisons joined by 'and'
     #[serde(rename = "where")]
     pub place: Option<Region>,
-    /// Axes held at zero, such as "xyz"
+    /// Axes fixed at zero, such as "xyz"
     pub fix: Option<String>,
     #[serde(rename = "move")]
     pub motion: Option<MoveKeys>,
 }
 
-/// A given load: one of traction, pressure (along the inner normal) and body force
+/// A load: exactly one of traction, pressure (along the inner normal) and body force
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct LoadKeys {
@@ -118,7 +118,7 @@ pub(crate) struct ToolKeys {
     pub settings: Given<ToolShapes>,
 }
 
-/// What a tool has whatever its shape is
+/// Keys that every tool has, whatever its shape
 #[derive(Deserialize, JsonSchema)]
 pub(crate) struct BesideShape {
     pub name: String,
@@ -144,7 +144,7 @@ impl JsonSchema for ToolKeys {
     }
 }
 
-/// How a tool is driven: one of closure, force along its way, and mean pressure on its face
+/// Drive of a tool: one of closure, force along its direction of motion, and mean pressure on its face
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(extend("x-one-of" = ["closure", "force", "pressure"]))]

@@ -16,7 +16,7 @@ use crate::scene::units::{Length, Q, Unit};
 use crate::scene::vocabulary::{Given, Kernels, Word};
 use crate::scene::words::words;
 
-/// How fine: one of nodes, spacing, level, cells and file
+/// Mesh size: one of nodes, spacing, level, cells and file
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(extend("x-one-of" = ["level", "nodes", "spacing", "cells", "file"]))]
@@ -37,12 +37,12 @@ pub(crate) struct SizeKeys {
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct JitterKeys {
-    /// Of the cell size, below 0.5
+    /// Fraction of the cell size, below 0.5
     pub fraction: f64,
     pub seed: u64,
 }
 
-/// A way to solve the scene
+/// A method that solves the scene
 #[derive(Deserialize)]
 #[serde(tag = "family", rename_all = "kebab-case")]
 pub(crate) enum MethodKeys {
@@ -53,7 +53,7 @@ pub(crate) enum MethodKeys {
     OverMesh(OverMeshKeys),
 }
 
-/// A way to solve the scene
+/// A method that solves the scene
 #[derive(JsonSchema)]
 #[serde(tag = "family", rename_all = "kebab-case")]
 #[allow(dead_code)] // the schema of the families whose keys are types
@@ -62,7 +62,7 @@ enum TypedKeys {
     Fem(FemKeys),
     /// Element-free Galerkin
     Efg(Box<EfgKeys>),
-    /// A solver outside this program, which an adapter calls
+    /// An external solver, called by an adapter
     External(Box<ExternalKeys>),
 }
 
@@ -71,7 +71,7 @@ impl JsonSchema for MethodKeys {
         "method".into()
     }
 
-    /// One form for each family.
+    /// The schema, with one form for each family.
     fn json_schema(generator: &mut SchemaGenerator) -> Schema {
         let mut schema = TypedKeys::json_schema(generator);
         let others = OverMeshKeys::json_schema(generator).to_value();
@@ -91,12 +91,12 @@ pub(crate) struct FemKeys {
     pub series: Option<String>,
     pub element: Element,
     pub dilation: Option<Dilation>,
-    /// Hex20 with 2 x 2 x 2 instead of 3 x 3 x 3 points
+    /// Whether hex20 has 2 x 2 x 2 integration points instead of 3 x 3 x 3
     #[serde(default)]
     pub reduced: bool,
     pub size: SizeKeys,
     pub jitter: Option<JitterKeys>,
-    /// What moves in vibrations; kind = "modes" only
+    /// Mass matrix for vibrations; kind = "modes" only
     pub mass: Option<Mass>,
 }
 
@@ -106,25 +106,26 @@ pub(crate) struct EfgKeys {
     pub id: String,
     /// Methods of one series differ in size only; the id unless given
     pub series: Option<String>,
-    /// Exact number of nodes; or size
+    /// Exact number of nodes; give nodes or size
     pub nodes: Option<u32>,
-    /// Size of the mesh whose nodes form the cloud; or nodes
+    /// Size of the mesh whose nodes form the cloud; give nodes or size
     pub size: Option<SizeKeys>,
-    /// Nodes of the cloud; mesh with size, uniform with nodes unless given
+    /// Kind of cloud; unless given, mesh with size and uniform with nodes
     pub cloud: Option<CloudKeys>,
-    /// Regions that a graded cloud is denser in
+    /// Regions in which a graded cloud is denser
     pub graded_towards: Option<Region>,
-    /// Of a uniform or graded cloud
+    /// Seed of a uniform or graded cloud
     pub seed: Option<u64>,
     pub jitter: Option<JitterKeys>,
-    /// Not with basis = "maximum-entropy"
+    /// Kernel; not with basis = "maximum-entropy"
     pub kernel: Option<KernelKeys>,
-    /// Support radius over the local spacing; or neighbours and factor
+    /// Support radius over the local spacing; give this, or neighbours and factor
     pub support_scale: Option<f64>,
     /// Support radius over the distance to this neighbour
     pub neighbours: Option<u32>,
     pub factor: Option<f64>,
-    /// Balls unless given, or ellipsoids that follow the cells of the mesh whose nodes form the cloud
+    /// Shape of the supports: balls unless given, or ellipsoids that follow the cells of the mesh whose nodes
+    /// form the cloud
     pub neighbourhood: Option<SupportShape>,
     pub basis: BasisKeys,
     /// Locality of maximum-entropy functions, 0.6 to 6; 1.8 unless given
@@ -132,15 +133,16 @@ pub(crate) struct EfgKeys {
     pub integration: IntegrationKeys,
     pub essential: EssentialKeys,
     pub dilation: Option<Dilation>,
-    /// What shape functions do at the borders of material regions; separate with essential = "coupling" only
+    /// Treatment of the borders of material regions by the shape functions; separate with essential =
+    /// "coupling" only
     pub regions: Option<Regions>,
-    /// Size of the mesh to integrate over
+    /// Size of the mesh of integration cells
     pub background: Option<SizeKeys>,
-    /// What moves in vibrations; kind = "modes" only
+    /// Mass matrix for vibrations; kind = "modes" only
     pub mass: Option<Mass>,
 }
 
-/// A cloud by name, or where its nodes are from
+/// A cloud by name, or a table with the source of its nodes
 #[derive(Deserialize, JsonSchema)]
 #[serde(untagged)]
 pub(crate) enum CloudKeys {
@@ -152,11 +154,12 @@ pub(crate) enum CloudKeys {
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct CloudTable {
-    /// Lines of x, y, z between commas, with or without column names, or a mesh file (.msh, .inp, .vtu, .vtk)
+    /// A file with lines of x, y, z separated by commas, with or without column names, or a mesh file (.msh,
+    /// .inp, .vtu, .vtk)
     pub file: Option<String>,
     /// Unit of the numbers in the file
     pub unit: Option<Unit<Length>>,
-    /// Makes the cloud denser where its error is larger
+    /// Refinement: the cloud is denser in areas of larger error
     pub refine: Option<RefineKeys>,
 }
 
@@ -164,16 +167,16 @@ pub(crate) struct CloudTable {
 #[serde(deny_unknown_fields)]
 pub(crate) struct RefineKeys {
     pub by: Indicator,
-    /// How often the cloud is regenerated; 2 unless given
+    /// Number of times the cloud is regenerated; 2 unless given
     pub steps: Option<u32>,
-    /// Coarsest over finest spacing at most; 3 unless given
+    /// Largest ratio of coarsest to finest spacing; 3 unless given
     pub ratio: Option<f64>,
 }
 
 words! {
-    /// Estimate of the error that a cloud is refined by.
+    /// Error estimate that refines a cloud.
     pub(crate) enum Indicator {
-        /// Displacement gradients against recovered ones.
+        /// Difference between displacement gradients and recovered gradients.
         GradientError = "gradient-error",
     }
 }
@@ -189,11 +192,11 @@ pub(crate) enum BasisKeys {
 words! {
     /// Clouds by name.
     pub(crate) enum CloudName {
-        /// The nodes of a mesh of this size.
+        /// The nodes of a mesh of the given size.
         Mesh = "mesh",
-        /// Quasi-uniform, with this number of nodes.
+        /// Quasi-uniform, with the given number of nodes.
         Uniform = "uniform",
-        /// Denser towards the region `graded_towards`, with this number of nodes.
+        /// Denser towards the region `graded_towards`, with the given number of nodes.
         Graded = "graded",
     }
 }
@@ -218,34 +221,34 @@ pub(crate) struct KernelTable {
 pub(crate) enum IntegrationKeys {
     /// Gauss points in the tetrahedra or hexahedra of the background mesh
     Gauss {
-        /// Points per cell; in a tetrahedron 1, 4, 8, 14, 15, 24, 35 and 46 are known
+        /// Points per cell; tetrahedra have rules of 1, 4, 8, 14, 15, 24, 35 and 46 points
         points: u32,
     },
-    /// Gauss points in the cells of a grid, those outside the body left out
+    /// Gauss points in the cells of a grid, without the points outside the body
     Grid {
         /// Points per cell, a cube number
         points: u32,
-        /// Edge of a cell; the mean node spacing unless given
+        /// Edge length of a cell; the mean node spacing unless given
         spacing: Option<Q<Length>>,
     },
     /// Conforming strain smoothing over the tetrahedra of the background mesh
     CellSmoothed {
         /// Points per face: 1, 3 or 6; 1 unless given, and 6 with order 2
         points: Option<u32>,
-        /// 1 (unless given) is exact for linear displacements, 2 for quadratic ones (variationally consistent integration of
-        /// second order), as the quadratic basis needs
+        /// Order of exactness: 1 (unless given) for linear displacements, 2 for quadratic ones (variationally
+        /// consistent integration of second order), as the quadratic basis needs
         order: Option<u32>,
     },
     /// Strain smoothing over the quarters of the tetrahedra around each vertex of the background mesh
     NodeSmoothed {
-        /// Part of the weight that the tetrahedra keep, from 0 to below 1; 0.05 is usual
+        /// Fraction of the weight that stays on the tetrahedra, from 0 to below 1; 0.05 is usual
         stabilisation: f64,
         /// Points per face: 1, 3 or 6; 1 unless given
         points: Option<u32>,
     },
 }
 
-/// How prescribed displacements are imposed
+/// Method of imposing prescribed displacements
 #[derive(Deserialize, JsonSchema)]
 #[serde(untagged)]
 pub(crate) enum EssentialKeys {
@@ -253,13 +256,13 @@ pub(crate) enum EssentialKeys {
     Table(EssentialTable),
 }
 
-/// One of these with settings
+/// An essential condition with settings
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct EssentialTable {
     pub method: EssentialKind,
-    /// Stabilisation factor of Nitsche's method, or penalty factor; with these two only
+    /// Stabilisation factor of Nitsche's method, or penalty factor; with these two methods only
     pub factor: Option<f64>,
-    /// What the eliminated rows prescribe; with elimination only
+    /// Displacements prescribed by the eliminated rows; with elimination only
     pub rows: Option<ConstraintRows>,
 }

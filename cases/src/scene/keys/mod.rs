@@ -1,5 +1,5 @@
-//! The keys of a scene file, one type per table. The schema is generated from these types, and a file is checked against
-//! it; `resolve` turns them into the types the program works with.
+//! The keys of a scene file, one type per table. The schema is generated from these types, and files are
+//! checked against the schema. `resolve` converts the keys into the types used by the program.
 
 mod condition;
 mod method;
@@ -22,21 +22,21 @@ use super::region::Region;
 use super::units::{Density, Length, Q, Time, Unit};
 use super::vocabulary::{Given, Laws, Word, tagged};
 
-/// A scene: a body, its material, what holds and loads it, the methods to run, what to compare and what must hold.
+/// A scene: a body, its material, supports and loads, the methods to run, the reference, and the checks.
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct SceneKeys {
-    /// One line that says what the scene is
+    /// Title of the scene in one line
     pub title: String,
-    /// Where the case and its reference come from
+    /// Source of the case and its reference
     pub source: Option<String>,
-    /// What the scene is for; "smooth" unless given
+    /// Purpose of the scene; "smooth" unless given
     pub purpose: Option<Purpose>,
-    /// A published comparison of methods: its claim on run times and errors is tested by the results
+    /// A published comparison of methods; the results test its claim on run times and errors
     pub published: Option<Publication>,
     pub body: BodyKeys,
     pub material: MaterialKeys,
-    /// Parts of the body with a material of their own
+    /// Parts of the body with their own material
     #[serde(default)]
     pub region: Vec<RegionKeys>,
     #[serde(default)]
@@ -46,8 +46,8 @@ pub(crate) struct SceneKeys {
     #[serde(default)]
     pub tool: Vec<ToolKeys>,
     pub procedure: Option<ProcedureKeys>,
-    /// A file of methods that several scenes share, relative to the folder of the scene: a `[[method]]` takes one of them by
-    /// `use = "id"`
+    /// A file of methods that several scenes share, relative to the folder of the scene. A `[[method]]` takes
+    /// one of its methods by `use = "id"`
     #[allow(dead_code)] // read before the keys are, by `shared`
     pub methods_from: Option<String>,
     #[serde(default)]
@@ -105,18 +105,19 @@ pub(crate) enum BodyKeys {
         #[serde(default)]
         #[schemars(extend("x-surfaces" = surfaces::HALF))]
         half: bool,
-        /// Of the half: its meshes are drawn together less under the jaw's edges, for meshes so fine that thin cells fold (10,000 nodes)
+        /// Weaker grading of the half's meshes under the jaw's edges, for meshes so fine that thin cells fold
+        /// (10,000 nodes)
         #[serde(default)]
         mildly_graded: bool,
     },
-    /// The mesh of a file (Gmsh .msh, Abaqus or CalculiX .inp, VTK .vtu or .vtk), which names its surfaces itself; or a closed surface (STL, OBJ,
-    /// PLY)
+    /// A mesh file (Gmsh .msh, Abaqus or CalculiX .inp, VTK .vtu or .vtk), which names its own surfaces, or a
+    /// closed surface (STL, OBJ, PLY)
     File {
         /// The file, relative to the folder of the scene
         path: String,
         /// Unit of the numbers in the file
         unit: Unit<Length>,
-        /// Join pieces of meshes of this body whose faces coincide but share no nodes, also those of methods
+        /// Join pieces whose faces coincide without shared nodes, in all meshes of this body and its methods
         #[serde(default)]
         join: bool,
     },
@@ -132,7 +133,7 @@ pub(crate) struct MaterialKeys {
     pub settings: Given<Laws>,
 }
 
-/// What a material has whatever its law is
+/// Keys that every material has, whatever its law
 #[derive(Deserialize, JsonSchema)]
 pub(crate) struct BesideLaw {
     pub density: Option<Q<Density>>,
@@ -150,7 +151,7 @@ impl JsonSchema for MaterialKeys {
     }
 }
 
-/// A share of the shear response that relaxes, and its time
+/// A share of the shear response that relaxes, with its relaxation time
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct PronyKeys {
@@ -162,7 +163,7 @@ pub(crate) struct PronyKeys {
 #[serde(deny_unknown_fields)]
 pub(crate) struct RegionKeys {
     pub name: String,
-    /// A volume that the mesh file names
+    /// A volume named in the mesh file
     pub on: Option<Names>,
     #[serde(rename = "where")]
     pub place: Option<Region>,

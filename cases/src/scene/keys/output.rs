@@ -12,15 +12,16 @@ use crate::scene::words::words;
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct OutputKeys {
-    /// Points to report
+    /// Points at which results are reported
     pub probes: Option<Vec<[Q<Length>; 3]>>,
-    /// Faces whose mean displacement is reported, by area: [{ on = "z-max" }, { where = "z == 20 mm and x >= 3 mm" }]
+    /// Faces whose area mean of the displacement is reported: [{ on = "z-max" }, { where = "z == 20 mm and x
+    /// >= 3 mm" }]
     pub means: Option<Vec<MeanKeys>>,
     pub transfer: Option<TransfersKeys>,
-    /// A method of this scene that every run is compared with at the targets too, beside the reference: a published one whose
-    /// own error is part of a published difference
+    /// Secondary reference: a method of this scene that every run is also compared with at the targets. For a
+    /// published method whose own error is part of a published difference
     pub beside: Option<String>,
-    /// The loading played again and again after the first solution, as a simulator does, each frame timed
+    /// Repetition of the loading after the first solution, as in a simulator, with each frame timed
     pub repeated: Option<RepeatedKeys>,
 }
 
@@ -28,24 +29,24 @@ pub(crate) struct OutputKeys {
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct MeanKeys {
-    /// Names that the shape or the mesh file gives
+    /// Names given by the shape or the mesh file
     pub on: Option<Names>,
     /// Comparisons joined by 'and'
     #[serde(rename = "where")]
     pub place: Option<Region>,
 }
 
-/// A simulator's loop: the loading goes up and down, a frame at a time, prepared once
+/// A simulator's loop: prepared once, the loading goes up and down frame by frame
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct RepeatedKeys {
-    /// Frames in all; percentiles above 99 need 1000
+    /// Total number of frames; percentiles above 99 need 1000
     pub frames: u32,
-    /// Frames of one way up and down; 120 unless given, 4 s at 30 Hz
+    /// Frames of one cycle up and down; 120 unless given, 4 s at 30 Hz
     pub cycle: Option<u32>,
-    /// Time after which no further frame is started; 10 s unless given
+    /// Time after which no further frame starts; 10 s unless given
     pub within: Option<Q<Time>>,
-    /// Relative residual to which a frame of Newton's method is solved; the procedure's tolerance unless given
+    /// Relative residual of a frame solved by Newton's method; the procedure's tolerance unless given
     pub tolerance: Option<f64>,
 }
 
@@ -66,7 +67,7 @@ pub(crate) struct TransferKeys {
     pub settings: Given<Schemes>,
 }
 
-/// A transfer scheme, or "own": the shape functions of the method itself
+/// A transfer scheme, or "own": the method's own shape functions
 #[derive(Deserialize, JsonSchema)]
 #[serde(untagged)]
 pub(crate) enum SchemeKeys {
@@ -77,7 +78,7 @@ pub(crate) enum SchemeKeys {
 words! {
     /// A transfer without a scheme.
     pub(crate) enum OwnWord {
-        /// The shape functions of the method itself.
+        /// The method's own shape functions.
         Own = "own",
     }
 }
@@ -91,7 +92,7 @@ pub(crate) enum TargetKeys {
 }
 
 words! {
-    /// Points that a transfer goes to.
+    /// Target points of a transfer.
     pub(crate) enum TargetName {
         /// The nodes of the reference method.
         ReferenceNodes = "reference-nodes",
@@ -107,16 +108,16 @@ pub(crate) struct MeshFileKeys {
     pub unit: Option<Unit<Length>>,
 }
 
-/// What results are compared with; further keys are parameters of the exact solution
+/// Reference that results are compared with; further keys are parameters of the exact solution
 #[derive(Deserialize, JsonSchema)]
-// Which of them are known hangs on the solution, so that its own are named where one is mistyped.
+// The known parameters depend on the solution. Its reader names them if a key is mistyped.
 #[schemars(extend("additionalProperties" = {}))]
 pub(crate) struct ReferenceKeys {
     /// An exact solution by name
     pub exact: Option<Word<Solutions>>,
     /// A stored record
     pub record: Option<String>,
-    /// A method of this scene, run at another size if one is given
+    /// A method of this scene, run at another size if `size` is given
     pub method: Option<String>,
     pub size: Option<SizeKeys>,
     #[serde(flatten)]
@@ -131,12 +132,12 @@ pub(crate) enum NumberKeys {
     Quantity(String),
 }
 
-/// What must hold
+/// A bound on a result
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct CheckKeys {
     pub metric: String,
-    /// The methods it holds for; all unless given
+    /// Methods that the check applies to; all unless given
     pub method: Option<Names>,
     pub at_most: Option<NumberKeys>,
     pub at_least: Option<NumberKeys>,

@@ -1,4 +1,4 @@
-//! Supports and loads.
+//! Conversion of supports and loads.
 
 use crate::scene::field::{Prescribed, ScalarField, VectorField};
 use crate::scene::keys::*;
@@ -82,7 +82,7 @@ pub(super) fn support(keys: SupportKeys, index: usize, report: &mut Report) -> S
     Support { place, motion }
 }
 
-/// Adds what is prescribed along the axes, each at its key.
+/// Adds the prescribed displacements along the axes, each at its key.
 fn moved(
     motion: &mut [Option<Prescribed>; 3],
     axes: [Option<AxisKeys>; 3],

@@ -94,7 +94,7 @@ fn efg_method(keys: EfgKeys, key: &str, report: &mut Report) -> Option<Method> {
     Some(Method { id: keys.id, series, family: Family::Efg(efg), mass: keys.mass })
 }
 
-/// What clouds that are coupled to finite elements are made of.
+/// Checks the demands of coupling to finite elements on the cloud and its functions.
 fn coupling(cloud: &Cloud, functions: &Functions, key: &str, report: &mut Report) {
     let linear = matches!(functions, Functions::MovingLeastSquares { basis: Basis::Linear, .. });
     report.require(
@@ -111,7 +111,7 @@ fn coupling(cloud: &Cloud, functions: &Functions, key: &str, report: &mut Report
     );
 }
 
-/// What a file says of a cloud; `size` is `Some(None)` where it could not be read.
+/// Keys of a file about a cloud; `size` is `Some(None)` if it could not be read.
 struct Layout {
     nodes: Option<usize>,
     size: Option<Option<Size>>,
@@ -122,7 +122,7 @@ struct Layout {
     jitter: Option<Jitter>,
 }
 
-/// What a cloud's table is.
+/// Meaning of a cloud's table.
 enum Source {
     File(MeshFile),
     Refine(Refine),
@@ -205,7 +205,7 @@ fn cloud(layout: Layout, key: &str, report: &mut Report) -> Option<Cloud> {
     }
 }
 
-/// What a file says of how far nodes reach.
+/// Keys of a file about the supports of nodes.
 struct Reach {
     support_scale: Option<f64>,
     neighbours: Option<u32>,
@@ -443,10 +443,10 @@ pub(crate) fn size(keys: SizeKeys, key: &str, report: &mut Report) -> Option<Siz
     }
 }
 
-/// More nodes or cells than this are a slip of the pen: the memory of a large machine would not hold the matrix.
+/// Largest number of nodes or cells: beyond it the memory of a large machine could not hold the matrix.
 const MOST: usize = 20_000_000;
 
-/// A number of nodes.
+/// Checks a number of nodes.
 fn count(n: u32, key: &str, report: &mut Report) -> usize {
     let help = format!("give 4 to {MOST}");
     report.require((4..=MOST).contains(&(n as usize)), key, "is no number of nodes", &help);

@@ -1,4 +1,4 @@
-//! From the keys of a file to the types the program works with; every finding is noted at its key.
+//! Conversion of the keys of a file into the types used by the program; every finding is reported at its key.
 
 mod condition;
 mod material;
@@ -25,10 +25,10 @@ use output::{output, reference};
 use serde::Deserialize;
 use tool::tool;
 
-/// Unit of a mesh file's numbers unless the scene gives another: what CAD programs and Gmsh models of organs are in.
+/// Default unit of a mesh file's numbers, which CAD programs and Gmsh models of organs use, in metres.
 const MILLIMETRE: f64 = 1e-3;
 
-/// `None` only together with findings.
+/// Converts a scene; returns `None` only if there are findings.
 pub(crate) fn scene(keys: SceneKeys, report: &mut Report) -> Option<Scene> {
     let body = body(keys.body, report);
     let material = material(keys.material, "material", report);
@@ -69,7 +69,7 @@ pub(crate) fn scene(keys: SceneKeys, report: &mut Report) -> Option<Scene> {
     })
 }
 
-/// What holds and loads the body, the names of its surfaces checked where the body is known.
+/// Converts supports and loads; checks the names of surfaces if the body is known.
 fn conditions(
     body: Option<&Body>,
     supports: Vec<SupportKeys>,
@@ -85,7 +85,7 @@ fn conditions(
     (supports, loads.into_iter().flatten().collect())
 }
 
-/// The parts of a scene whose keys are sound, where those of other parts are not.
+/// The parts of a scene with valid keys, if the keys of other parts are not valid.
 #[derive(Deserialize)]
 pub(crate) struct SoundParts {
     body: Option<BodyKeys>,
@@ -96,7 +96,7 @@ pub(crate) struct SoundParts {
     load: Vec<LoadKeys>,
 }
 
-/// Notes what is wrong with them, so that a mistake in one part hides none in another.
+/// Reports errors in these parts, so that an error in one part hides none in another.
 pub(crate) fn parts(keys: SoundParts, report: &mut Report) {
     let body = keys.body.and_then(|keys| body(keys, report));
     keys.material.and_then(|keys| material(keys, "material", report));

@@ -1,4 +1,4 @@
-//! What a scene reports, compares with and checks.
+//! Conversion of output, reference and checks.
 
 use crate::scene::error::ErrorKind;
 use crate::scene::keys::*;
@@ -43,7 +43,7 @@ pub(super) fn output(keys: Option<OutputKeys>, report: &mut Report) -> Output {
     Output { transfers, probes, means, beside: keys.beside, repeated }
 }
 
-/// Frames of nine hours at 30 Hz; the time of each is kept.
+/// Largest number of frames: nine hours at 30 Hz, with the time of each frame stored.
 const MOST_FRAMES: usize = 1_000_000;
 
 fn repeated(keys: RepeatedKeys, report: &mut Report) -> Repeated {
@@ -110,7 +110,7 @@ pub(super) fn reference(keys: ReferenceKeys, report: &mut Report) -> Option<Refe
     }
 }
 
-/// Checks of a scene or of a run of a study; `key` is the path of their list.
+/// Converts the checks of a scene or of a run of a study; `key` is the path of their list.
 pub(crate) fn checks(keys: Vec<CheckKeys>, key: &str, report: &mut Report) -> Vec<Check> {
     keys.into_iter().enumerate().filter_map(|(i, c)| check(c, &format!("{key}[{i}]"), report)).collect()
 }
@@ -156,7 +156,7 @@ fn check(keys: CheckKeys, key: &str, report: &mut Report) -> Option<Check> {
             let at_most = high.map(|high| bound(high, "at_most", report));
             let stray = keys.reason.is_some();
             report.require(!stray, &format!("{key}.reason"), "goes with known_band only", "leave it out");
-            // A bound that could not be read is noted already; the check is dropped with it.
+            // A bound that could not be read is already reported; the check is dropped.
             let (at_least, at_most) =
                 (at_least.map_or(Some(None), |b| b.map(Some))?, at_most.map_or(Some(None), |b| b.map(Some))?);
             if let (Some(low), Some(high)) = (at_least, at_most) {
