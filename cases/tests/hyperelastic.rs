@@ -1,4 +1,4 @@
-//! Laws by principal stretches and homogeneous states: what holds for every isotropic law.
+//! Laws in principal stretches and homogeneous states: properties of every isotropic law.
 
 use cases::exact::{
     Elastic, Exact as _, FiniteBending, Hertz, Homogeneous, Hyperelastic, Matrix3, Point3, Vector3,
@@ -20,7 +20,7 @@ fn laws(poisson: f64) -> [Hyperelastic; 5] {
 
 #[test]
 fn principal_stresses_derive_from_an_energy() {
-    // dP_a/dl_b = dP_b/dl_a, by central differences of step 1e-5: 1e-10 of truncation, 1e-11 of rounding.
+    // dP_a/dl_b = dP_b/dl_a, by central differences with step 1e-5: truncation 1e-10, rounding 1e-11.
     let (at, h) = ([1.4, 0.7, 1.1], 1e-5);
     for law in laws(0.4) {
         let slope = |a: usize, b: usize| {
@@ -102,10 +102,11 @@ fn a_bar_pulled_to_nothing_is_refused() {
 fn hertz_balances_its_far_field() {
     let (elastic, radius, depth) = (Elastic::new(YOUNG, 0.3).unwrap(), 0.01, 1e-5);
     let hertz = Hertz::new(elastic, radius, depth).unwrap();
-    // F = (2/3) p0 pi a^2 (Johnson, eq. 4.23): the pressure's resultant.
+    // F = (2/3) p0 pi a^2 (Johnson, eq. 4.23) is the resultant of the pressure.
     let resultant = 2.0 / 3.0 * hertz.peak_pressure() * std::f64::consts::PI * hertz.contact_radius().powi(2);
     assert!((resultant / hertz.force() - 1.0).abs() < 1e-14);
-    // Tractions of the far field on a half sphere of radius L, by differences of step 1e-4 L and midpoint sums.
+    // Tractions of the far field on a half sphere of radius L, by differences with step 1e-4 L and midpoint
+    // sums.
     let (length, n) = (0.02, 400);
     let (h, mut force) = (1e-4 * length, 0.0);
     for k in 0..n {
@@ -131,12 +132,13 @@ fn bent_blocks_balance_their_moments_and_keep_the_volume_when_nearly_incompressi
     let law = Hyperelastic::NeoHookean(Elastic::new(YOUNG, 0.49999).unwrap());
     let bent = FiniteBending::new(&law, thickness, curvature).unwrap();
     let [inner, middle, outer] = [-0.5, 0.0, 0.5].map(|s| bent.radius(s * thickness));
-    // Rivlin: r^2 is linear in X, k (r_o^2 - r_i^2) = 2 h, and the faces are free when r_i r_o = 1 / k^2.
+    // Rivlin: r^2 is linear in X, k (r_o^2 - r_i^2) = 2 h, and the faces are free if r_i r_o = 1 / k^2.
     let volume = curvature * (outer * outer - inner * inner) / (2.0 * thickness);
     assert!((volume - 1.0).abs() < 1e-4, "{volume}");
     assert!((middle * middle / (0.5 * (inner * inner + outer * outer)) - 1.0).abs() < 1e-5, "{middle}");
     assert!((inner * outer * curvature * curvature - 1.0).abs() < 1e-4, "{inner} {outer}");
-    // No resultant force: P_t sums up to zero over the thickness, because both faces are free (Simpson).
+    // The resultant force vanishes: P_t sums to zero over the thickness, because both faces are free
+    // (Simpson).
     let law = Hyperelastic::NeoHookean(Elastic::new(YOUNG, 0.3).unwrap());
     let bent = FiniteBending::new(&law, thickness, curvature).unwrap();
     let stress = |s: f64| {

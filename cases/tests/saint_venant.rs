@@ -1,4 +1,4 @@
-//! The three-dimensional flexure of a bar: its boundary conditions, and the errors of a finite element mesh against it.
+//! The three-dimensional flexure of a bar: its boundary conditions, and the errors of a finite element mesh.
 
 use cases::exact::{Elastic, Exact, Point3, SaintVenantFlexure, Vector3};
 use fem::{SurfaceRule, VolumeRule, surface_rows, volume_rows};
@@ -36,7 +36,8 @@ fn sides_are_free_up_to_the_edges() {
     }
 }
 
-/// Gauss points drawn towards both ends by `t = (3 s - s^3) / 2`, where the shear has its corner singularities.
+/// Gauss points clustered by `t = (3 s - s^3) / 2` at both ends, the location of the shear's corner
+/// singularities.
 fn drawn(points: usize, half: f64) -> Vec<(f64, f64)> {
     let (s, w) = gauss_legendre(points);
     s.iter()
@@ -78,16 +79,16 @@ fn the_root_is_held_at_its_centroid() {
 
 #[test]
 fn shear_of_a_square_section_is_as_tabulated() {
-    // Timoshenko & Goodier's table for nu = 0.25: 1.5 P/A is exceeded at the flanks and not reached at the centre,
-    // by the factors 1.126 and 0.940 for a square.
+    // Timoshenko & Goodier's table for nu = 0.25: the shear is above 1.5 P/A at the flanks and below it at
+    // the centre, by the factors 1.126 and 0.940 for a square.
     let exact = bar(0.25, [1.0, 1.0]);
     let ratio = |z: f64| exact.stress(&Point3::new(1.0, 0.0, z))[(0, 1)] / (1.5 * 2.0);
     assert!((ratio(0.0) - 0.940).abs() < 1e-3, "centre {}", ratio(0.0));
     assert!((ratio(0.5) - 1.126).abs() < 1e-3, "flank {}", ratio(0.5));
 }
 
-/// Relative energy error and relative L2 displacement error of a uniform mesh: exact displacement at the nodes of the
-/// root, exact shear traction on the end, sides free.
+/// Relative energy error and relative L2 displacement error of a uniform mesh, with the exact displacement at
+/// the nodes of the root, the exact shear traction on the end, and free sides.
 fn errors(kind: CellKind, cells: [usize; 3]) -> [f64; 2] {
     let (young, poisson) = (1000.0, 0.3);
     let exact = bar(poisson, [1.0, 1.0]);
@@ -122,9 +123,10 @@ fn errors(kind: CellKind, cells: [usize; 3]) -> [f64; 2] {
     sums.map(|[error, norm]| f64::sqrt(error / norm))
 }
 
-/// Other codes' errors for this problem, to the six digits they are known by. The shear traction is no polynomial, so
-/// the digits belong to its quadrature of 5 x 5 points a face and to the norms' 4 x 4 x 4 points a cell:
-/// with 10 x 10 points a face the L2 error is 1.685e-4, with 5 x 5 x 5 points a cell the energy error is 0.0174306.
+/// Errors of other codes for this problem, to the six digits in which they are known. The shear traction is
+/// not a polynomial, so the digits depend on its quadrature of 5 x 5 points per face and on the norms' 4 x 4
+/// x 4 points per cell. With 10 x 10 points per face the L2 error is 1.685e-4; with 5 x 5 x 5 points per cell
+/// the energy error is 0.0174306.
 #[test]
 fn hex20_has_the_errors_of_other_codes() {
     let [energy, l2] = errors(CellKind::Hex20, [10, 2, 2]);
@@ -134,7 +136,7 @@ fn hex20_has_the_errors_of_other_codes() {
 
 #[test]
 fn errors_fall_at_the_orders_of_theory() {
-    // Coarsest pairs that are asymptotic enough; theory is order + 1 in displacement, order in energy.
+    // The coarsest pairs in the asymptotic range; theory gives order + 1 in displacement, order in energy.
     for (kind, coarse) in [(CellKind::Hex8, [20, 4, 4]), (CellKind::Hex20, [10, 2, 2])] {
         let (first, second) = (errors(kind, coarse), errors(kind, coarse.map(|n| 2 * n)));
         let order = kind.order() as f64;

@@ -47,7 +47,7 @@ pub enum Setting {
 #[serde(deny_unknown_fields)]
 pub(crate) struct ExternalKeys {
     pub id: String,
-    /// Series of the method, whose methods differ in size only; the id unless given
+    /// Name of the series, whose methods differ in size only; the id unless given
     pub series: Option<String>,
     /// Name of the adapter, as `tissuebench adapter list` prints it
     pub adapter: String,

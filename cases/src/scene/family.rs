@@ -77,7 +77,7 @@ pub(crate) struct OverMeshKeys {
 #[derive(Deserialize, JsonSchema)]
 struct BesideFamily {
     id: String,
-    /// Series of the method, whose methods differ in size only; the id unless given
+    /// Name of the series, whose methods differ in size only; the id unless given
     series: Option<String>,
     dilation: Option<Dilation>,
     size: SizeKeys,

@@ -1,4 +1,4 @@
-//! One list of properties over every exact solution, then the boundary conditions that make each one what it is.
+//! One list of properties for every exact solution, and the boundary conditions specific to each.
 
 mod moving;
 
@@ -10,7 +10,8 @@ use cases::exact::{
 use cases::scene::{Bound, load};
 use proptest::prelude::*;
 
-/// A solution's name, its parameters, and the box its points are drawn from (for the sphere: outside of the hole).
+/// A solution's name, its parameters, and the box from which its points are drawn (for the sphere outside of
+/// the hole).
 type Sample = (&'static str, &'static [(&'static str, f64)], [[f64; 2]; 3]);
 
 const UNIT: [[f64; 2]; 3] = [[-1.0, 1.0]; 3];
@@ -59,10 +60,11 @@ const SAMPLES: [Sample; 14] = [
     ),
 ];
 
-/// What moves is at rest at time 0; it has tests of its own, at other times.
+/// Solutions that are at rest at time 0; separate tests check them at other times.
 const IN_TIME: [&str; 2] = ["bar-wave", "relaxing-compression"];
 
-/// Solutions at large strain, of a block of one metre; and of a contact, far below it.
+/// Solutions at large strain, for a block of one metre; and a contact solution, evaluated far below the
+/// contact.
 const LARGE: [(&str, &[(&str, f64)]); 4] = [
     ("free-slip-stretch", &[("stretch", 0.6)]),
     ("confined-stretch", &[("stretch", 1.4)]),
@@ -85,7 +87,7 @@ fn place(bounds: &[[f64; 2]; 3], s: [f64; 3]) -> Point3 {
     Point3::from(Vector3::from_fn(|i, _| bounds[i][0] + s[i] * (bounds[i][1] - bounds[i][0])))
 }
 
-/// Fourth-order central difference of a field along an axis, of step 1e-3 m: exact up to quartic fields.
+/// Fourth-order central difference of a field along an axis, with step 1e-3 m: exact up to quartic fields.
 fn slope<T>(field: impl Fn(&Point3) -> T, x: &Point3, axis: usize) -> T
 where
     T: std::ops::Sub<Output = T> + std::ops::Mul<f64, Output = T>,
@@ -114,7 +116,8 @@ proptest! {
             let gradient = exact.gradient(&x);
             let size = gradient.norm();
 
-            // The gradient is that of the displacement. Rounding of u over the step: 1e-16 u / 1e-3.
+            // The gradient is the derivative of the displacement. Rounding of u over the step: 1e-16 u /
+            // 1e-3.
             let differences = Matrix3::from_columns(&[0, 1, 2].map(|j| slope(|p| exact.displacement(p), &x, j)));
             let error = (differences - gradient).norm();
             prop_assert!(error < 1e-9 * size, "{name}: gradient off by {error:e} of {size:e} at {x}");
@@ -127,7 +130,7 @@ proptest! {
             prop_assert!(error <= allowed, "{name}: Hooke's law off by {error:e}, allowed {allowed:e}");
             prop_assert!((stress - stress.transpose()).norm() == 0.0, "{name}: unsymmetric stress");
 
-            // Equilibrium: div sigma + b = 0, against the sizes that cancel in it.
+            // Equilibrium: div sigma + b = 0, relative to the terms that cancel.
             let slopes = [0, 1, 2].map(|j| slope(|p| exact.stress(p), &x, j));
             let divergence: Vector3 = (0..3).map(|j| slopes[j].column(j).into_owned()).sum();
             let sizes: f64 = slopes.iter().map(|s| s.norm()).sum::<f64>() + stress.norm() + hooke.norm();
@@ -150,8 +153,9 @@ fn the_list_holds_every_solution() {
     }
 }
 
-/// The gradient is that of the displacement, `Div P = 0` with `P` from tractions of the undeformed planes, and Cauchy's stress
-/// is `P F^T / J`. The radius of a bent block is a chain of a hundred cubics, whose second derivative is best at (3 - sqrt(3)) / 6 of each.
+/// The gradient is the derivative of the displacement, `Div P = 0` with `P` from tractions of the undeformed
+/// planes, and Cauchy's stress is `P F^T / J`. The radius of a bent block is a chain of a hundred cubics. The
+/// second derivative of a cubic is most accurate at (3 - sqrt(3)) / 6 of its interval.
 #[test]
 fn solutions_at_large_strain_solve_their_equations() {
     let elastic = Elastic::new(YOUNG, 0.3).unwrap();
@@ -177,7 +181,7 @@ fn solutions_at_large_strain_solve_their_equations() {
             }
         }
     }
-    // Hooke's law has no such solution, and says so.
+    // Hooke's law has no such solution, and the error says so.
     let none = exact_by_name("simple-shear", &medium(0.3), &[("shear", 0.1)]).map(|_| ()).unwrap_err();
     assert!(none.to_string().contains("at large strain, which the law is not"), "{none}");
 }
@@ -202,7 +206,7 @@ fn the_field_far_from_a_contact_is_in_equilibrium() {
 
 #[test]
 fn stresses_of_prescribed_loads_do_not_depend_on_poisson() {
-    // Two of these have stresses that are free of nu: locking is judged against them, so no digit may be lost.
+    // Two of these have stresses independent of nu. Locking is judged by them, so no digit may be lost.
     let x = Point3::new(0.7, 0.2, -0.4);
     for name in ["pure-bending", "uniaxial-compression"] {
         let sample = SAMPLES.iter().find(|s| s.0 == name).unwrap();
@@ -234,7 +238,7 @@ fn plane_strain_cantilever_carries_its_load() {
         let inner = Point3::new(17.0, 1.3, 2.0);
         let on_plane = exact.traction(&inner, &Vector3::z());
         assert_eq!((on_plane.x, on_plane.y, exact.displacement(&inner).z), (0.0, 0.0, 0.0));
-        // The parabola is integrated exactly by two Gauss points.
+        // Two Gauss points integrate the parabola exactly.
         let y = 0.5 * depth / 3f64.sqrt();
         let [low, high] = [-y, y].map(|y| exact.traction(&Point3::new(length, y, 0.0), &Vector3::x()));
         assert!((0.5 * depth * (low + high) - Vector3::new(0.0, load, 0.0)).norm() < 1e-12 * load);
@@ -247,8 +251,9 @@ fn plane_strain_cantilever_carries_its_load() {
 
 #[test]
 fn plane_strain_cantilever_has_the_classic_tip_deflection() {
-    // Plane stress with P = 1000, E = 3e7, nu = 0.3, D = 12, L = 48 gives .008533 + .000367 = .0089 (Timoshenko's
-    // beam data); these E and nu make plane strain the same problem: E / (1 - nu^2) = 3e7, nu / (1 - nu) = 0.3.
+    // Plane stress with P = 1000, E = 3e7, nu = 0.3, D = 12, L = 48 gives .008533 + .000367 = .0089
+    // (Timoshenko's beam data). These E and nu make plane strain the same problem: E / (1 - nu^2) = 3e7, nu /
+    // (1 - nu) = 0.3.
     let poisson: f64 = 0.3 / 1.3;
     let elastic = Elastic::new(3e7 * (1.0 - poisson * poisson), poisson).unwrap();
     let exact = CantileverPlaneStrain::new(elastic, 1000.0, 48.0, 12.0).unwrap();
@@ -265,8 +270,8 @@ fn compressed_prism_has_free_sides() {
     assert!((exact.displacement(&x).z + 0.003).abs() < 1e-17);
 }
 
-/// Sides are free up to edges and corners; the torque is Timoshenko and Goodier's `k1 mu k depth^3 width` for the width over the
-/// depth, of which they print three digits.
+/// The sides are free up to edges and corners. The torque is Timoshenko and Goodier's `k1 mu k depth^3 width`
+/// as a function of width over depth, for which they print three digits.
 #[test]
 fn a_turned_bar_has_free_sides_and_its_torque() {
     let elastic = Elastic::new(YOUNG, 0.3).unwrap();
@@ -307,7 +312,7 @@ fn thick_sphere_carries_both_pressures() {
             assert!((traction + pressure * n).norm() < 1e-12 * pressure, "r = {r}: {traction}");
         }
     }
-    // A thin wall carries p r / (2 t) as hoop stress.
+    // A thin wall has the hoop stress p r / (2 t).
     let thin = ThickSphere::new(Elastic::new(2e4, 0.3).unwrap(), [1.0, 1.001], [1.0, 0.0]).unwrap();
     let hoop = thin.stress(&Point3::new(1.0005, 0.0, 0.0))[(1, 1)];
     assert!((hoop / 500.0 - 1.0).abs() < 2e-3, "hoop {hoop}");

@@ -2,8 +2,9 @@
 
 use super::*;
 
-/// `rho u'' = div sigma = -b`, the gradient that of the displacement, both ends as they must be: at times before and after the
-/// front of a pull that grows over the whole has come back from the fixed end, away from it.
+/// Newton's law `rho u'' = div sigma = -b`, the gradient as derivative of the displacement, and the
+/// conditions at both ends, for a pull that grows all the time. Times are before and after its front returns
+/// from the fixed end; points are away from the front.
 #[test]
 fn waves_of_a_bar_obey_newton() {
     let (pull, length, density, over) = (30.0, 1.0, 2.0, 10.0);
@@ -29,7 +30,7 @@ fn waves_of_a_bar_obey_newton() {
                 assert!((divergence + now.body_force(&x).x).abs() < 1e-9 * size, "{passages} {x}");
                 largest = largest.max(divergence.abs() / size);
             }
-            // Where the wave and its return meet, the velocity is constant.
+            // The velocity is constant in the overlap of the wave and its reflection.
             assert!(largest > 0.99, "{passages}: nothing is accelerated");
             assert!(now.displacement(&Point3::origin()).norm() < 1e-15);
             let end = now.traction(&Point3::new(length, 0.0, 0.0), &Vector3::x()).x;
@@ -48,7 +49,7 @@ fn a_bar_pulled_at_once_swings_to_twice_its_static_length() {
     }
 }
 
-/// What a scene's checks hold a metric to, in SI.
+/// Bounds of a scene's checks on a metric, in SI.
 fn bounds(scene: &str, metric: &str) -> [f64; 2] {
     let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join(scene);
     let scene = load(&path).unwrap();
@@ -59,7 +60,7 @@ fn bounds(scene: &str, metric: &str) -> [f64; 2] {
     }
 }
 
-/// Within 0.31 % of theory, both ways; Euler and Bernoulli's beam is out of it.
+/// The bounds are within 0.31 % of theory on both sides; Euler and Bernoulli's beam is outside of them.
 #[test]
 fn the_cantilever_swings_in_timoshenkos_period() {
     let elastic = Elastic::new(20e3, 0.0).unwrap();
@@ -67,12 +68,12 @@ fn the_cantilever_swings_in_timoshenkos_period() {
     let [low, high] =
         bounds("scenes/dynamics/cantilever-vibration.toml", "period").map(|t| t / beam.timoshenko() - 1.0);
     assert!(low < -0.0029 && low > -0.0031 && high > 0.0029 && high < 0.0031, "{low} {high}");
-    // To first order in the slenderness by Rayleigh's quotient: 4.648 / 2 (1 + E / (k G)) / 1200.
+    // First order in the slenderness by Rayleigh's quotient: 4.648 / 2 (1 + E / (k G)) / 1200.
     let lengthening = beam.timoshenko() / beam.bernoulli() - 1.0;
     assert!((lengthening / (0.5 * 4.648 * 3.4 / 1200.0) - 1.0).abs() < 0.02, "{lengthening}");
 }
 
-/// Within 4e-4 of theory, both ways: 40 x 40 mm pressed by 5 % in 0.2 s and held to 1 s.
+/// The bounds are within 4e-4 of theory on both sides: 40 x 40 mm pressed by 5 % in 0.2 s and held to 1 s.
 #[test]
 fn the_plate_feels_the_force_that_is_left() {
     let elastic = Elastic::new(20e3, 0.3).unwrap();
@@ -82,8 +83,9 @@ fn the_plate_feels_the_force_that_is_left() {
     assert!(low < -3e-4 && low > -4e-4 && high > 3e-4 && high < 4.5e-4, "{low} {high}");
 }
 
-/// Stress by the convolution itself, `K tr(d) I + 2 mu integral (1 - g + g exp(-(t - s) / tau)) dev d'(s) ds` by the trapezoidal
-/// rule on 4000 steps: free sides, and the plates' pressure.
+/// The stress equals the convolution `K tr(d) I + 2 mu integral (1 - g + g exp(-(t - s) / tau)) dev d'(s)
+/// ds`, computed by the trapezoidal rule on 4000 steps. The sides are free, and the plates carry the
+/// pressure.
 #[test]
 fn relaxing_compression_is_the_convolution_of_its_past() {
     let elastic = Elastic::new(20e3, 0.3).unwrap();
@@ -106,7 +108,7 @@ fn relaxing_compression_is_the_convolution_of_its_past() {
         let stated = exact.at(time).unwrap().stress(&Point3::origin());
         assert!((stress - stated).norm() < 1e-6 * stated.norm(), "{time}: {stress} {stated}");
     }
-    // Put on at once, it starts as Hooke has it.
+    // After a sudden load the initial state is that of Hooke's law.
     let at_once = RelaxingCompression::new(elastic, strain, 0.0, [share, tau]).unwrap();
     let hooke = UniaxialCompression::new(elastic, strain);
     let x = Point3::new(0.1, 0.2, 0.3);
@@ -114,8 +116,8 @@ fn relaxing_compression_is_the_convolution_of_its_past() {
     assert!((at_once.stress(&x) - hooke.stress(&x)).norm() < 1e-9);
 }
 
-/// `omega^2 = 2 pi^2 mu / (rho L^2)` whatever Poisson's ratio; no traction anywhere on the surface; three modes, whose Gram
-/// matrix is that of the integral of `sin`.
+/// `omega^2 = 2 pi^2 mu / (rho L^2)` for any Poisson's ratio; no traction anywhere on the surface; three
+/// modes, whose Gram matrix follows from the integral of `sin`.
 #[test]
 fn lames_cube_is_free() {
     let (side, density) = (2.0, 3.0);
@@ -137,7 +139,7 @@ fn lames_cube_is_free() {
                 }
             }
         }
-        // A quarter of a period on it is at rest, half a period on it is its opposite.
+        // After a quarter of a period the body is at rest; after half a period the displacement is reversed.
         let period = 2.0 * std::f64::consts::PI / vibrations.omega();
         let x = Point3::new(0.3, 1.7, 0.4);
         assert!(cube.at(0.25 * period).unwrap().displacement(&x).norm() < 1e-16);
@@ -159,11 +161,13 @@ fn lames_cube_is_free() {
     assert!((ratio + 4.0 / std::f64::consts::PI.powi(2)).abs() < 2e-3, "{ratio}");
 }
 
-/// The lowest frequencies of a box of 4 x 3 x 2 pi, counted by hand: `|k|^2` are sums of `i^2/16, j^2/9, l^2/4`.
+/// The lowest frequencies of a box of 4 x 3 x 2 pi, counted by hand: `|k|^2` are sums of `i^2/16, j^2/9,
+/// l^2/4`.
 #[test]
 fn modes_of_a_box_on_rollers_are_counted() {
     let pi = std::f64::consts::PI;
-    // mu = 4, lambda + 2 mu = 12 at nu = 0.25: with rho = 4, shear waves at speed 1 and compression at sqrt(3).
+    // mu = 4, lambda + 2 mu = 12 at nu = 0.25: with rho = 4, shear waves at speed 1 and compression at
+    // sqrt(3).
     let elastic = Elastic::new(10.0, 0.25).unwrap();
     let size = [4.0 * pi, 3.0 * pi, 2.0 * pi];
     let body = RollerBox::new(elastic, size, 4.0, 0.1).unwrap();
@@ -187,10 +191,11 @@ fn modes_of_a_box_on_rollers_are_counted() {
         assert!((found / expected - 1.0).abs() < 1e-12, "{squares:?}");
     }
     assert!((body.omega() - squares[0].sqrt()).abs() < 1e-14);
-    // Near incompressibility waves of compression are far above those of shear; long counts end all the same.
+    // Near incompressibility compression waves are far above shear waves; the search for many modes still
+    // ends.
     let stiff = RollerBox::new(Elastic::new(10.0, 0.4999).unwrap(), size, 4.0, 0.1).unwrap();
     assert_eq!(stiff.lowest(100).unwrap().len(), 100);
-    // In a slender box compression along it comes first.
+    // In a slender box the first mode is compression along its length.
     let slender = RollerBox::new(elastic, [1.0, 5.0, 0.5], 4.0, 0.1).unwrap();
     assert!((slender.omega() / (3.0f64.sqrt() * pi / 5.0) - 1.0).abs() < 1e-14);
     // Nothing moves through the walls, and no shear acts on them.

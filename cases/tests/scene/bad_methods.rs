@@ -1,4 +1,4 @@
-//! Mistakes in methods; see `bad_scenes`.
+//! Errors in methods; see `bad_scenes`.
 
 use crate::bad_scenes::Bad;
 

@@ -1,4 +1,4 @@
-//! How many findings a file gives, and what is said of whole parts or files that are missing.
+//! Number of findings in a file, and messages about parts or files that are missing.
 
 use cases::scene::parse;
 
@@ -41,7 +41,7 @@ fn a_mistake_in_one_part_hides_none_in_another() {
         let errors = parse(&text, "s.toml").expect_err("several mistakes");
         errors.into_iter().map(|e| e.key).collect::<Vec<_>>()
     };
-    // A number out of range, a number without unit, a key that is not known.
+    // A number out of range, a number without unit, an unknown key.
     assert_eq!(beside(edited("poisson = 0.45", "poisson = 0.7")), ["material.poisson", "support[0].on"]);
     assert_eq!(beside(edited("young = \"20 kPa\"", "young = 20")), ["material.young", "support[0].on"]);
     let shared = edited("poisson = 0.45", "poisson = 0.7").replace("element = \"tet4\"", "elemen = \"tet4\"");

@@ -3,8 +3,8 @@ use cases::scene::{ErrorKind, parse};
 use crate::bad_methods::METHODS;
 use crate::{edited, marked_line};
 
-/// What is replaced in the sound scene, by what (the line to be blamed ends in `#<`), the key blamed, and what the
-/// message must say.
+/// Replaced text in the sound scene, its replacement (the line of the error ends in `#<`), the key of the
+/// error, and parts of the message.
 pub type Bad = (&'static str, &'static str, &'static str, &'static [&'static str]);
 
 const UNITS: &[Bad] = &[

@@ -3,7 +3,7 @@ use proptest::prelude::*;
 
 use crate::{SCENE, edited};
 
-/// Pieces that tell apart the branches of the reader.
+/// Pieces of text that reach different branches of the reader.
 const PIECES: [&str; 24] = [
     "\"",
     "'",
@@ -35,7 +35,7 @@ fn boundary(text: &str, at: usize) -> usize {
     (0..=at % (text.len() + 1)).rev().find(|i| text.is_char_boundary(*i)).unwrap_or(0)
 }
 
-/// Every error has a place in the file.
+/// Checks that every error has a place in the file.
 fn judge(text: &str) {
     let lines = text.split('\n').count();
     let scene = parse(text, "fuzz.toml");

@@ -114,7 +114,7 @@ fn a_region_takes_its_tolerance_from_the_caller() {
     assert!(!slab.contains([0.0; 3], 1e-10) && !slab.contains([0.0, 0.0, 1e-3], 1e-10));
 }
 
-/// The scene in a static procedure, clouds held as that can.
+/// The scene in a static procedure, with essential conditions that this supports.
 fn still() -> String {
     let text =
         SCENE.replace("kind = \"linear\"", "kind = \"static\"").replace("\"multipliers\"", "\"penalty\"");
@@ -169,11 +169,11 @@ fn what_moves_a_body_is_known() {
     assert!(moved(SCENE) && !moved(&still));
     assert!(!moved(&still.replace("fix = \"x\"\n", "move = { x = \"0 mm\" }\n")));
     assert!(moved(&still.replace("fix = \"x\"\n", "move = { x = \"1 mm\" }\n")));
-    // Nothing is solved: nothing is missed.
+    // Nothing is solved, so nothing has to move.
     assert!(moved(&still.replace("kind = \"linear\"", "kind = \"prepare\"")));
 }
 
-/// A scene without the tables of these heads.
+/// A scene without the tables under the given heads.
 fn without_sections(text: &str, heads: &[&str]) -> String {
     let mut kept = true;
     let lines = text.lines().filter(|line| {
@@ -221,7 +221,7 @@ fn a_static_scene_runs_with_everything_it_knows() {
     let slanted = text.replace("[0, 0, -2]", "[0, 1, -2]");
     let tool = &parse(&slanted, "s.toml").expect("sound").tools[0];
     assert_eq!(tool.shape.face_area(&tool.along.into()), None);
-    // A plate looks where it goes, a roller lies along z, unless the file says otherwise.
+    // By default a plate faces its direction of motion, and a roller lies along z.
     let plate = |more: &str| {
         let jaw = format!(
             "[[tool]]\nname = \"p\"\nshape = \"plate\"\nat = [\"0 mm\", \"0 mm\", \"19 mm\"]\nalong = [0, 0, -2]\n\
@@ -244,7 +244,7 @@ fn grasped() -> String {
     still().replacen("[procedure]\n", &format!("{JAW}[procedure]\n"), 1)
 }
 
-/// Each edit (from, to) is blamed on a key in these words.
+/// Checks that each edit (from, to) is refused at its key with the given words.
 fn refused(sound: &str, edits: &[[&str; 4]]) {
     for [from, to, key, said] in edits {
         assert!(sound.contains(from), "{from}");
@@ -414,7 +414,7 @@ fn all_shapes_and_laws_are_read() {
         "shape = \"kidney\"\nhalf = true\nmildly_graded = true",
         "shape = \"box\"\nsize = [\"1 mm\", \"1 mm\", \"1 mm\"]",
     ] {
-        // Surfaces of a box are none of these shapes'.
+        // These shapes have no surfaces with the names of a box.
         let text =
             edited(body, &format!("[body]\n{shape}\n")).replace("[\"x-min\", \"x-max\"]", "\"surface\"");
         let text = text.replace("\"z-max\"", "\"surface\"").replace("\"y-max\"", "\"surface\"");

@@ -1,4 +1,4 @@
-//! Files that are larger than anyone means: each is refused at once, with the key, the number and the limit.
+//! Files larger than any sensible use: each is refused at once, with the key, the number and the limit.
 
 use cases::scene::{parse, parse_study};
 

@@ -1,4 +1,5 @@
-//! Scene and study files through the public interface: what is read, what is refused and how, and that nothing panics.
+//! Scene and study files through the public interface: accepted files, refused files with their messages, no
+//! panics.
 
 mod bad_methods;
 mod bad_parts;
@@ -12,7 +13,7 @@ mod project;
 mod shared;
 mod vibrations;
 
-/// A scene that uses every part that runs today, and some that wait.
+/// A scene with every part that runs today, and some parts that are not available yet.
 pub const SCENE: &str = r#"title = "A block"
 source = "made up for the tests"
 [body]
@@ -95,7 +96,7 @@ pub fn edited(from: &str, to: &str) -> String {
     SCENE.replace(from, to)
 }
 
-/// The line (from 1) that holds the mark `#<`.
+/// The line (from 1) with the mark `#<`.
 pub fn marked_line(text: &str) -> usize {
     let lines: Vec<usize> =
         (1..).zip(text.lines()).filter(|(_, l)| l.contains("#<")).map(|(n, _)| n).collect();

@@ -38,7 +38,7 @@ fn every_file_of_the_project_is_sound() {
     assert!(paths.len() > 25, "{}", paths.len());
 }
 
-/// Tables of methods that a file has, without their sizes: a scene's business.
+/// Method tables written out in a file, without their sizes, which belong to each scene.
 fn written_out(path: &Path) -> Vec<toml::Table> {
     let mut file: toml::Table = std::fs::read_to_string(path).expect("a file").parse().expect("TOML");
     let Some(toml::Value::Array(methods)) = file.remove("method") else { return vec![] };
@@ -56,7 +56,7 @@ fn written_out(path: &Path) -> Vec<toml::Table> {
 fn no_two_scenes_write_out_the_same_method() {
     let mut paths = vec![folder().join("methods.toml")];
     files(&folder().join("scenes"), &mut paths);
-    // The scene that newcomers start from is one file.
+    // The first scene for new users is a single file.
     paths.retain(|path| !path.ends_with("first.toml"));
     let mut known: Vec<(&Path, toml::Table)> = Vec::new();
     for path in &paths {

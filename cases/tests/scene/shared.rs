@@ -1,4 +1,4 @@
-//! Methods taken from a file of shared ones: the same as written out, and every mistake at its own file, line and key.
+//! Shared methods: the same as methods written out, with every error at its own file, line and key.
 
 use std::path::{Path, PathBuf};
 
@@ -6,7 +6,7 @@ use cases::scene::{ErrorKind, Scene, SceneError, load};
 
 use crate::{SCENE, marked_line};
 
-/// Tables of methods, of which the first lacks its size.
+/// Tables of methods; the first has no size.
 const SHARED: &str = r#"# Shared.
 [[method]]
 id = "tet4"
@@ -27,7 +27,7 @@ essential = { method = "nitsche", factor = 10 }
 background = { spacing = "5 mm" }
 "#;
 
-/// Methods of a scene that takes them.
+/// Methods of a scene that takes the shared methods.
 const TAKEN: &str = r#"[[method]]
 use = "tet4"
 size = { cells = [4, 4, 2], grading = [1, 1, 2] }
@@ -35,7 +35,7 @@ size = { cells = [4, 4, 2], grading = [1, 1, 2] }
 use = "efg-83"
 "#;
 
-/// Writes a scene and its shared methods into a folder of that name, and reads the scene.
+/// Writes a scene and its shared methods into a folder with the given name, and reads the scene.
 fn read(name: &str, shared: &str, top: &str, methods: &str) -> Result<Scene, Vec<SceneError>> {
     let folder = folder(name);
     std::fs::create_dir_all(folder.join("scenes")).unwrap();
@@ -110,7 +110,8 @@ fn paths_of_a_shared_method_start_from_its_own_folder() {
     assert_eq!(file.path, folder("paths").join("organ.msh"));
 }
 
-/// In the shared file (edited: from, to with the mark), the key there, what is said.
+/// Errors in the shared file: replaced text, replacement with the mark, key in that file, parts of the
+/// message.
 const IN_SHARED: &[(&str, &str, &str, &[&str])] = &[
     (
         "dilation = \"nodal-mean\"",
@@ -162,7 +163,7 @@ fn a_mistake_in_a_shared_method_is_at_its_own_file_and_line() {
     }
 }
 
-/// In the scene: its top, its methods, the key, what is said.
+/// Errors in the scene: its top, its methods, the key, parts of the message.
 const IN_SCENE: &[(&str, &str, &str, &[&str])] = &[
     (
         FROM,

@@ -1,4 +1,4 @@
-//! Scenes of free vibrations: what they say, and what has no part in them.
+//! Scenes of free vibrations: accepted settings, and parts without a meaning for them.
 
 use cases::scene::{Mass, Procedure, parse};
 

@@ -87,7 +87,7 @@ impl JsonSchema for MethodKeys {
 #[serde(deny_unknown_fields)]
 pub(crate) struct FemKeys {
     pub id: String,
-    /// Series of the method, whose methods differ in size only; the id unless given
+    /// Name of the series, whose methods differ in size only; the id unless given
     pub series: Option<String>,
     pub element: Element,
     pub dilation: Option<Dilation>,
@@ -104,7 +104,7 @@ pub(crate) struct FemKeys {
 #[serde(deny_unknown_fields)]
 pub(crate) struct EfgKeys {
     pub id: String,
-    /// Series of the method, whose methods differ in size only; the id unless given
+    /// Name of the series, whose methods differ in size only; the id unless given
     pub series: Option<String>,
     /// Exact number of nodes; give nodes or size
     pub nodes: Option<u32>,
