@@ -73,7 +73,7 @@ impl CellKind {
         if self.is_tet() { 4 } else { 8 }
     }
 
-    /// True for tet4 and tet10.
+    /// Whether the kind is tet4 or tet10.
     pub fn is_tet(self) -> bool {
         matches!(self, CellKind::Tet4 | CellKind::Tet10)
     }

@@ -159,6 +159,9 @@ impl Mesh {
     }
 
     /// Replaces the regions: one index per cell into `names`.
+    ///
+    /// # Panics
+    /// A number of indices that is not that of the cells, or an index beyond `names`.
     pub fn with_regions(mut self, regions: Vec<u16>, names: Vec<String>) -> Mesh {
         assert_eq!(regions.len(), self.kinds.len(), "one region per cell");
         assert!(regions.iter().all(|&r| (r as usize) < names.len()), "every region has a name");

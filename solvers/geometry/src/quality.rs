@@ -2,7 +2,7 @@
 
 use crate::{CellKind, Mesh, Point3, Vector3, element, quadrature};
 
-/// Error of a mesh with inverted cells; names the first of them.
+/// Error of a mesh with inverted cells; describes the first of them.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error("element {element} is inverted: det J = {det_j:e} m^3 (it has to be positive)")]
 pub struct InvertedElement {

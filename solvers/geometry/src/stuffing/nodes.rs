@@ -32,8 +32,9 @@ const WHOLE: f64 = 0.75;
 /// filled the body.
 const HOPELESS: [f64; 2] = [2e5, 16.0];
 
-/// Fills a surface with about `nodes` nodes. Returns the mesh and its spacing (m). Of the spacings tried, the
-/// one whose number of nodes has the ratio closest to 1 is chosen. A larger request never gives fewer nodes.
+/// Fills a surface with about `nodes` nodes, with `doublings` as in [`Stuffing`]. Returns the mesh and its
+/// spacing (m). Of the meshes tried, the mesh with the ratio of its nodes to `nodes` closest to 1 is chosen. A
+/// larger request never gives fewer nodes.
 ///
 /// # Errors
 /// As for [`stuff`].
