@@ -246,7 +246,7 @@ pub(crate) fn unwritten(path: &Path, source: io::Error) -> ReportError {
     ReportError::Unwritten { path: path.into(), source }
 }
 
-/// Replaces all but letters (in lower case), digits and dots by dashes, for use as a file name.
+/// Replaces all but ASCII letters (in lower case), digits and dots by dashes, for use as a file name.
 pub(crate) fn slug(name: &str) -> String {
     let safe = |c: char| if c.is_ascii_alphanumeric() || c == '.' { c.to_ascii_lowercase() } else { '-' };
     name.chars().map(safe).collect()
