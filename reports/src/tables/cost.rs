@@ -27,8 +27,8 @@ pub(crate) fn growth(series: &Series, phase: &str) -> Option<Order> {
     observed(&points).map(|order| Order { fit: -order.fit, ..order })
 }
 
-/// Table of the growth of every phase, and of the cost per node and per integration point at the largest
-/// size.
+/// Table of the growth of every phase, and of preparation time and memory per integration point at the
+/// largest size.
 pub(super) fn cost(runs: &[Run]) -> Table {
     let mut table = Table::new(
         "cost",
