@@ -1,16 +1,16 @@
-//! What can go wrong between a matrix and its solution.
+//! Errors of factorisations and solves.
 
-/// Why a system has no (trustworthy) solution.
+/// Reason why a system has no trustworthy solution.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum AlgebraError {
-    /// A pivot so small beside its diagonal entry that the solution would be noise.
+    /// A pivot is so small relative to its diagonal entry that the solution would be noise.
     #[error(
         "the stiffness is singular to rounding: smallest pivot over diagonal {ratio:e} (limit {limit:e})"
     )]
     NearlySingular {
         /// Smallest ratio of pivot to diagonal entry.
         ratio: f64,
-        /// The limit.
+        /// Smallest admissible ratio.
         limit: f64,
     },
     /// A zero pivot in the indefinite factorisation, even with its regularisation.
@@ -21,10 +21,11 @@ pub enum AlgebraError {
     Residual {
         /// Relative residual found.
         residual: f64,
-        /// The limit.
+        /// Largest admissible residual.
         limit: f64,
     },
-    /// The solution is not even that of a matrix nearby: dependent, contradictory or badly scaled constraints.
+    /// The solution does not even solve a nearby system: the constraints are dependent, contradictory or
+    /// badly scaled.
     #[error(
         "the solution is that of no system near this one: backward error {backward_error:e} (limit {limit:e}), relative \
          residual {residual:e}"
@@ -34,20 +35,20 @@ pub enum AlgebraError {
         backward_error: f64,
         /// Relative residual.
         residual: f64,
-        /// The limit.
+        /// Largest admissible backward error.
         limit: f64,
     },
-    /// The matrix is so near to a singular one that rounding takes every digit.
+    /// The matrix is so close to singular that rounding takes every digit.
     #[error(
         "the stiffness is singular to rounding: {digits:.1} digits are left of the solution (backward error {backward_error:e})"
     )]
     NoDigits {
-        /// Decimal digits to be expected.
+        /// Expected number of correct decimal digits.
         digits: f64,
         /// Smallest relative change of matrix and right-hand side that makes the solution exact.
         backward_error: f64,
     },
-    /// The decomposition of the frequencies did not end.
+    /// The eigenvalue decomposition did not converge.
     #[error("no frequencies: the eigenvalues of {dofs} degrees of freedom did not converge")]
     NoEigenvalues {
         /// Number of degrees of freedom.
@@ -56,15 +57,15 @@ pub enum AlgebraError {
     /// The nested-dissection ordering failed.
     #[error("METIS could not order the matrix (status {status})")]
     Ordering {
-        /// METIS' own status.
+        /// Status returned by METIS.
         status: i32,
     },
-    /// Out of memory, or a factor too large to index.
+    /// Memory is exhausted, or the factor is too large to index.
     #[error("the factor of a matrix of {dofs} degrees of freedom does not fit: {why}")]
     TooLarge {
         /// Number of degrees of freedom.
         dofs: usize,
-        /// The library's reason.
+        /// Reason given by the library.
         why: String,
     },
 }

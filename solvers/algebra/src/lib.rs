@@ -1,10 +1,11 @@
-//! Linear algebra of solid mechanics: symmetric matrices of 3x3 blocks, and what solves with them.
+//! Linear algebra of solid mechanics: symmetric matrices of 3x3 blocks and their solvers.
 //!
-//! A [`BlockPattern`] says which pairs of nodes share a row of a table, a [`Stiffness`] holds their blocks and is summed by rows, a
-//! [`Symmetric`] is its part over the unknowns. [`factor`] takes that to a [`Factorization`]: dense, or sparse in METIS'
-//! nested-dissection order by faer's kernels. [`Multigrid`] solves with a stiffness by iterations. [`Unsymmetric`] adds a few
-//! unsymmetric entries and borders (GMRES, else LU); [`eigen`] solves eigenproblems, [`Cholesky`] full matrices for many right-hand
-//! sides.
+//! A [`BlockPattern`] lists the pairs of nodes that share a row of a table. A [`Stiffness`] stores their
+//! blocks and is assembled row by row. A [`Symmetric`] is the part of a stiffness over the unknowns.
+//! [`factor`] turns it into a [`Factorization`]: dense, or sparse with faer's kernels in METIS
+//! nested-dissection order. [`Multigrid`] solves iteratively with a stiffness. [`Unsymmetric`] adds a few
+//! unsymmetric entries and borders; it solves by GMRES or, failing that, by LU. [`eigen`] solves
+//! eigenproblems. [`Cholesky`] factors full matrices for many right-hand sides.
 //!
 //! ```
 //! use algebra::{DENSE_LIMIT, FactorError, Symmetric, factor};

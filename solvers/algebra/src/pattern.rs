@@ -1,36 +1,38 @@
-//! The symbolic block pattern: which pairs of nodes share an integration point. Built once per problem; the
-//! numbers may then be assembled often.
+//! Symbolic block pattern: the pairs of nodes that share an integration point.
+//!
+//! A pattern is built once per problem. Values may be assembled into it any number of times.
 
 use rayon::prelude::*;
 
-/// Compressed rows (offsets, nodes) of a table, the symbolic part of it.
+/// Symbolic part of a table in compressed rows: the nodes of each row.
 #[derive(Clone, Copy)]
 pub struct Connectivity<'a> {
-    /// Of each row among `nodes`, rows + 1 entries.
+    /// Start of each row in `nodes`; rows + 1 entries.
     pub offsets: &'a [usize],
-    /// Nodes of all rows.
+    /// Nodes of all rows, row after row.
     pub nodes: &'a [u32],
-    /// Where a row is of several points, which of them see a node, a bit each; empty where every row is of one.
+    /// Bit mask per entry of `nodes`, if a row covers several points: bit `p` is set if point `p` of the row
+    /// sees the node. Empty if every row covers one point.
     pub seen_by: &'a [u8],
 }
 
 impl Connectivity<'_> {
-    /// Whether a point sees the nodes of both entries of a row.
+    /// Whether one point sees the nodes of both entries of a row.
     fn meet(&self, j: usize, k: usize) -> bool {
         self.seen_by.is_empty() || self.seen_by[j] & self.seen_by[k] != 0
     }
 }
 
-/// For each node the entries that name it: the transpose of a table.
+/// Transpose of a table: for each node, the entries that name it.
 #[derive(Clone, Debug)]
 pub struct Incidence {
     offsets: Vec<usize>,
-    /// (row, entry) pairs; entry is an index into the table's flat arrays.
+    /// Pairs (row, entry); `entry` is an index into the table's flat arrays.
     entries: Vec<(u32, u32)>,
 }
 
 impl Incidence {
-    /// Transposes `table`, visiting its rows in `order`: that is the order in which a node meets them.
+    /// Transposes `table`. The rows are visited in `order`, which is the order of the entries of each node.
     pub fn new(node_count: usize, table: Connectivity, order: impl Iterator<Item = usize>) -> Incidence {
         let mut offsets = vec![0usize; node_count + 1];
         for &node in table.nodes {
@@ -58,8 +60,8 @@ impl Incidence {
     }
 }
 
-/// Lower triangle of the node graph in compressed rows: row `i` lists the neighbours `j <= i` in ascending order,
-/// the diagonal last.
+/// Lower triangle of the node graph in compressed rows: row `i` lists the neighbours `j <= i` in ascending
+/// order, the diagonal last.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BlockPattern {
     offsets: Vec<usize>,
@@ -67,9 +69,10 @@ pub struct BlockPattern {
 }
 
 impl BlockPattern {
-    /// The union of the pairs of all tables, each with nodes ascending in every row. The diagonal is always there.
+    /// Builds the union of the node pairs of all tables. The nodes of every row must ascend. The diagonal is
+    /// always included.
     pub fn new(node_count: usize, tables: &[(Connectivity, &Incidence)]) -> BlockPattern {
-        /// Rows per task: few, as a cloud of 83 nodes is to keep two threads busy.
+        /// Rows per task: few, so that a cloud of 83 nodes keeps two threads busy.
         const CHUNK: usize = 16;
         let nodes: Vec<usize> = (0..node_count).collect();
         let chunks: Vec<(Vec<u32>, Vec<usize>)> = nodes
@@ -84,7 +87,7 @@ impl BlockPattern {
                         mark[i] = i as u32;
                         'row: for (table, incidence) in tables {
                             for &(q, k) in incidence.of(i) {
-                                // All i + 1 columns are in: a dense cloud (83 nodes) leaves early.
+                                // All i + 1 columns are found: a dense cloud (83 nodes) leaves early.
                                 if columns.len() - start == i + 1 {
                                     break 'row;
                                 }
@@ -131,7 +134,7 @@ impl BlockPattern {
         &self.columns[self.range(node)]
     }
 
-    /// Where the blocks of one row lie in the flat array.
+    /// Range of the blocks of one row in the flat array.
     #[inline]
     pub fn range(&self, node: usize) -> std::ops::Range<usize> {
         self.offsets[node]..self.offsets[node + 1]

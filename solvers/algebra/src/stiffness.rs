@@ -1,8 +1,8 @@
 #![allow(non_snake_case)] // G and K as in the formulas
-//! The stiffness matrix: assembly by owner-computes, one node row at a time, and the product with a vector.
+//! Stiffness matrix: assembly by owner-computes, one node row at a time, and the product with a vector.
 //!
-//! Each row gathers from the points that see its node, in one fixed order, whichever thread does it: the bits do not
-//! depend on the number of threads.
+//! Each row gathers from the points that see its node in one fixed order, whichever thread does it. The bits
+//! therefore do not depend on the number of threads.
 
 use std::ops::Range;
 
@@ -12,7 +12,8 @@ use shape::{Matrix3, Vector3};
 
 use crate::pattern::{BlockPattern, Incidence};
 
-/// Rows per task. Late rows of a lower triangle are the long ones: 83 nodes in tasks of 32 keep one of two threads waiting.
+/// Rows per task. The late rows of a lower triangle are long: with tasks of 32 rows, 83 nodes keep one of two
+/// threads waiting.
 const ROWS: usize = 8;
 /// One block row of the lower triangle.
 struct Row<'a> {
@@ -41,13 +42,14 @@ on_path! {
     fn multiply_rows(stiffness: &Stiffness, u: &[Vector3], out: &mut [Vector3]) = multiply_lanes
 }
 
-/// Each block once, for its row and, transposed, for its column.
+/// Computes `out = K u`. Each stored block is read once, for its row and, transposed, for its column.
 #[inline(always)]
 fn multiply_lanes<const FMA: bool>(stiffness: &Stiffness, u: &[Vector3], out: &mut [Vector3]) {
     out.fill(Vector3::zeros());
     for (i, own) in u.iter().enumerate() {
         let (columns, blocks) = stiffness.row(i);
-        // Columns of blocks go to three sums, four lanes at once, of which three count: of the last column the upper ones.
+        // Each column of a block is added to a sum of four lanes, of which three count. The last column is
+        // read one entry early, so that its upper three lanes count.
         let mut sums = [[0.0; 4]; 3];
         for (&j, block) in columns.iter().zip(blocks) {
             let (entries, x) = (block.data.0.as_flattened(), &u[j as usize]);
@@ -70,7 +72,7 @@ fn multiply_lanes<const FMA: bool>(stiffness: &Stiffness, u: &[Vector3], out: &m
 }
 
 impl Stiffness {
-    /// Zeros at every place of a pattern.
+    /// Returns a zero matrix on `pattern`.
     pub fn zeros(pattern: BlockPattern) -> Stiffness {
         let blocks = vec![Matrix3::zeros(); pattern.block_count()];
         Stiffness { pattern, blocks }
@@ -88,19 +90,19 @@ impl Stiffness {
         (self.pattern.row(node), &self.blocks[self.pattern.range(node)])
     }
 
-    /// `K u`, N.
+    /// Returns `K u`, N.
     pub fn multiply(&self, u: &[Vector3]) -> Vec<Vector3> {
         let mut out = vec![Vector3::zeros(); u.len()];
         self.multiply_into(u, &mut out);
         out
     }
 
-    /// `out = K u`, N.
+    /// Computes `out = K u`, N.
     pub fn multiply_into(&self, u: &[Vector3], out: &mut [Vector3]) {
         multiply_rows(LanePath::best(), self, u, out);
     }
 
-    /// `out = |K| |u|`, N.
+    /// Computes `out = |K| |u|` with the magnitudes of all entries, N.
     pub fn multiply_magnitudes(&self, u: &[Vector3], out: &mut [Vector3]) {
         out.fill(Vector3::zeros());
         for i in 0..u.len() {
@@ -115,7 +117,7 @@ impl Stiffness {
         }
     }
 
-    /// The block rows in this order, by tasks of a few.
+    /// Returns the block rows in `order`, in tasks of `ROWS`.
     fn tasks(&mut self, order: impl Iterator<Item = usize>) -> Vec<Vec<Row<'_>>> {
         let pattern = &self.pattern;
         let mut rest = &mut self.blocks[..];
@@ -137,7 +139,7 @@ impl Stiffness {
         }
     }
 
-    /// Runs `gather(i, slot, row)` for every block row: `slot[j]` is the place of column `j` in `row`.
+    /// Runs `gather(i, slot, row)` for every block row. `slot[j]` is the position of column `j` in `row`.
     pub fn for_each_row(&mut self, gather: impl Fn(usize, &[u32], &mut [Matrix3]) + Sync) {
         let nodes = self.pattern.node_count();
         self.tasks(0..nodes).into_par_iter().for_each_init(
@@ -151,10 +153,12 @@ impl Stiffness {
         );
     }
 
-    /// Sums of all block rows over the entries `incidence` of a table, whose rows are visited in tiles of `tile` by several
-    /// block rows together, so that they stay in the cache. `gather(seen, slot, sums)` adds to sums that start as
-    /// `zero`, `slot[j]` the place of column `j` among them; after each of the `parts` of the table
-    /// `finish(part, node, slot, sums, blocks)` takes them and leaves zeros.
+    /// Assembles all block rows from the entries `incidence` of a table. Several block rows visit the rows of
+    /// the table together, in tiles of `tile` rows, so that a tile stays in the cache.
+    ///
+    /// `gather(seen, slot, sums)` adds to sums that start as `zero`; `slot[j]` is the position of column `j`
+    /// in `sums`. After each of the `parts` of the table, `finish(part, node, slot, sums, blocks)` takes the
+    /// sums and leaves zeros.
     pub fn by_tiles<S: Copy + Send + Sync>(
         &mut self,
         incidence: &Incidence,
@@ -173,7 +177,7 @@ impl Stiffness {
                 let mut seen: Vec<&[(u32, u32)]> = rows.iter().map(|row| incidence.of(row.node)).collect();
                 for (row, (slot, sums)) in rows.iter().zip(&mut *scratch) {
                     row.set_slots(slot);
-                    // Those of rows before are zero again.
+                    // The sums of earlier rows are zero again.
                     sums.resize(row.columns.len(), zero);
                 }
                 for (part, range) in parts.iter().enumerate() {

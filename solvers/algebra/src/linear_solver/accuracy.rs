@@ -1,23 +1,26 @@
-//! How far a solution is to be trusted: backward error and condition.
+//! Accuracy of a solution: backward error and condition number.
 //!
-//! A residual beside the right-hand side says little where solutions are large for their loads: a slender beam, nearly
-//! incompressible tissue. Rounding alone then leaves 1e-7 of the load, and the solution is as good as the matrix lets it be. So a
-//! solution is judged by the smallest relative change of matrix and right-hand side that makes it exact, the normwise backward error
-//! `|b - A x| / (|A| |x| + |b|)` (Rigal & Gaches, J. ACM 14 (1967) 543-548; Higham, Accuracy and Stability of Numerical Algorithms,
-//! 2nd ed. 2002, theorem 7.1), and its digits by that times the condition number. All norms are maximum norms.
+//! The residual relative to the right-hand side says little if a solution is large for its load, as for a
+//! slender beam or nearly incompressible tissue. Rounding alone then leaves 1e-7 of the load, although the
+//! solution is as good as the matrix allows. A solution is therefore judged by the smallest relative change
+//! of matrix and right-hand side that makes it exact. This is the normwise backward error `|b - A x| / (|A|
+//! |x| + |b|)` (Rigal & Gaches, J. ACM 14 (1967) 543-548; Higham, Accuracy and Stability of Numerical
+//! Algorithms, 2nd ed. 2002, theorem 7.1). The number of correct digits follows from the backward error times
+//! the condition number. All norms are maximum norms.
 
 use super::{Factorization, Kind, Symmetric};
 use crate::AlgebraError;
 
-/// Backward error above which a solution is refused: a stable solve of a million unknowns leaves less (2e-16 times the root of
-/// their number), contradictory constraints at least a tenth of the regularisation.
+/// Backward error above which a solution is refused. A stable solve of a million unknowns leaves less (2e-16
+/// times the square root of their number). Contradictory constraints leave at least a tenth of the
+/// regularisation.
 pub(super) const BACKWARD_LIMIT: f64 = 1e-12;
-/// Digits below which a solution is refused.
+/// Number of correct digits below which a solution is refused.
 pub(super) const FEWEST_DIGITS: f64 = 1.0;
-/// Largest number of rounds of the estimate; it ends after two or three.
+/// Largest number of iterations of the norm estimate, which ends after two or three.
 const ROUNDS: usize = 5;
 
-/// What a solve left.
+/// Outcome of a solve: its residual, and the norms for its backward error.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Solved {
     /// Relative residual `|b - A x| / |b|`, Euclidean.
@@ -33,7 +36,7 @@ impl Solved {
 }
 
 impl Symmetric {
-    /// Maximum norm, which is the 1-norm: the largest sum of a row's absolute values.
+    /// Maximum norm, equal to the 1-norm by symmetry: the largest sum of the absolute values of a row.
     pub fn norm(&self) -> f64 {
         let mut sums = vec![0.0; self.dim()];
         for j in 0..self.dim() {
@@ -50,19 +53,19 @@ impl Symmetric {
 }
 
 impl Factorization {
-    /// Normwise backward error of a solution.
+    /// Returns the normwise backward error of a solution.
     pub fn backward_error(&self, solved: &Solved) -> f64 {
         let [rest, x, b] = solved.norms;
         if rest == 0.0 { 0.0 } else { rest / (self.matrix.norm() * x + b) }
     }
 
-    /// Condition number `|A| |A^-1|`, estimated from below within a factor of three as a rule.
+    /// Estimates the condition number `|A| |A^-1|` from below, as a rule within a factor of three.
     pub fn condition(&self) -> Result<f64, AlgebraError> {
         let n = self.dim();
         if n == 0 {
             return Ok(1.0);
         }
-        // The factor of a saddle matrix is that of one nearby.
+        // The factor of a saddle matrix belongs to a regularised matrix nearby, so its solutions are refined.
         let solve = |x: &mut [f64]| match self.kind {
             Kind::Definite => self.solve_once(x),
             _ => self.refine(x).map(|found| x.copy_from_slice(&found.x)),
@@ -70,17 +73,21 @@ impl Factorization {
         Ok(self.matrix.norm() * inverse_norm(n, solve)?)
     }
 
-    /// Decimal digits that the largest unknown of a solution has at least: `-log10(condition * backward error)`, a bound for the worst
-    /// rounding; on beams and membranes two or three more are right. The entries of the matrix are rounded themselves, so that no
-    /// backward error counts as less than half a unit in the last place.
+    /// Estimates the correct decimal digits of the largest unknown of a solution,
+    /// `-log10(condition * backward error)`.
+    ///
+    /// This is a bound for the worst rounding; on beams and membranes two or three more digits are right. The
+    /// entries of the matrix are rounded themselves, so the backward error counts as at least half a unit in
+    /// the last place.
     pub fn digits(&self, solved: &Solved) -> Result<f64, AlgebraError> {
         let error = self.backward_error(solved).max(0.5 * f64::EPSILON);
         Ok(-(self.condition()? * error).log10())
     }
 }
 
-/// 1-norm of the inverse of a symmetric matrix by a few solutions with it (Hager, SIAM J. Sci. Stat. Comput. 5 (1984) 311-316;
-/// Higham 2002, algorithm 15.1, with the alternating vector of LAPACK's `lacn2`, algorithm 15.5).
+/// Estimates the 1-norm of the inverse of a symmetric matrix from a few solves (Hager, SIAM J. Sci. Stat.
+/// Comput. 5 (1984) 311-316; Higham 2002, algorithm 15.1, with the alternating vector of LAPACK's `lacn2`,
+/// algorithm 15.5).
 fn inverse_norm(
     n: usize,
     solve: impl Fn(&mut [f64]) -> Result<(), AlgebraError>,
@@ -117,7 +124,7 @@ fn inverse_norm(
 }
 
 fn largest(x: &[f64]) -> f64 {
-    // A NaN is as large as anything, and stays.
+    // A NaN counts as the largest value and is kept.
     x.iter().fold(0.0, |m: f64, x| if m.is_nan() || x.abs() <= m { m } else { x.abs() })
 }
 
@@ -126,7 +133,7 @@ mod tests {
     use super::*;
     use crate::{DENSE_LIMIT, FactorError, factor};
 
-    /// A full matrix by its upper triangle.
+    /// Returns a full matrix, stored as its upper triangle.
     fn full(n: usize, entry: impl Fn(usize, usize) -> f64) -> Symmetric {
         Symmetric {
             offsets: (0..=n).map(|j| j * (j + 1) / 2).collect(),
@@ -141,7 +148,7 @@ mod tests {
         if i == j { 2.0 } else { -f64::from(u8::from(i + 1 == j)) }
     }
 
-    /// The second difference: `|A^-1| = (n + 1)^2 / 8` for odd n, taken at the middle.
+    /// Second differences: `|A^-1| = (n + 1)^2 / 8` for odd n, reached in the middle row.
     #[test]
     fn the_condition_of_a_string_is_known() {
         for n in [1, 3, 99, 501] {
@@ -154,7 +161,7 @@ mod tests {
         }
     }
 
-    /// What elimination leaves of the second diagonal entry decides, in a dense and in a sparse factor.
+    /// The second pivot decides whether a 2x2 matrix is refused, in a dense and in a sparse factor.
     #[test]
     fn pivots_of_rounding_are_refused() {
         for limit in [0, DENSE_LIMIT] {
@@ -169,7 +176,8 @@ mod tests {
         }
     }
 
-    /// Hilbert's matrix of seven has a condition of 1e9 and keeps seven digits; of 13 it is singular to rounding.
+    /// Hilbert's matrix of order 7 has a condition number of 1e9 and keeps seven digits. At order 14 it is
+    /// singular to rounding.
     #[test]
     fn digits_are_those_of_the_error_and_none_are_refused() {
         let hilbert = |i: usize, j: usize| 1.0 / (i + j + 1) as f64;
@@ -192,8 +200,8 @@ mod tests {
         );
     }
 
-    /// A string with loose ends moves as a whole. With next to nothing that holds it, what the load along that motion comes to is
-    /// noise.
+    /// A string with free ends can move rigidly. If the ground stiffness is next to nothing, the response
+    /// along that motion is noise.
     #[test]
     fn a_matrix_that_is_singular_but_for_rounding_is_refused() {
         let n = 500;

@@ -1,23 +1,24 @@
-//! Directions along which a matrix is not definite.
+//! Directions of negative curvature, along which a matrix is not definite.
 
 use nalgebra::Matrix4;
 
 use super::{Factor, Symmetric, dot};
 use crate::AlgebraError;
 
-/// Rounds of the search: a warm one ends after two to four.
+/// Largest number of iterations of the search. A search with a warm start ends after two to four.
 const ROUNDS: usize = 8;
-/// Change of the quotient at which it ends: shifts are tried by factors of ten.
+/// Relative change of the quotient at which the search ends. Shifts are tried by factors of ten.
 const SETTLED: f64 = 0.1;
 
-/// A vector x with a small quotient `x . K x / x . D x`, D the diagonal of K: a proof that `K + s D` is not definite for any
-/// s below its negative. What the search found in one matrix is where it starts in the next.
+/// Vector x with a small quotient `x . K x / x . D x`, D the diagonal of K. A negative quotient -q proves
+/// that `K + s D` is not definite for any s below q. The vector found for one matrix starts the search for
+/// the next.
 #[derive(Clone, Debug, Default)]
 pub struct Curvature {
     x: Vec<f64>,
 }
 
-/// A vector with its products.
+/// Trial vector x with its products `K x` and `D x`.
 #[derive(Clone)]
 struct Tried {
     x: Vec<f64>,
@@ -47,7 +48,7 @@ impl Tried {
         }
     }
 
-    /// Takes what `others` have out of it, and makes `x . D x` one; false if nothing is left.
+    /// Makes x orthogonal to `others` in the metric D, with `x . D x = 1`. Returns false if nothing is left.
     fn orthonormal(&mut self, others: &[Tried]) -> bool {
         let before = dot(&self.x, &self.d);
         for other in others.iter().chain(others) {
@@ -64,8 +65,11 @@ impl Tried {
 }
 
 impl Curvature {
-    /// A shift up to which `K + s D` is known not to be definite, negative if none is; a factor of a matrix near to K leads
-    /// the search (locally optimal conjugate gradients, Knyazev 2001).
+    /// Returns a shift s up to which `K + s D` is known not to be definite, negative if none is known.
+    ///
+    /// `factor` belongs to a matrix near K and preconditions the search (locally optimal conjugate gradients,
+    /// Knyazev 2001). With `sure` the search starts afresh and does not give up early. The shift is infinite
+    /// if `diagonal` has an entry that is not positive.
     pub fn shift(
         &mut self,
         matrix: &Symmetric,
@@ -77,7 +81,7 @@ impl Curvature {
             return Ok(f64::INFINITY);
         }
         if sure || self.x.len() != matrix.dim() {
-            // Anything that is not by chance along one mode alone.
+            // A start vector that does not happen to lie along a single mode.
             self.x =
                 (0..matrix.dim()).map(|i| (1.0 + i as f64 * 0.618_033_988_749_895).fract() - 0.5).collect();
             factor.solve(&mut self.x)?;
@@ -90,7 +94,8 @@ impl Curvature {
         let mut last: Option<Tried> = None;
         for round in 0..ROUNDS {
             let mut rest: Vec<f64> = best.k.iter().zip(&best.d).map(|(k, d)| k - quotient * d).collect();
-            // Modes of many elements are found by the factor, those of a few, which are far below zero, by the diagonal.
+            // The factor finds modes of many elements. The diagonal finds modes of a few elements, far below
+            // zero.
             let near: Vec<f64> = rest.iter().zip(diagonal).map(|(r, d)| r / d).collect();
             factor.solve(&mut rest)?;
             let mut basis = vec![best];
@@ -100,7 +105,8 @@ impl Curvature {
                     basis.push(tried);
                 }
             }
-            // Places without a vector have a value that is never the least: all of them add up to the dimension.
+            // A missing basis vector gets a value that is never the least: the values of all modes add up to
+            // the dimension.
             let of = |i: usize, j: usize| match (basis.get(i), basis.get(j)) {
                 (Some(a), Some(b)) => dot(&a.x, &b.k),
                 _ if i == j => matrix.dim() as f64,
@@ -124,7 +130,7 @@ impl Curvature {
                 break;
             }
         }
-        // By the vector itself: that is the proof.
+        // The quotient of the vector itself is the proof.
         let quotient = dot(&best.x, &best.k) / dot(&best.x, &best.d);
         self.x = best.x;
         Ok(-quotient * (1.0 - 1e-6))
@@ -136,7 +142,8 @@ mod tests {
     use super::*;
     use crate::linear_solver::{Kind, analyse, factor_as};
 
-    /// A chain of springs to the ground, of which some push: `2 + ground` on the diagonal, -1 beside it.
+    /// Chain of springs on ground springs, some of which are unstable: `2 + ground` on the diagonal, -1 next
+    /// to it.
     fn chain(ground: &[f64]) -> Symmetric {
         let n = ground.len();
         let column = |j: usize| {

@@ -7,7 +7,7 @@ use faer::{Conj, Mat, MatMut, Par};
 use super::{FactorError, Kind, Symmetric, check_pivots, zeroed};
 use crate::AlgebraError;
 
-/// `L L^T`, or `L D L^T` (D on the diagonal of `lower`) of a matrix that is not definite.
+/// Dense factor `L L^T`, or `L D L^T` (D on the diagonal of `lower`) if the matrix is not definite.
 pub struct Dense {
     lower: Mat<f64>,
     definite: bool,
@@ -19,7 +19,8 @@ impl Dense {
         let definite = kind == Kind::Definite;
         let regularised = (kind == Kind::Saddle).then(|| matrix.regularised());
         let values = regularised.as_ref().unwrap_or(&matrix.values);
-        // Columns to whole registers, as they would lie anyway: beyond row n there are zeros (see `zeroed`).
+        // Columns are padded to whole registers, as they would lie anyway: below row n there are zeros (see
+        // `zeroed`).
         let mut lower = Mat::zeros(n.next_multiple_of(8), n);
         for j in 0..n {
             for k in matrix.offsets[j]..matrix.offsets[j + 1] {

@@ -1,4 +1,7 @@
-//! Symmetric eigenproblems `M x = theta A x`: all of a small one by a dense decomposition, the largest of a large one by Lanczos.
+//! Symmetric eigenproblems `M x = theta A x`.
+//!
+//! A dense decomposition finds all eigenvalues of a small problem. Lanczos finds the largest of a large
+//! problem.
 
 use faer::diag::Diag;
 use faer::dyn_stack::{MemBuffer, MemStack};
@@ -12,17 +15,24 @@ use crate::AlgebraError;
 
 pub use super::lanczos::largest;
 
-/// Eigenvalues, the largest first, and their vectors with `x^T A x = 1`.
+/// Eigenvalues, largest first, with eigenvectors scaled to `x^T A x = 1`.
 pub struct Eigen {
-    /// `theta`, the largest first.
+    /// Eigenvalues `theta`, largest first.
     pub values: Vec<f64>,
-    /// Their vectors, of one length each.
+    /// Eigenvectors, one for each eigenvalue.
     pub vectors: Vec<Vec<f64>>,
 }
 
-/// Of `M` in the metric of `A = K + shift M`, which must be positive definite: by its Cholesky factor `L`, all eigenvalues of
-/// `L^-1 M L^-T`. They are known to rounding of the largest one, so that nothing is asked of `M`. One thread: the same bits
-/// at any number. 1000 unknowns take 1 s, the time grows with their cube.
+/// Solves `M x = theta A x` for all eigenvalues, where `A = K + shift M` must be positive definite.
+///
+/// With the Cholesky factor `L` of `A`, the eigenvalues are those of `L^-1 M L^-T`. They are exact to
+/// rounding of the largest, and `M` may be any symmetric matrix. The solve runs on one thread, so that its
+/// bits are always the same. 1000 unknowns take 1 s; the time grows with their cube.
+///
+/// # Errors
+///
+/// [`FactorError::NotDefinite`] if `A` is not positive definite, [`AlgebraError::NoEigenvalues`] if the
+/// decomposition does not converge.
 pub fn shifted(stiffness: &Symmetric, mass: &Symmetric, shift: f64) -> Result<Eigen, FactorError> {
     let n = stiffness.dim();
     let par = Par::Seq;

@@ -1,4 +1,4 @@
-//! Cholesky of full matrices for many right-hand sides: what radial bases need.
+//! Cholesky factorisation of full matrices for many right-hand sides, as radial bases need it.
 
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt;
@@ -7,13 +7,17 @@ use faer::{Mat, MatMut, MatRef, Par};
 
 use super::zeroed;
 
-/// `L` of a full positive definite matrix. Blocked, on one thread: 1331 unknowns take a twentieth of an unblocked loop.
+/// Factor `L` of a full positive definite matrix.
+///
+/// The factorisation is blocked and runs on one thread: 1331 unknowns take a twentieth of the time of an
+/// unblocked loop.
 pub struct Cholesky {
     lower: Mat<f64>,
 }
 
 impl Cholesky {
-    /// Of the lower triangle of a matrix of `n` columns, one after another; `None` if it is not positive definite.
+    /// Factors a matrix whose `n` columns are stored one after another. Only the lower triangle is read.
+    /// Returns `None` if the matrix is not positive definite.
     pub fn new(n: usize, columns: &[f64]) -> Option<Cholesky> {
         let mut lower = Mat::zeros(n.next_multiple_of(8), n);
         lower.subrows_mut(0, n).copy_from(MatRef::from_column_major_slice(columns, n, n));
@@ -30,13 +34,13 @@ impl Cholesky {
         self.lower.subrows(0, self.lower.ncols())
     }
 
-    /// Smallest pivot over the largest.
+    /// Ratio of the smallest pivot to the largest.
     pub fn pivot_ratio(&self) -> f64 {
         let pivots = || self.lower.diagonal().column_vector().iter().map(|l| l * l);
         pivots().fold(f64::INFINITY, f64::min) / pivots().fold(0.0, f64::max)
     }
 
-    /// Solves in place for right-hand sides one after another.
+    /// Solves in place for right-hand sides that are stored one after another.
     pub fn solve(&self, columns: &mut [f64]) {
         let n = self.lower.ncols();
         let mut rhs = MatMut::from_column_major_slice_mut(columns, n, columns.len() / n);

@@ -1,4 +1,4 @@
-//! The largest eigenvalues of `M x = theta A x` by block Lanczos: the lowest vibrations of a large body.
+//! Block Lanczos for the largest eigenvalues of `M x = theta A x`: the lowest vibrations of a large body.
 
 use faer::diag::Diag;
 use faer::dyn_stack::{MemBuffer, MemStack};
@@ -10,22 +10,33 @@ use super::eigen::Eigen;
 use super::{FactorError, Factorization, Symmetric, factor, zeroed};
 use crate::{AlgebraError, DENSE_LIMIT};
 
-/// Vectors of a block: of equal eigenvalues as many are found. Symmetry gives three at most and rigid motions are six. A block
-/// costs little more than a vector, as the factor is read once for all.
+/// Vectors per block. A block finds as many equal eigenvalues as it has vectors: symmetry gives at most
+/// three, and rigid motions are six. A block costs little more than a single vector, because the factor is
+/// read once for all of them.
 const BLOCK: usize = 8;
-/// Error of a pair in the norm of `A`, over its `theta`, which is then exact to about the square.
+/// Largest error of a converged pair in the norm of `A`, relative to its `theta`, which is then exact to
+/// about the square.
 const CONVERGED: f64 = 1e-9;
-/// Blocks at most, beyond four vectors for each pair that is asked for.
+/// Largest number of blocks, in addition to four vectors for each requested pair.
 const BLOCKS: usize = 40;
-/// Length of a vector once the others are taken off, over the largest before: below this only rounding is left.
+/// Relative length below which only rounding is left of a vector: its length after orthogonalisation over the
+/// largest length before.
 const DEPENDENT: f64 = 1e-12;
 
-/// The `count` largest eigenvalues of `M` in the metric of `A = K + shift M`, which must be positive definite, and more if more
-/// are found.
+/// Computes the `count` largest eigenvalues of `M x = theta A x`, and all others that converge with them.
+/// `A = K + shift M` must be positive definite. A matrix of fewer than `count` unknowns gives all its
+/// eigenvalues.
 ///
-/// Block Lanczos with the factor of `A` (Grimes, Lewis & Simon, SIAM J. Matrix Anal. Appl. 15 (1994) 228-272). All vectors are
-/// made orthogonal in the metric of `A`, which no mass makes singular, to all before: twice, as once leaves rounding behind.
-/// The basis starts from fixed numbers and is never restarted. One thread but for the factor: the same bits at any number.
+/// The method is block Lanczos with the factor of `A` (Grimes, Lewis & Simon, SIAM J. Matrix Anal. Appl. 15
+/// (1994) 228-272). Every vector is made orthogonal to all earlier vectors in the metric of `A`, which stays
+/// definite if the mass matrix is singular. Orthogonalisation is done twice, because a single pass leaves
+/// rounding behind. The basis starts from fixed numbers and is never restarted. Only the factorisation uses
+/// several threads, and the bits do not depend on their number.
+///
+/// # Errors
+///
+/// [`FactorError::NotDefinite`] if `A` is not positive definite, [`AlgebraError::NoEigenvalues`] if too few
+/// pairs converge.
 pub fn largest(
     stiffness: &Symmetric,
     mass: &Symmetric,
@@ -56,7 +67,8 @@ pub fn largest(
     Err(AlgebraError::NoEigenvalues { dofs: n }.into())
 }
 
-/// A number between -1 and 1 for each entry of the first block (Steele, Lea & Flood 2014: SplitMix64).
+/// Returns a fixed number between -1 and 1 for each entry of the first block (SplitMix64; Steele, Lea & Flood
+/// 2014).
 fn start(i: usize, j: usize) -> f64 {
     let mut z = ((i * BLOCK + j) as u64 + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
     z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -64,20 +76,20 @@ fn start(i: usize, j: usize) -> f64 {
     ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 52) as f64 - 1.0
 }
 
-/// `A^-1 M`.
+/// The operator `A^-1 M`.
 struct Operator<'a> {
     factor: Factorization,
     mass: &'a Symmetric,
 }
 
-/// Vectors by columns, and `A` times them.
+/// Vectors `v` by columns, and `A v`.
 struct Block {
     v: Mat<f64>,
     av: Mat<f64>,
 }
 
 impl Operator<'_> {
-    /// `A` times the outcome is known without a product: it is `M v`.
+    /// Applies the operator to `v`. The product of `A` with the result needs no computation: it is `M v`.
     fn apply(&self, v: &Mat<f64>) -> Result<Block, AlgebraError> {
         let av = product(self.mass, v);
         let mut v = av.clone();
@@ -86,7 +98,7 @@ impl Operator<'_> {
     }
 }
 
-/// `A v`, all columns at a time: the matrix is read once.
+/// Returns `A v` for all columns at a time, so that the matrix is read once.
 fn product(matrix: &Symmetric, v: &Mat<f64>) -> Mat<f64> {
     let (n, width) = (v.nrows(), v.ncols());
     let mut x = vec![[0.0; BLOCK]; n];
@@ -119,7 +131,7 @@ impl Block {
         (0..self.v.ncols()).map(|j| self.length(j)).fold(0.0, f64::max)
     }
 
-    /// Adds `factor` times a column of another block to one of this.
+    /// Adds `factor` times column `k` of `other` to column `j` of this block.
     fn add(&mut self, j: usize, factor: f64, other: &Block, k: usize) {
         for (to, from) in [(&mut self.v, &other.v), (&mut self.av, &other.av)] {
             let (to, from) = (to.col_as_slice_mut(j), from.col_as_slice(k));
@@ -134,7 +146,8 @@ impl Block {
     }
 }
 
-/// An orthonormal basis `Q` of a block `W = Q R`, and `R`: its vectors one after another, without those shorter than `least`.
+/// Returns an orthonormal basis `Q` of a block `W = Q R`, and `R`. Vectors are taken one after another,
+/// without those shorter than `least`.
 fn normalised(mut block: Block, least: f64) -> (Block, Mat<f64>) {
     let (n, width) = (block.v.nrows(), block.v.ncols());
     let mut made = Block { v: Mat::zeros(n, width), av: Mat::zeros(n, width) };
@@ -162,23 +175,23 @@ fn normalised(mut block: Block, least: f64) -> (Block, Mat<f64>) {
     (made, r)
 }
 
-/// All blocks so far, and `M` in their space.
+/// All blocks so far, and `M` projected onto their space.
 struct Basis {
     blocks: Vec<Block>,
     projected: Mat<f64>,
 }
 
-/// Eigenvalues of `M` in the space of a basis, the largest first, with their coefficients by columns.
+/// Eigenvalues of the projected `M`, largest first, with their coefficients by columns.
 struct Pairs {
     values: Vec<f64>,
     coefficients: Mat<f64>,
-    /// How many of the first are converged.
+    /// Number of leading pairs that have converged.
     converged: usize,
 }
 
 impl Basis {
-    /// Takes what the operator made of the last block into the projection, and returns what is new in it: an orthonormal block, and
-    /// how it is coupled to the last.
+    /// Adds the image of the last block under the operator to the projection. Returns the new part of the
+    /// image as an orthonormal block, and the coupling of that block to the last.
     fn extend(&mut self, mut applied: Block, metric: &Symmetric) -> (Block, Mat<f64>) {
         let (before, width) = (self.projected.nrows(), applied.v.ncols());
         let mut projected = Mat::zeros(before + width, before + width);
@@ -193,15 +206,16 @@ impl Basis {
         }
         self.projected = projected;
         let (mut block, first) = normalised(applied, DEPENDENT * longest);
-        // Of a short vector the rounding of `v` and of `A v` have grown apart.
+        // The rounding errors of `v` and `A v` have grown apart in a short vector, so `A v` is computed anew.
         block.av = product(metric, &block.v);
         self.take_off(&mut block);
-        // What is left of a unit vector that was rounding is as long as rounding makes it.
+        // A unit vector that consists of rounding loses most of its length in the second pass and is left out
+        // here.
         let (block, second) = normalised(block, 0.1);
         (block, &second * &first)
     }
 
-    /// Takes the parts along all vectors of the basis off a block, and returns their lengths.
+    /// Removes the components along all basis vectors from a block, and returns them.
     fn take_off(&self, block: &mut Block) -> Mat<f64> {
         let width = block.v.ncols();
         let mut all = Mat::zeros(self.blocks.iter().map(|b| b.v.ncols()).sum(), width);
@@ -217,7 +231,8 @@ impl Basis {
         all
     }
 
-    /// `coupling` says what each pair leaves: its coefficients along the last block times that.
+    /// Solves the projected problem. The residual of a pair is `coupling` times its coefficients along the
+    /// last block.
     fn pairs(&self, coupling: &Mat<f64>) -> Result<Pairs, AlgebraError> {
         let m = self.projected.nrows();
         let (mut values, mut vectors) = (Diag::<f64>::zeros(m), Mat::zeros(m, m));
@@ -237,7 +252,7 @@ impl Basis {
         Ok(Pairs { values, coefficients, converged })
     }
 
-    /// The converged pairs over all unknowns.
+    /// Expands the converged pairs to all unknowns.
     fn eigen(&self, pairs: &Pairs) -> Eigen {
         let mut vectors = Mat::zeros(self.blocks[0].v.nrows(), pairs.converged);
         let mut at = 0;
@@ -258,8 +273,8 @@ mod tests {
 
     const SIDE: usize = 9;
 
-    /// `a + b + c` of second differences along three axes, free at the ends: a cube, whose eigenvalues come up to six at a time.
-    /// Every mass is 1.
+    /// Sum of second differences along three axes, free at the ends: a cube, with eigenvalues of multiplicity
+    /// up to six. Every mass is 1.
     fn cube() -> (Symmetric, Symmetric) {
         let n = SIDE * SIDE * SIDE;
         let (mut offsets, mut rows, mut values) = (vec![0], Vec::new(), Vec::new());
@@ -304,7 +319,7 @@ mod tests {
         for (theta, exact) in found.values.iter().zip(&exact) {
             assert!((1.0 / theta - SHIFT - exact).abs() < 1e-11, "{} for {exact}", 1.0 / theta - SHIFT);
         }
-        // Sylvester's law of inertia counts those below a number.
+        // Sylvester's law of inertia counts the eigenvalues below a number.
         let below = 0.5 * (exact[39] + exact[exact.partition_point(|e| *e < exact[39] + 1e-9)]);
         let shifted = stiffness.plus(&mass, -below);
         let symbolic = analyse(&shifted, 0).unwrap();
@@ -349,7 +364,7 @@ mod tests {
         assert!(on(2) == one && on(3) == one);
     }
 
-    /// More than there are: all of them.
+    /// More pairs are requested than there are: all are returned.
     #[test]
     fn a_small_matrix_has_few_eigenvalues() {
         let n = 5;

@@ -1,7 +1,7 @@
-//! Direct solution of symmetric systems: the only module that knows faer and METIS.
+//! Direct solution of symmetric systems: the only module that uses faer and METIS.
 //!
-//! The bits of a result do not depend on the number of threads, which only large factorisations take. Every solve
-//! ends with its residual.
+//! The bits of a result do not depend on the number of threads. Only large factorisations use several. Every
+//! solve ends with its residual.
 
 mod accuracy;
 mod curvature;
@@ -32,34 +32,42 @@ pub use symmetric::{Kind, Symmetric};
 pub use unsymmetric::{Border, Unsymmetric};
 pub use workspace::reserve_workspaces;
 
-/// Up to this many unknowns the dense factorisation serves. Measured (dense / sparse, ms, `benches/factor.rs`), on
-/// boxes of tet4: 0.30 / 0.67 at 300 unknowns, 1.45 / 1.05 at 540, 5.4 / 1.6 at 882; on rows as wide as a meshless
-/// cloud's: 0.34 / 1.03 at 300, 1.46 / 1.98 at 540, 5.4 / 4.3 at 882. The crossovers lie near 430 and 750.
+/// Largest number of unknowns for which the dense factorisation is used.
+///
+/// Measured times (dense / sparse, ms, `benches/factor.rs`): on boxes of tet4, 0.30 / 0.67 at 300 unknowns,
+/// 1.45 / 1.05 at 540, 5.4 / 1.6 at 882; on rows as wide as those of a meshless cloud, 0.34 / 1.03 at 300,
+/// 1.46 / 1.98 at 540, 5.4 / 4.3 at 882. The crossovers lie near 430 and 750.
 pub const DENSE_LIMIT: usize = 480;
 
-/// Relative residual `|b - A x| / |b|` up to which no solution is refused; what is above is judged by its digits, or refused
-/// where a step of an iteration is asked for.
+/// Relative residual `|b - A x| / |b|` up to which every solution is accepted. Above this limit a final
+/// answer is judged by its digits, and a step of an iteration is refused.
 const RESIDUAL_LIMIT: f64 = 1e-8;
-/// The same for a step of an iteration where rounding explains it: the iteration still gains two digits.
+/// Relative residual up to which a step of an iteration is accepted if rounding explains the residual. The
+/// iteration still gains two digits.
 const STEP_LIMIT: f64 = 1e-2;
-/// Refinement stops below this residual.
+/// Relative residual below which refinement stops.
 const RESIDUAL_GOAL: f64 = 1e-14;
-/// Smallest pivot over diagonal entry of a definite matrix; rounding leaves about 1e-16 of a true zero.
+/// Smallest ratio of pivot to diagonal entry of a definite matrix. Rounding leaves about 1e-16 of a true
+/// zero.
 const PIVOT_LIMIT: f64 = 1e-14;
-/// The same in single precision from which a matrix is definite whatever the rounding: that is of some 1e-6.
+/// Ratio of pivot to diagonal entry in single precision above which a matrix is definite despite rounding of
+/// about 1e-6.
 const CLEAR_PIVOT: f64 = 1e-4;
 
-/// Workspace of zeros. Registers reach beyond the ends of faer's matrices, into what other tables left in that memory: indices are
-/// denormal as numbers, and each costs an assist of the processor. A dense factor of 249 unknowns took 1.8 ms, not 0.6.
+/// Fills a workspace with zeros.
+///
+/// Vector registers reach beyond the ends of faer's matrices, into memory that other tables have used.
+/// Indices left there are denormal if read as numbers, and each costs a processor assist. Without zeros a
+/// dense factor of 249 unknowns took 1.8 ms instead of 0.6 ms.
 fn zeroed(mut memory: MemBuffer) -> MemBuffer {
     memory.fill(MaybeUninit::new(0));
     memory
 }
 
-/// Which factorisation served.
+/// Factorisation or iterative solver that was used.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SolverPath {
-    /// Nothing was free: no system.
+    /// No system: no unknown was free.
     None,
     /// Dense Cholesky `L L^T`.
     DenseLlt,
@@ -71,12 +79,12 @@ pub enum SolverPath {
     SparseLdlt,
     /// Conjugate gradients with smoothed aggregation as preconditioner.
     Multigrid,
-    /// Displacements and pressures by GCR with smoothed aggregation in its preconditioner.
+    /// GCR for displacements and pressures, with smoothed aggregation in the preconditioner.
     MultigridPressures,
 }
 
 impl SolverPath {
-    /// The name used in records.
+    /// Returns the name used in records.
     pub fn name(self) -> &'static str {
         match self {
             SolverPath::None => "none",
@@ -90,7 +98,7 @@ impl SolverPath {
     }
 }
 
-/// The numbers of a factor.
+/// Numeric values of a factor.
 pub struct Factor(Numbers);
 
 enum Numbers {
@@ -101,8 +109,8 @@ enum Numbers {
 }
 
 impl Factor {
-    /// Negative pivots: with a saddle matrix as many as multipliers if the rest is definite on their kernel
-    /// (Sylvester's law of inertia).
+    /// Number of negative pivots. For a saddle matrix it equals the number of multipliers if the rest is
+    /// definite on their kernel (Sylvester's law of inertia).
     pub fn negative_pivots(&self) -> usize {
         match &self.0 {
             Numbers::Empty => 0,
@@ -112,7 +120,8 @@ impl Factor {
         }
     }
 
-    /// The matrix factored in double precision, where this is a factor in single precision (of a matrix near to it).
+    /// Factors `matrix` in double precision if this factor is in single precision (of a nearby matrix).
+    /// Returns `None` otherwise.
     fn exact(&self, matrix: &Symmetric) -> Result<Option<Factor>, AlgebraError> {
         let Numbers::Single(factor) = &self.0 else { return Ok(None) };
         let numbers = |kind| sparse::Sparse::new(factor.symbolic().clone(), matrix, kind);
@@ -124,12 +133,13 @@ impl Factor {
         }
     }
 
-    /// Whether this factor in single precision proves that its matrix is definite: no pivot is near to rounding. `false` of any other.
+    /// Whether this single-precision factor proves that its matrix is definite: no pivot is near rounding.
+    /// `false` for any other factor.
     pub fn is_clear(&self, matrix: &Symmetric) -> bool {
         matches!(&self.0, Numbers::Single(factor) if factor.least_pivot(matrix) > CLEAR_PIVOT)
     }
 
-    /// In single precision, as [`factor_roughly`] makes it.
+    /// Rounds the factor to single precision, the form that [`factor_roughly`] returns.
     pub fn rounded(self) -> Factor {
         match self.0 {
             Numbers::Sparse(factor) => Factor(Numbers::Single(Box::new((*factor).into()))),
@@ -137,7 +147,7 @@ impl Factor {
         }
     }
 
-    /// Solves in place, once.
+    /// Solves in place, without refinement.
     fn solve(&self, b: &mut [f64]) -> Result<(), AlgebraError> {
         match &self.0 {
             Numbers::Empty => Ok(()),
@@ -151,17 +161,17 @@ impl Factor {
     }
 }
 
-/// A factored matrix; serves any number of right-hand sides.
+/// Factored matrix for any number of right-hand sides.
 pub struct Factorization {
     /// The matrix, for residuals.
     pub matrix: Symmetric,
-    /// Its factor, perhaps of a matrix near to it.
+    /// Factor of the matrix, or of a nearby matrix.
     pub factor: Arc<Factor>,
-    /// What was promised of the matrix.
+    /// Kind of matrix that the caller declared.
     pub kind: Kind,
 }
 
-/// What went wrong with a definite factorisation; the caller knows why it should have been definite.
+/// Failure of a factorisation. The caller knows why the matrix should have been definite.
 #[derive(Debug)]
 pub enum FactorError {
     /// A pivot is zero or negative.
@@ -176,7 +186,7 @@ impl From<AlgebraError> for FactorError {
     }
 }
 
-/// Dense up to `dense_limit` unknowns, sparse above.
+/// Factors a matrix: dense up to `dense_limit` unknowns, sparse above.
 pub fn factor(matrix: Symmetric, dense_limit: usize) -> Result<Factorization, FactorError> {
     let kind = matrix.kind();
     let symbolic = analyse(&matrix, dense_limit)?;
@@ -184,12 +194,12 @@ pub fn factor(matrix: Symmetric, dense_limit: usize) -> Result<Factorization, Fa
     Ok(Factorization { matrix, factor, kind })
 }
 
-/// The symbolic analysis that any number of matrices of one pattern share; `None` for a dense factorisation.
+/// Returns the symbolic analysis shared by all matrices of one pattern; `None` for a dense factorisation.
 pub fn analyse(matrix: &Symmetric, dense_limit: usize) -> Result<Option<Arc<Symbolic>>, AlgebraError> {
     if matrix.dim() <= dense_limit { Ok(None) } else { Ok(Some(Arc::new(Symbolic::new(matrix)?))) }
 }
 
-/// Numbers of the factor of a matrix with the pattern that was analysed.
+/// Factors a matrix that has the analysed pattern.
 pub fn factor_as(
     symbolic: Option<&Arc<Symbolic>>,
     matrix: &Symmetric,
@@ -202,8 +212,10 @@ pub fn factor_as(
     }))
 }
 
-/// The same in single precision, for a preconditioner: half the time, and half the memory. A dense one, which is small, and one with
-/// multipliers are as ever.
+/// Factors like [`factor_as`], but in single precision, for a preconditioner: half the time and half the
+/// memory.
+///
+/// Dense factors, which are small, and factors with multipliers stay in double precision.
 pub fn factor_roughly(
     symbolic: Option<&Arc<Symbolic>>,
     matrix: &Symmetric,
@@ -218,7 +230,7 @@ pub fn factor_roughly(
     }
 }
 
-/// Refuses a pivot that is mere rounding beside its diagonal entry.
+/// Refuses pivots that are rounding relative to their diagonal entries.
 fn check_pivots(ratios: impl Iterator<Item = f64>) -> Result<(), FactorError> {
     let ratio = ratios.fold(f64::INFINITY, f64::min);
     if ratio.is_nan() || ratio < PIVOT_LIMIT {
@@ -235,15 +247,15 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-/// A solution, what is left of the right-hand side and that relative to it.
+/// Solution, residual vector `b - A x`, and relative residual.
 struct Refined {
     x: Vec<f64>,
     rest: Vec<f64>,
     residual: f64,
 }
 
-/// Solves by `once` and refines until the residual is at rounding or no longer halves; with multipliers that takes about three
-/// steps, else none or one.
+/// Solves by `once` and refines until the residual is at rounding or no longer halves. With multipliers this
+/// takes about three steps, else none or one.
 fn refine(
     b: &[f64],
     once: impl Fn(&mut [f64]) -> Result<(), AlgebraError>,
@@ -274,7 +286,11 @@ fn refine(
     Ok(best)
 }
 
-/// Solves in place by `once` and returns the relative residual, which must be small.
+/// Solves in place by `once` with refinement, and returns the relative residual.
+///
+/// # Errors
+///
+/// [`AlgebraError::Residual`] if the relative residual exceeds `RESIDUAL_LIMIT`.
 fn refined(
     b: &mut [f64],
     once: impl Fn(&mut [f64]) -> Result<(), AlgebraError>,
@@ -289,9 +305,14 @@ fn refined(
 }
 
 impl Factorization {
-    /// Solves in place and returns the relative residual: for a step of an iteration, which must follow its
-    /// right-hand side. A residual that rounding explains may be larger: near a singular matrix a step is
-    /// many times longer than its right-hand side.
+    /// Solves in place for a step of an iteration, and returns the relative residual.
+    ///
+    /// A step must follow its right-hand side, so a large residual is refused. A residual that rounding
+    /// explains may be larger: near a singular matrix a step is many times longer than its right-hand side.
+    ///
+    /// # Errors
+    ///
+    /// [`AlgebraError::Residual`] if the residual is too large.
     pub fn solve(&self, b: &mut [f64]) -> Result<f64, AlgebraError> {
         let Refined { x, rest, residual } = self.refine(b)?;
         let rounding = || self.backward_error(&Solved::new(residual, &rest, &x, b)) <= BACKWARD_LIMIT;
@@ -302,7 +323,12 @@ impl Factorization {
         Ok(residual)
     }
 
-    /// Solves in place: for an answer, which is refused if it has no digits and not for a residual that rounding explains.
+    /// Solves in place for a final answer. The answer is refused if it has no correct digits, but not for a
+    /// residual that rounding explains.
+    ///
+    /// # Errors
+    ///
+    /// [`AlgebraError::BackwardError`] or [`AlgebraError::NoDigits`] if the answer is refused.
     pub fn solve_judged(&self, b: &mut [f64]) -> Result<Solved, AlgebraError> {
         let Refined { x, rest, residual } = self.refine(b)?;
         let solved = Solved::new(residual, &rest, &x, b);
@@ -324,12 +350,12 @@ impl Factorization {
         refine(b, |x| self.solve_once(x), |x, y| self.matrix.subtract_product(x, y))
     }
 
-    /// Solves in place by the factor alone, without refinement and residual.
+    /// Solves in place by the factor alone, without refinement or residual.
     pub fn solve_once(&self, b: &mut [f64]) -> Result<(), AlgebraError> {
         self.factor.solve(b)
     }
 
-    /// Solves for all columns, once.
+    /// Solves for all columns, without refinement.
     fn solve_columns(&self, mut b: MatMut<f64>) -> Result<(), AlgebraError> {
         match &self.factor.0 {
             Numbers::Empty => Ok(()),
@@ -346,7 +372,7 @@ impl Factorization {
         self.matrix.dim()
     }
 
-    /// Numbers stored in the factor.
+    /// Number of values stored in the factor.
     pub fn nonzeros(&self) -> usize {
         match &self.factor.0 {
             Numbers::Empty => 0,
@@ -356,7 +382,7 @@ impl Factorization {
         }
     }
 
-    /// Which factorisation it is.
+    /// Returns the kind of factorisation that is used.
     pub fn path(&self) -> SolverPath {
         match (&self.factor.0, self.kind == Kind::Definite) {
             (Numbers::Empty, _) => SolverPath::None,

@@ -1,5 +1,7 @@
-//! Fill-reducing order: METIS nested dissection of the vertex graph, composed with a postorder of its elimination
-//! tree. faer does not postorder a permutation it is given, and without it supernodes are half as wide.
+//! Fill-reducing order: METIS nested dissection of the vertex graph, composed with a postorder of its
+//! elimination tree.
+//!
+//! faer does not postorder a given permutation. Without the postorder, supernodes are half as wide.
 
 use std::sync::Mutex;
 
@@ -8,11 +10,12 @@ use metis_sys as metis;
 use super::Symmetric;
 use crate::AlgebraError;
 
-/// METIS draws from the C library's one random generator: two orderings at a time would disturb each other's bits.
+/// METIS draws from the global random generator of the C library: concurrent orderings would change each
+/// other's bits.
 static METIS: Mutex<()> = Mutex::new(());
 
-/// The order of unknowns: `forward[new] = old`, and its inverse. Ordering vertices (nodes) in place of unknowns makes
-/// the graph nine times smaller.
+/// Returns the order of unknowns, `forward[new] = old`, and its inverse. The graph of vertices (nodes) is
+/// nine times smaller than that of unknowns.
 pub(super) fn nested_dissection(matrix: &Symmetric) -> Result<(Vec<usize>, Vec<usize>), AlgebraError> {
     let graph = Graph::of(matrix);
     let order = graph.dissect()?;
@@ -26,7 +29,7 @@ pub(super) fn nested_dissection(matrix: &Symmetric) -> Result<(Vec<usize>, Vec<u
     Ok((forward, inverse))
 }
 
-/// Neighbours of each vertex, itself left out.
+/// Neighbours of each vertex, without the vertex itself.
 struct Graph {
     offsets: Vec<usize>,
     neighbours: Vec<i32>,
@@ -74,7 +77,7 @@ impl Graph {
         Graph { offsets, neighbours, weights }
     }
 
-    /// METIS' order: vertex at each place.
+    /// Returns the order found by METIS: the vertex at each position.
     fn dissect(&self) -> Result<Vec<usize>, AlgebraError> {
         let count = self.weights.len();
         let too_large =
@@ -90,13 +93,13 @@ impl Graph {
         let (mut order, mut place) = (vec![0i32; count], vec![0i32; count]);
         let mut options = [0i32; metis::METIS_NOPTIONS as usize];
         let _one_at_a_time = METIS.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
-        // SAFETY: the arrays have the lengths METIS documents (nvtxs + 1, number of neighbours, nvtxs, the options'
-        // own) and outlive the call.
+        // SAFETY: the arrays have the lengths METIS documents (nvtxs + 1, number of neighbours, nvtxs, the
+        // options' own) and outlive the call.
         let status = unsafe {
             metis::METIS_SetDefaultOptions(options.as_mut_ptr());
             options[metis::moptions_et_METIS_OPTION_SEED as usize] = 1;
             options[metis::moptions_et_METIS_OPTION_NUMBERING as usize] = 0;
-            // The graph is compressed already: no two vertices are alike.
+            // The graph is compressed already: no two vertices have equal neighbourhoods.
             options[metis::moptions_et_METIS_OPTION_COMPRESS as usize] = 0;
             metis::METIS_NodeND(
                 &mut nvtxs,
@@ -114,7 +117,7 @@ impl Graph {
         Ok(order.into_iter().map(|v| v as usize).collect())
     }
 
-    /// `order` composed with a postorder of the elimination tree it gives: same fill, wide supernodes.
+    /// Composes `order` with a postorder of its elimination tree: same fill, wide supernodes.
     fn postordered(&self, order: &[usize]) -> Vec<usize> {
         let count = order.len();
         let mut place = vec![0; count];
@@ -138,7 +141,8 @@ impl Graph {
                 }
             }
         }
-        // Children in ascending order, then depth first without recursion (a chain may be as deep as the matrix).
+        // Children in ascending order, then depth first without recursion (a chain may be as deep as the
+        // matrix).
         let (mut first, mut sibling) = (vec![NONE; count], vec![NONE; count]);
         for v in (0..count).rev() {
             if parent[v] != NONE {

@@ -15,21 +15,22 @@ use faer::{Conj, MatMut, Par, Side};
 use super::{FactorError, Kind, Symmetric, check_pivots, ordering, zeroed};
 use crate::AlgebraError;
 
-/// Multiplications of a factorisation from which it takes all threads: below, they cost more than they save. Threads share
-/// out blocks of dense products and split no sum, so that the bits stay (faer 0.24; the test below holds it to that).
+/// Number of multiplications above which a factorisation uses all threads; below, threads cost more than they
+/// save. Threads divide the blocks of dense products and split no sum, so the bits do not change (faer 0.24;
+/// a test below checks this).
 const FOR_THREADS: f64 = 4e9;
 
-/// Order and symbolic structure of a factor: what matrices of one pattern share.
+/// Order and symbolic structure of a factor, shared by matrices of one pattern.
 pub struct Symbolic {
     cholesky: SymbolicCholesky<usize>,
     forward: Vec<usize>,
     multiplications: f64,
-    /// Numbers of factors that are no more, to be written over: on fresh memory the system took a tenth of the time of
-    /// a path with 4000 unknowns.
+    /// Value arrays of dropped factors, to be reused. With fresh memory the operating system took a tenth of
+    /// the time of a load path with 4000 unknowns.
     spare: Mutex<Vec<Vec<f64>>>,
-    /// The same of factors in single precision.
+    /// The same for factors in single precision.
     spare_single: Mutex<Vec<Vec<f32>>>,
-    /// Workspace of the last factorisation but the first.
+    /// Workspace of the last factorisation, kept from the second factorisation on.
     workspace: Mutex<Option<MemBuffer>>,
 }
 
@@ -57,7 +58,7 @@ impl Symbolic {
         self.multiplications > FOR_THREADS
     }
 
-    /// Multiplications of a factorisation over those of a solution with the factor.
+    /// Cost ratio of a factorisation to a solve with the factor, in multiplications.
     pub fn solutions(&self) -> f64 {
         self.multiplications / (2.0 * self.cholesky.len_val() as f64)
     }
@@ -66,8 +67,9 @@ impl Symbolic {
         locked(&self.spare)
     }
 
-    /// Workspace for `scratch`: that of the factorisation before, if it is large enough. What that left there is of the same kinds in
-    /// the same places, or numbers.
+    /// Returns a workspace for `scratch`: the previous one if it is large enough, else a new one of zeros.
+    /// The previous factorisation left numbers there, or data of the same kinds in the same places, so no
+    /// zeros are needed.
     fn workspace(&self, scratch: StackReq) -> Result<MemBuffer, AlgebraError> {
         let kept =
             locked(&self.workspace).take().filter(|kept| kept.len() >= scratch.unaligned_bytes_required());
@@ -85,8 +87,8 @@ fn locked<T>(of: &Mutex<T>) -> MutexGuard<'_, T> {
     of.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
 }
 
-/// Of the numeric factorisation: `w^3/6 + w^2 r/2 + w r^2/2` for a supernode of w columns with r rows below; 0 where columns
-/// stand alone, which are few.
+/// Number of multiplications of the numeric factorisation: `w^3/6 + w^2 r/2 + w r^2/2` for a supernode of w
+/// columns with r rows below. A simplicial factor counts as 0: it needs few.
 fn multiplications(cholesky: &SymbolicCholesky<usize>) -> f64 {
     let SymbolicCholeskyRaw::Supernodal(s) = cholesky.raw() else { return 0.0 };
     (0..s.n_supernodes())
@@ -107,7 +109,7 @@ fn too_large(dofs: usize, why: &dyn std::fmt::Display) -> AlgebraError {
     AlgebraError::TooLarge { dofs, why: why.to_string() }
 }
 
-/// Numbers of `L L^T`, or of `L D L^T` of a matrix that is not definite.
+/// Factor `L L^T`, or `L D L^T` of a matrix that is not definite, in double precision.
 pub struct Sparse {
     symbolic: Arc<Symbolic>,
     values: Vec<f64>,
@@ -206,7 +208,7 @@ impl From<Sparse> for Single {
     }
 }
 
-/// Numbers of a factor in single precision.
+/// Factor in single precision.
 pub struct Single {
     symbolic: Arc<Symbolic>,
     values: Vec<f32>,
@@ -220,7 +222,8 @@ impl Drop for Single {
 }
 
 impl Single {
-    /// `L L^T`, or `L D L^T` of a matrix that is not definite; none with multipliers, whose regularisation is lost in rounding.
+    /// Computes `L L^T`, or `L D L^T` of a matrix that is not definite. The matrix must have no multipliers,
+    /// because their regularisation is lost in rounding.
     pub fn new(symbolic: Arc<Symbolic>, matrix: &Symmetric, definite: bool) -> Result<Single, FactorError> {
         let n = matrix.dim();
         let cholesky = &symbolic.cholesky;
@@ -260,7 +263,7 @@ impl Single {
         done.map(|_| factor)
     }
 
-    /// Solves in place, to single precision of the largest.
+    /// Solves in place, to single precision relative to the largest entry.
     pub fn solve(&self, b: &mut [f64]) -> Result<(), AlgebraError> {
         let n = b.len();
         let largest = b.iter().fold(0.0f64, |m, v| m.max(v.abs()));
@@ -286,14 +289,14 @@ impl Single {
         &self.symbolic
     }
 
-    /// The least pivot of `L L^T` over the diagonal entry of its matrix; 0 of `L D L^T`.
+    /// Smallest ratio of a pivot of `L L^T` to the diagonal entry of its matrix; 0 for `L D L^T`.
     pub fn least_pivot(&self, matrix: &Symmetric) -> f64 {
         if !self.definite {
             return 0.0;
         }
         let forward = &self.symbolic.forward;
         let ratio = |(k, l): (usize, f32)| f64::from(l).powi(2) / matrix.diagonal(forward[k]);
-        // A ratio that is none counts as 0.
+        // A NaN ratio counts as 0.
         let least = |least: f64, ratio: f64| if ratio >= least { least } else { ratio.max(0.0) };
         pivots(&self.symbolic.cholesky, &self.values).map(ratio).fold(f64::INFINITY, least)
     }
@@ -310,7 +313,7 @@ impl Single {
     }
 }
 
-/// Diagonal of `L` (of `D` in `L D L^T`) with its place in the elimination order.
+/// Diagonal of `L` (of `D` in `L D L^T`), with positions in the elimination order.
 fn pivots<'a, T: ComplexField + Copy>(
     symbolic: &'a SymbolicCholesky<usize>,
     values: &'a [T],
@@ -332,7 +335,7 @@ fn pivots<'a, T: ComplexField + Copy>(
 mod tests {
     use super::*;
 
-    /// A full matrix in sparse form, as a cloud's is, large enough for threads.
+    /// Full matrix in sparse form, like that of a cloud, large enough for several threads.
     fn full(n: usize) -> Symmetric {
         let entry = |i: usize, j: usize| match i == j {
             true => n as f64,
@@ -366,7 +369,7 @@ mod tests {
         }
     }
 
-    /// Chains of two unknowns that are coupled by all but `gap`: of each pivot `1 - (1 - gap)^2` is left.
+    /// Pairs of unknowns with coupling `1 - gap`: every second pivot is `1 - (1 - gap)^2`.
     fn pairs(gap: f64) -> Symmetric {
         let count = 40;
         let offsets = |pair: usize| [3 * pair + 1, 3 * pair + 3];

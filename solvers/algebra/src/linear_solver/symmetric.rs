@@ -1,34 +1,38 @@
-//! Symmetric matrices as factors take them: the upper triangle, column by column.
+//! Symmetric matrices in the form that factorisations take: the upper triangle, column by column.
 
 use crate::Stiffness;
 
-/// Static regularisation of a saddle matrix relative to its largest entry: +- this on the diagonal.
+/// Static regularisation of a saddle matrix, added to or subtracted from the diagonal, relative to its
+/// largest entry.
 const REGULARISATION: f64 = 1e-9;
 
-/// What is known of a matrix, and so which factorisation serves.
+/// Known definiteness of a matrix, which selects the factorisation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// Positive definite: `L L^T`.
     Definite,
-    /// Unknowns beyond [`Symmetric::multipliers`] have a zero or negative block: `L D L^T`, statically regularised.
+    /// Unknowns from [`Symmetric::multipliers`] on have a zero or negative block: `L D L^T`, statically
+    /// regularised.
     Saddle,
-    /// Symmetric without a promise (a tangent past a limit point): `L D L^T` as it is; the residual check decides.
+    /// Symmetric, of unknown definiteness (a tangent past a limit point): `L D L^T` without regularisation;
+    /// the residual check decides.
     Indefinite,
 }
 
-/// A symmetric matrix: its upper triangle by columns, rows ascending, the diagonal entry always present. Unknowns
-/// from `multipliers` on are Lagrange multipliers or pressures (zero or negative diagonal block).
+/// A symmetric matrix: its upper triangle by columns, rows ascending, the diagonal entry always present.
+/// Unknowns from `multipliers` on are Lagrange multipliers or pressures (zero or negative diagonal block).
 #[derive(Clone)]
 pub struct Symmetric {
-    /// Of each column among `rows` and `values`, columns + 1 entries.
+    /// Start of each column in `rows` and `values`; columns + 1 entries.
     pub offsets: Vec<usize>,
     /// Row of each entry.
     pub rows: Vec<usize>,
     /// The entries.
     pub values: Vec<f64>,
-    /// First unknown that is a multiplier or a pressure; their number in all where there is none.
+    /// First unknown that is a multiplier or a pressure; the number of unknowns if there is none.
     pub multipliers: usize,
-    /// First unknown of each vertex of the graph (a node or a multiplier), and the number of unknowns at the end.
+    /// First unknown of each vertex of the graph (a node or a multiplier), followed by the number of
+    /// unknowns.
     pub vertices: Vec<usize>,
 }
 
@@ -39,13 +43,13 @@ impl Symmetric {
         self.offsets.len() - 1
     }
 
-    /// Definite unless multipliers follow.
+    /// Returns [`Kind::Definite`] without multipliers, [`Kind::Saddle`] with them.
     pub fn kind(&self) -> Kind {
         if self.multipliers < self.dim() { Kind::Saddle } else { Kind::Definite }
     }
 
-    /// The free part of a stiffness: `place` gives each degree of freedom its unknown (`usize::MAX` if constrained), `free`
-    /// their number.
+    /// Extracts the free part of a stiffness. `place` maps each degree of freedom to its unknown
+    /// (`usize::MAX` if constrained); `free` is the number of unknowns.
     pub fn displacements(stiffness: &Stiffness, place: &[usize], free: usize) -> Symmetric {
         let capacity = 9 * stiffness.pattern().block_count();
         let mut m = Symmetric {
@@ -77,7 +81,7 @@ impl Symmetric {
         m
     }
 
-    /// `A + factor B` of two matrices over the same unknowns, whose entries need not be in the same places.
+    /// Returns `A + factor B` of two matrices over the same unknowns, whose patterns may differ.
     pub(super) fn plus(&self, other: &Symmetric, factor: f64) -> Symmetric {
         let (mut offsets, mut rows, mut values) = (vec![0], Vec::new(), Vec::new());
         for j in 0..self.dim() {
@@ -95,15 +99,16 @@ impl Symmetric {
         Symmetric { offsets, rows, values, multipliers: self.multipliers, vertices: self.vertices.clone() }
     }
 
-    /// Makes the diagonal of the unknowns before the multipliers what it was in `diagonal`, times `1 + shift`.
+    /// Sets the diagonal of the unknowns before the multipliers to its unshifted values `diagonal` times
+    /// `1 + shift`.
     pub fn shift(&mut self, diagonal: &[f64], shift: f64) {
         for (j, d) in diagonal.iter().enumerate().take(self.multipliers) {
             self.values[self.offsets[j + 1] - 1] = d * (1.0 + shift);
         }
     }
 
-    /// `y -= A x`. The three columns of a node have the rows of other nodes in common and go through them together, in the
-    /// order of sums that each by itself would have.
+    /// Computes `y -= A x`. The three columns of a node share the rows of other nodes and are multiplied
+    /// together, in the same order of sums as one by one.
     pub fn subtract_product(&self, x: &[f64], y: &mut [f64]) {
         for vertex in self.vertices.windows(2) {
             let (first, end) = (vertex[0], vertex[1]);
@@ -132,7 +137,8 @@ impl Symmetric {
         }
     }
 
-    /// The `common` entries of three columns from `starts` on; the sums of these, `of` what x has in their own rows.
+    /// Multiplies the `common` entries of three columns, which begin at `starts`. `of` are the entries of x
+    /// in the columns' own rows. Returns the sums of the columns.
     #[inline]
     fn subtract_three(
         &self,
@@ -162,8 +168,8 @@ impl Symmetric {
         self.values[self.offsets[j + 1] - 1]
     }
 
-    /// The values with the static regularisation added, which makes a saddle matrix quasi-definite (it then has an
-    /// `L D L^T` in any order; Vanderbei 1995).
+    /// Returns the values with static regularisation, which makes a saddle matrix quasi-definite: it then has
+    /// an `L D L^T` in any order (Vanderbei 1995).
     pub(super) fn regularised(&self) -> Vec<f64> {
         let largest = self.values.iter().fold(0.0f64, |m, v| m.max(v.abs()));
         let mut values = self.values.clone();

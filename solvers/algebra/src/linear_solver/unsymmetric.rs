@@ -1,4 +1,4 @@
-//! Unsymmetric systems: the tangent of a body on which friction slides, or which tools press by force.
+//! Unsymmetric systems: the tangent of a body with sliding friction, or with tools driven by force.
 
 use faer::MatMut;
 use faer::prelude::Solve;
@@ -9,41 +9,42 @@ use nalgebra::{DMatrix, DVector, Dyn, LU};
 use super::{Factor, Factorization, Symmetric, dot, norm, refined};
 use crate::AlgebraError;
 
-/// Krylov vectors kept; the skew part has the rank of the sliding points at most, and a coefficient of friction of
-/// 0.15 needs about 10.
+/// Largest number of Krylov vectors. The rank of the skew part is at most that of the sliding points, and a
+/// coefficient of friction of 0.15 needs about 10 vectors.
 const KRYLOV: usize = 40;
-/// Iterations after which the rate says whether a kept factor will do.
+/// Iteration from which the convergence rate decides whether a kept factor suffices.
 const JUDGED: usize = 3;
 
-/// A row and a column beyond those of a matrix: a tool driven by force, whose closure is unknown.
+/// Row and column that border a matrix, for a tool driven by force, whose displacement is unknown.
 pub struct Border {
     /// Column, without its last entry.
     pub column: Vec<f64>,
     /// Row, without its last entry.
     pub row: Vec<f64>,
-    /// The entry that both end in.
+    /// Diagonal entry at which row and column end.
     pub corner: f64,
 }
 
-/// A factored symmetric matrix, a few unsymmetric entries `(row, column, value)` on top of it, and borders around it:
+/// Factored symmetric matrix S with a few unsymmetric entries U, `(row, column, value)`, and borders:
 /// `[S + U, C; R, D]`, D diagonal.
 ///
-/// Solved by GMRES (Saad & Schultz 1986) with the factor of `[S, C; R, D]` as the preconditioner; by sparse LU with
-/// partial pivoting where that does not converge. On 1331 nodes one LU took as long as forty factorisations of the
-/// symmetric part.
+/// Solved by GMRES (Saad & Schultz 1986), preconditioned with the factor of `[S, C; R, D]`. If GMRES does not
+/// converge, the system is solved by sparse LU with partial pivoting. On 1331 nodes one LU took as long as
+/// forty factorisations of the symmetric part.
 pub struct Unsymmetric {
     symmetric: Factorization,
     extra: Vec<(usize, usize, f64)>,
     borders: Vec<Border>,
-    /// `S^-1 C`, and `D - R S^-1 C`.
+    /// Columns of `S^-1 C`.
     solved: Vec<Vec<f64>>,
+    /// LU factors of the Schur complement `D - R S^-1 C`.
     schur: LU<f64, Dyn, Dyn>,
-    /// Whether the symmetric part of that Schur complement is positive definite.
+    /// Whether the symmetric part of the Schur complement is positive definite.
     stable: bool,
 }
 
 impl Unsymmetric {
-    /// Entries of one place add up.
+    /// Builds the system. Entries of `extra` with the same row and column add up.
     pub fn new(
         symmetric: Factorization,
         extra: Vec<(usize, usize, f64)>,
@@ -59,7 +60,7 @@ impl Unsymmetric {
         Ok(Unsymmetric { symmetric, extra, borders, solved, schur: schur.lu(), stable })
     }
 
-    /// Whether the borders leave the matrix positive definite, if it is without them.
+    /// Whether the matrix stays positive definite with its borders, if it is so without them.
     pub fn stable(&self) -> bool {
         self.stable
     }
@@ -77,7 +78,7 @@ impl Unsymmetric {
         }
     }
 
-    /// Without the unsymmetric entries: the borders by block elimination.
+    /// Solves without the unsymmetric entries, as a preconditioner; the borders by block elimination.
     fn precondition(&self, factor: &Factor, b: &mut [f64]) -> Result<(), AlgebraError> {
         let (x, moves) = b.split_at_mut(self.symmetric.dim());
         factor.solve(x)?;
@@ -96,12 +97,12 @@ impl Unsymmetric {
         Ok(())
     }
 
-    /// The matrix without borders, as it was before it came here with a factor of one near to it.
+    /// Returns the symmetric matrix and the unsymmetric entries, without borders.
     pub fn into_parts(self) -> (Symmetric, Vec<(usize, usize, f64)>) {
         (self.symmetric.matrix, self.extra)
     }
 
-    /// Whether the factor, if it is one of the symmetric matrix, proves that to be definite.
+    /// Whether the factor, if it belongs to the symmetric matrix, proves this matrix definite.
     pub fn is_clear(&self) -> bool {
         self.symmetric.factor.is_clear(self.matrix())
     }
@@ -111,8 +112,11 @@ impl Unsymmetric {
         &self.symmetric.matrix
     }
 
-    /// Solves in place to a relative residual of `goal` where `most` iterations do, with a factor of a matrix near to this one;
-    /// the iterations, and whether it is solved. Given up as soon as the rate says so.
+    /// Solves in place to a relative residual of `goal` in at most `most` iterations, with the factor of a
+    /// nearby matrix.
+    ///
+    /// Returns the number of iterations and whether the system is solved; `b` is unchanged if not. The solve
+    /// ends early as soon as the convergence rate shows that `most` iterations do not suffice.
     pub fn solve_within(&self, b: &mut [f64], goal: f64, most: usize) -> Result<(usize, bool), AlgebraError> {
         let size = norm(b);
         if size == 0.0 {
@@ -128,8 +132,11 @@ impl Unsymmetric {
         Ok((count, solved))
     }
 
-    /// Solves in place to a relative residual of `goal`, or ten times that; the iterations. Where that fails a factor in single
-    /// precision is made in double precision, and then by LU.
+    /// Solves in place to a relative residual of `goal`, or at worst ten times that, and returns the number
+    /// of iterations.
+    ///
+    /// If this fails with a factor in single precision, the matrix is factored in double precision. If that
+    /// fails too, the system is solved by LU.
     pub fn solve(&self, b: &mut [f64], goal: f64) -> Result<usize, AlgebraError> {
         let factor = &self.symmetric.factor;
         let (mut iterations, mut solved) = self.cycles(factor, b, goal)?;
@@ -147,7 +154,8 @@ impl Unsymmetric {
         Ok(iterations)
     }
 
-    /// The iterations of a few cycles, and whether they solved; where not, b is as it was.
+    /// Runs up to three cycles of GMRES. Returns the number of iterations and whether the system is solved;
+    /// `b` is unchanged if not.
     fn cycles(&self, factor: &Factor, b: &mut [f64], goal: f64) -> Result<(usize, bool), AlgebraError> {
         let size = norm(b);
         if size == 0.0 {
@@ -155,7 +163,7 @@ impl Unsymmetric {
         }
         let mut x = vec![0.0; b.len()];
         let (mut residual, mut iterations) = (1.0, 0);
-        // Restarted twice: a round works on what rounding, or the number of vectors, left of the one before.
+        // Two restarts: a cycle works on the residual that rounding, or the number of vectors, left behind.
         for _ in 0..3 {
             let mut rest = b.to_vec();
             self.subtract_product(&x, &mut rest);
@@ -174,8 +182,9 @@ impl Unsymmetric {
         Ok((iterations, solved))
     }
 
-    /// One cycle, until the residual is `goal` times that of the start: the x in the Krylov space of `A M^-1` that makes `|rest - A x|`
-    /// least, and its dimension. Where it is `judged`, it ends when the rate so far does not lead there in `most` iterations.
+    /// Runs one cycle, until the residual is `goal` times the initial one. Returns the x in the Krylov space
+    /// of `A M^-1` that minimises `|rest - A x|`, and the dimension of that space. If `judged`, the cycle
+    /// ends as soon as the convergence rate does not reach `goal` in `most` iterations.
     fn gmres(
         &self,
         factor: &Factor,
@@ -187,7 +196,8 @@ impl Unsymmetric {
         let size = norm(rest);
         let mut basis: Vec<Vec<f64>> = vec![rest.iter().map(|r| r / size).collect()];
         let mut preconditioned: Vec<Vec<f64>> = Vec::new();
-        // Columns of the Hessenberg matrix made upper triangular by rotations, and the rotated right-hand side.
+        // Columns of the Hessenberg matrix made upper triangular by rotations, and the rotated right-hand
+        // side.
         let mut columns: Vec<Vec<f64>> = Vec::new();
         let mut rotations: Vec<(f64, f64)> = Vec::new();
         let mut right = vec![size];
@@ -282,7 +292,7 @@ mod tests {
 
     const SIDE: usize = 12;
 
-    /// A membrane of SIDE x SIDE nodes on springs, which differ from node to node by `uneven`.
+    /// Membrane of SIDE x SIDE nodes on springs, whose stiffness varies from node to node by `uneven`.
     fn membrane(uneven: f64) -> Symmetric {
         let (n, mut rows, mut values, mut offsets) = (SIDE * SIDE, Vec::new(), Vec::new(), vec![0]);
         for j in 0..n {
@@ -297,7 +307,7 @@ mod tests {
         Symmetric { offsets, rows, values, multipliers: n, vertices: (0..=n).collect() }
     }
 
-    /// A membrane with skew entries and the factor of an even one.
+    /// Membrane with skew entries, with the factor of an even membrane.
     fn near(uneven: f64, roughly: bool) -> Unsymmetric {
         let (matrix, even) = (membrane(uneven), membrane(0.0));
         let symbolic = analyse(&matrix, 0).unwrap();
@@ -333,13 +343,13 @@ mod tests {
         let mut x = vec![1.0; SIDE * SIDE];
         let (iterations, solved) = system.solve_within(&mut x, 1e-8, 12).unwrap();
         assert!(!solved && iterations < 8 && x.iter().all(|x| *x == 1.0), "{iterations}");
-        // In double precision it is of the matrix itself.
+        // The double-precision factor belongs to the matrix itself.
         assert!(system.symmetric.factor.exact(system.matrix()).unwrap().is_some());
     }
 
     #[test]
     fn three_columns_at_once_make_the_same_bits_as_one_by_one() {
-        // All rows of other nodes in common, as a node's columns have.
+        // All rows of other nodes are shared, as in the columns of a node.
         let full = |vertices: &[usize]| {
             let n = 9;
             Symmetric {

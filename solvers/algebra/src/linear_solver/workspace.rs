@@ -1,14 +1,16 @@
-//! What faer keeps per thread from one product to the next.
+//! Buffers that faer keeps per thread from one product to the next.
 
 use faer::linalg::matmul::matmul;
 use faer::{Accum, Mat, Par};
 
-/// Rows of a product that is not one of faer's small ones.
+/// Rows of a product that is too large for faer's small kernels.
 const ROWS: usize = 64;
 
-/// Has every thread of the pool take the buffers for dense products that faer keeps for good. They are twice the
-/// largest cache, of which a product touches what it needs: 0.96 GB of address space on a processor with 480 MB of it.
-/// Memory that is counted from here on is that of the work alone; before, the first factorisation was charged for it.
+/// Makes every thread of the pool allocate the buffers that faer keeps for dense products.
+///
+/// The buffers are twice the size of the largest cache, of which a product touches only a part: 0.96 GB of
+/// address space on a processor with 480 MB of cache. Memory counted after this call belongs to the
+/// computation alone. Without this call the first factorisation was charged for the buffers.
 pub fn reserve_workspaces() {
     rayon::broadcast(|_| {
         let ones = Mat::from_fn(ROWS, ROWS, |_, _| 1.0);

@@ -1,28 +1,31 @@
 //! Aggregates of nodes and the modes on them: the piecewise rigid functions of the next level.
 //!
-//! Source: Vanek, Mandel and Brezina 1996, Computing 56, 179 (algorithm 5.1, and section 3 for several modes).
+//! Source: Vanek, Mandel and Brezina 1996, Computing 56, 179 (algorithm 5.1, and section 3 for several
+//! modes).
 
 use rayon::prelude::*;
 
 use super::graph::Graph;
 use super::operator::Operator;
 
-/// In no aggregate.
+/// Marks a node that is in no aggregate.
 pub(super) const NONE: u32 = u32::MAX;
 /// Number of rigid motions, the block size of the coarse levels.
 pub(super) const MODES: usize = 6;
-/// A mode that is this small beside what it was before the others were taken from it depends on them.
+/// Relative length below which a mode counts as dependent: its length after orthogonalisation over its length
+/// before.
 const DEPENDENT: f64 = 1e-9;
 
-/// Nodes of the next level.
+/// Aggregates of nodes: the nodes of the next level.
 pub(super) struct Aggregates {
     /// Aggregate of each node.
     pub of: Vec<u32>,
     pub count: usize,
 }
 
-/// Passes over the nodes in their order: a node none of whose neighbours is taken founds an aggregate of all of them; what is left
-/// joins the neighbour of the most couplings; nodes without any neighbour stay out.
+/// Forms aggregates in passes over the nodes, in their order. A node founds an aggregate of all its
+/// neighbours if none of them is taken. A remaining node joins the aggregate of its most strongly coupled
+/// neighbour. Nodes without any neighbour stay out.
 pub(super) fn aggregates<const B: usize>(matrix: &Operator<B>, graph: &Graph) -> Aggregates {
     let nodes = graph.nodes();
     let mut of = vec![NONE; nodes];
@@ -62,10 +65,11 @@ pub(super) fn aggregates<const B: usize>(matrix: &Operator<B>, graph: &Graph) ->
     Aggregates { of, count: count as usize }
 }
 
-/// Rows of the modes at a node: each degree of freedom in each mode.
+/// Values of the modes at a node: each degree of freedom in each mode.
 pub(super) type Modes<const B: usize> = [[f64; MODES]; B];
 
-/// Orthonormal functions on each aggregate that span its modes, and the modes in terms of them.
+/// Returns orthonormal functions on each aggregate that span its modes, and the modes in terms of these
+/// functions.
 pub(super) fn orthonormal<const B: usize>(
     aggregates: &Aggregates,
     modes: &[Modes<B>],
@@ -92,8 +96,8 @@ pub(super) fn orthonormal<const B: usize>(
     (functions, coarse)
 }
 
-/// Orthonormal columns in place, twice for rounding; returns `R` of `modes = Q R`. Columns that depend on those before are zero in
-/// both.
+/// Orthonormalises the columns in place, twice because of rounding, and returns `R` of `modes = Q R`. Columns
+/// that depend on earlier columns become zero in both.
 fn gram_schmidt<const B: usize>(rows: &mut [Modes<B>]) -> Modes<MODES> {
     let inner = |rows: &[Modes<B>], c: usize, d: usize| -> f64 {
         rows.iter().flatten().map(|row| row[c] * row[d]).sum()

@@ -6,7 +6,7 @@ use super::level::Cycle;
 use super::{Entry, Multigrid};
 use crate::{AlgebraError, Stiffness};
 
-/// What a solution took.
+/// Outcome of an iterative solve.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Iterations {
     /// Number of iterations.
@@ -15,21 +15,27 @@ pub struct Iterations {
     pub residual: f64,
 }
 
-/// More iterations than this are no solution.
+/// Largest number of iterations; a solve that needs more has failed.
 const MOST: usize = 500;
-/// A residual this small beside `|K| |x| + |b|` is rounding (Higham 2002, section 7.1).
+/// Residual relative to `|K| |x| + |b|` that is taken as rounding (Higham 2002, section 7.1).
 const ROUNDING: f64 = 1e-15;
 
 impl Multigrid {
-    /// Solves `K x = b` in place, to a residual of `tolerance |b|` or of rounding. What `b` has at held degrees of freedom is lost.
+    /// Solves `K x = b` in place, to a residual of `tolerance |b|` or of rounding. Entries of `b` at
+    /// constrained degrees of freedom are ignored. With pressures ([`Multigrid::with_pressures`]), these and
+    /// the displacements are iterated together.
     ///
-    /// The preconditioner is in single precision, symmetric to rounding only: the flexible formula for the next direction
-    /// (Polak and Ribiere's) takes that, at one more product of vectors.
+    /// The preconditioner is in single precision and therefore symmetric to rounding only. The flexible
+    /// formula for the next direction (Polak and Ribiere) allows this, at the cost of one more product of
+    /// vectors.
     ///
-    /// With pressures ([`Multigrid::with_pressures`]) they and the displacements are iterated together.
+    /// A W-cycle computes a residual on a coarse level from a solution there. If the softest motions have
+    /// 1e-8 of the stiffness, as in a slender beam, this residual is all rounding in single precision, and
+    /// the cycle is not positive. The solve is then repeated with V-cycles.
     ///
-    /// A W-cycle makes a residual on a coarse level from a solution there; where the softest motions have 1e-8 of the stiffness, as in
-    /// a slender beam, that is all rounding in single precision, and the cycle is not positive. Then V-cycles serve.
+    /// # Errors
+    ///
+    /// [`AlgebraError::Residual`] if the iteration does not reach the tolerance.
     pub fn solve(
         &self,
         stiffness: &Stiffness,
@@ -44,7 +50,7 @@ impl Multigrid {
             .or_else(|_| self.iterate(stiffness, b, tolerance, Cycle::V))
     }
 
-    /// As [`Multigrid::solve`]; a failure leaves `b` as it is but where held.
+    /// Iterates as [`Multigrid::solve`]. On failure, `b` changes only at constrained degrees of freedom.
     fn iterate(
         &self,
         stiffness: &Stiffness,
@@ -65,7 +71,8 @@ impl Multigrid {
         let mut image = vec![Vector3::zeros(); nodes];
         let mut inner = Precondition::new(nodes);
         let (mut count, mut last, mut residual, mut at_rounding) = (0, 0.0, 1.0, false);
-        // The recursion's residual drifts from the true one; begun anew from that, it needs an iteration or two.
+        // The recursive residual drifts from the true one. A restart from the true residual needs an
+        // iteration or two.
         for _ in 0..3 {
             direction.fill(Vector3::zeros());
             while norm(&rest) > tolerance * size && count < MOST {
@@ -100,7 +107,8 @@ impl Multigrid {
             if residual <= tolerance || count >= MOST {
                 break;
             }
-            // Of a slender body `|K| |x|` is a million times `|b|` and more: its rounding alone is above the tolerance.
+            // For a slender body `|K| |x|` is a million times `|b|` and more, so its rounding alone exceeds
+            // the tolerance.
             at_rounding = is_rounding(stiffness, &x, b, &rest);
             if at_rounding {
                 break;
@@ -114,7 +122,7 @@ impl Multigrid {
         Ok(Iterations { count, residual })
     }
 
-    /// Zero where held.
+    /// Sets the entries of constrained degrees of freedom to zero.
     pub(super) fn release(&self, x: &mut [Vector3]) {
         for (x, held) in x.iter_mut().zip(self.held.chunks_exact(3)) {
             for a in (0..3).filter(|&a| held[a]) {
@@ -124,7 +132,7 @@ impl Multigrid {
     }
 }
 
-/// The cycle between vectors in double precision.
+/// Preconditioner: a cycle between vectors in double precision.
 pub(super) struct Precondition {
     b: Vec<Entry<3>>,
     x: Vec<Entry<3>>,
@@ -140,7 +148,8 @@ impl Precondition {
         }
     }
 
-    /// One cycle, with the residual scaled to a largest entry of one: it falls below what single precision can hold.
+    /// Applies one cycle. The residual is scaled to a largest entry of one, because it falls below the range
+    /// of single precision.
     pub fn apply(&mut self, multigrid: &Multigrid, rest: &[Vector3], cycle: Cycle) -> &[Vector3] {
         let largest = rest.iter().fold(0.0f64, |l, r| l.max(r.amax()));
         for (b, r) in self.b.iter_mut().zip(rest) {
@@ -154,7 +163,7 @@ impl Precondition {
     }
 }
 
-/// Whether a residual is rounding beside `|K| |x| + |b|`.
+/// Whether a residual is rounding relative to `|K| |x| + |b|`.
 pub(super) fn is_rounding(stiffness: &Stiffness, x: &[Vector3], b: &[Vector3], rest: &[Vector3]) -> bool {
     let mut sizes = vec![Vector3::zeros(); x.len()];
     stiffness.multiply_magnitudes(x, &mut sizes);
@@ -166,7 +175,7 @@ pub(super) fn norm(x: &[Vector3]) -> f64 {
     dot(x, x).sqrt()
 }
 
-/// In chunks of fixed length, so that the sum is as good as its longest part.
+/// Sums in chunks of fixed length, to limit rounding.
 pub(super) fn dot(a: &[Vector3], b: &[Vector3]) -> f64 {
     a.chunks(1024).zip(b.chunks(1024)).map(|(a, b)| a.iter().zip(b).map(|(a, b)| a.dot(b)).sum::<f64>()).sum()
 }

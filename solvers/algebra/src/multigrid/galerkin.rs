@@ -1,6 +1,8 @@
-//! The matrix of the next level, `P^T A P`, in double precision: the softest motions of a slender body have 1e-10 of its stiffness.
+//! Galerkin product `P^T A P`, the matrix of the next level.
 //!
-//! With `S = P^T (L + D/2) P` it is `S + S^T`, so that only the lower triangle of A is read, and half of the products are made.
+//! It is formed in double precision, because the softest motions of a slender body have 1e-10 of its
+//! stiffness. With `S = P^T (L + D/2) P` the product is `S + S^T`, so that only the lower triangle of A is
+//! read and half of the products are made.
 
 use lanes::{LanePath, on_path};
 
@@ -9,14 +11,14 @@ use super::lower::{Lower, LowerRows};
 use super::sets::Sets;
 use super::transfer::{Transfer, Weight};
 
-/// `P^T A P` of `lower`, of which this is the graph.
+/// Returns `P^T A P` for the matrix `lower` with its `graph`.
 pub(super) fn galerkin<const B: usize, const C: usize, W: Weight<B, C>>(
     lower: &impl LowerRows<B>,
     graph: &Graph,
     transfer: &Transfer<W>,
 ) -> Lower<C> {
     let nodes = graph.nodes();
-    // Aggregates that a row of A P reaches, and those that a row of P^T A P does.
+    // Aggregates reached by each row of A P, then by each row of P^T A P.
     let reached = Sets::unions(nodes, transfer.count, |i, add| {
         if !transfer.row(i).0.is_empty() {
             graph.columns(i).iter().for_each(|&j| add(transfer.row(j as usize).0));
@@ -38,7 +40,7 @@ on_path! {
     ) -> Vec<[[f64; C]; C]> = product_lanes
 }
 
-/// The blocks of S at the places of `pattern`.
+/// Returns the blocks of S at the positions of `pattern`.
 #[inline(always)]
 fn product_lanes<const FMA: bool, const B: usize, const C: usize, L: LowerRows<B>, W: Weight<B, C>>(
     lower: &L,
@@ -47,7 +49,7 @@ fn product_lanes<const FMA: bool, const B: usize, const C: usize, L: LowerRows<B
     pattern: &Sets,
 ) -> Vec<[[f64; C]; C]> {
     let mut sums = vec![[[0.0; C]; C]; pattern.members.len()];
-    // Of each aggregate that a row reaches by the whole matrix: its row of `(L + D/2) P`, and whether that has any.
+    // For each aggregate that row i of A P reaches: whether `(L + D/2) P` has an entry there, and its row.
     let mut rows: Vec<(bool, [[f64; C]; B])> = Vec::new();
     for i in 0..lower.nodes() {
         let (columns, weights) = transfer.row(i);
@@ -85,7 +87,7 @@ fn product_lanes<const FMA: bool, const B: usize, const C: usize, L: LowerRows<B
     sums
 }
 
-/// The lower triangle of `S + S^T`.
+/// Returns the lower triangle of `S + S^T`.
 fn folded<const C: usize>(pattern: &Sets, sums: &[[[f64; C]; C]], unit: f64) -> Lower<C> {
     let count = pattern.offsets.len() - 1;
     let (mut offsets, mut columns) = (vec![0], Vec::new());
@@ -94,7 +96,7 @@ fn folded<const C: usize>(pattern: &Sets, sums: &[[[f64; C]; C]], unit: f64) -> 
         offsets.push(columns.len());
     }
     let mut lower = Lower::zeros(offsets, columns, unit);
-    // Where the upper part of each row goes on: columns ascend as the rows do.
+    // Next position in the upper part of each row: its columns ascend as the rows do.
     let mut next: Vec<usize> =
         (0..count).map(|i| pattern.offsets[i] + lower.offsets[i + 1] - lower.offsets[i] - 1).collect();
     for i in 0..count {

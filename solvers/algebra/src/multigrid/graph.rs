@@ -1,15 +1,17 @@
-//! Whole rows of a symmetric matrix of which the lower triangle is stored: what a hierarchy is made with, and not kept.
+//! Whole rows of a symmetric matrix of which the lower triangle is stored; used to build a hierarchy and then
+//! dropped.
 
 use std::ops::Range;
 
 use super::lower::LowerRows;
 use super::operator::{Operator, transposed};
 
-/// Columns of every row, ascending, and where their blocks are in the lower triangle.
+/// Columns of every row, ascending, with the positions of their blocks in the lower triangle.
 pub(super) struct Graph {
     offsets: Vec<usize>,
     columns: Vec<u32>,
-    /// Place in the row of the lower triangle: in that of this row, or beyond the diagonal in that of the column.
+    /// Position of the block in a row of the lower triangle: in this row up to the diagonal, in the column's
+    /// row beyond it.
     places: Vec<u32>,
 }
 
@@ -50,7 +52,7 @@ impl Graph {
         self.offsets.len() - 1
     }
 
-    /// Places of a row.
+    /// Range of a row's entries.
     #[inline(always)]
     pub fn range(&self, row: usize) -> Range<usize> {
         self.offsets[row]..self.offsets[row + 1]
@@ -62,7 +64,7 @@ impl Graph {
         &self.columns[self.range(row)]
     }
 
-    /// Column and block of one of the places ([`Graph::range`]) of a row, in the matrix that this is the graph of.
+    /// Column and block of entry `k` ([`Graph::range`]) of a row, in the matrix to which this graph belongs.
     #[inline(always)]
     pub fn at<const B: usize>(&self, matrix: &Operator<B>, row: usize, k: usize) -> (usize, [[f32; B]; B]) {
         let (column, place) = (self.columns[k] as usize, self.places[k] as usize);

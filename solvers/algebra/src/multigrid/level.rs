@@ -1,4 +1,4 @@
-//! The levels and the V-cycle over them.
+//! Levels and the cycles over them.
 
 use std::sync::Mutex;
 
@@ -10,29 +10,30 @@ use super::operator::{Entry, Operator};
 use super::transfer::{Dense, Transfer, Weight};
 use crate::linear_solver::{FactorError, Factorization, Symmetric, factor};
 
-/// At most this many degrees of freedom are solved directly, by a dense factor: 6 MB, read twice in each solve.
+/// Largest number of degrees of freedom that are solved directly. The dense factor has 6 MB and is read twice
+/// in each solve.
 const COARSEST: usize = 1200;
 
-/// How often a level is solved for each time that the finer one is.
+/// Number of solves of a level for each solve of the finer level.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Cycle {
-    /// Once.
+    /// One solve.
     V,
-    /// Twice: on a cube of 100,000 unknowns 18 iterations, not 22, for a ninth less time.
+    /// Two solves: on a cube of 100,000 unknowns 18 iterations instead of 22, for a ninth less time.
     W,
 }
 
-/// What stands for the inverse of a level's matrix: a symmetric positive definite map.
+/// Approximate inverse of a level's matrix: a symmetric positive definite map.
 pub(super) trait Level<const B: usize>: Send + Sync {
-    /// `x` becomes an approximation of `A^-1 b`.
+    /// Sets `x` to an approximation of `A^-1 b`.
     fn solve(&self, b: &[Entry<B>], x: &mut [Entry<B>], cycle: Cycle);
-    /// `x` becomes a better one: a second W-cycle, from what the first has left.
+    /// Improves `x` by a second W-cycle on its residual.
     fn improve(&self, b: &[Entry<B>], x: &mut [Entry<B>]);
-    /// Degrees of freedom and entries of the matrix, here and on all levels below.
+    /// Appends the degrees of freedom and the matrix entries of this level and of all coarser levels.
     fn sizes(&self, sizes: &mut Vec<(usize, usize)>);
 }
 
-/// A level with one below it.
+/// Level with a coarser level below.
 struct Smoothed<const B: usize, const C: usize, W> {
     matrix: Operator<B>,
     transfer: Transfer<W>,
@@ -41,14 +42,14 @@ struct Smoothed<const B: usize, const C: usize, W> {
     second: Mutex<Second<B>>,
 }
 
-/// What a cycle needs, kept from one to the next.
+/// Work arrays of a cycle, kept between cycles.
 struct Scratch<const B: usize, const C: usize> {
     rest: Vec<Entry<B>>,
     restricted: Vec<Entry<C>>,
     correction: Vec<Entry<C>>,
 }
 
-/// What a second cycle needs beside that of the first.
+/// Additional work arrays of a second cycle.
 #[derive(Default)]
 struct Second<const B: usize> {
     left: Vec<Entry<B>>,
@@ -96,7 +97,7 @@ impl<const B: usize, const C: usize, W: Weight<B, C>> Level<B> for Smoothed<B, C
     }
 }
 
-/// The coarsest level: a direct factor.
+/// Coarsest level, solved by a direct factor.
 struct Coarsest<const B: usize> {
     factor: Factorization,
     scale: f64,
@@ -105,7 +106,8 @@ struct Coarsest<const B: usize> {
 impl<const B: usize> Level<B> for Coarsest<B> {
     fn solve(&self, b: &[Entry<B>], x: &mut [Entry<B>], _: Cycle) {
         let mut values: Vec<f64> = b.iter().flatten().map(|&b| f64::from(b) / self.scale).collect();
-        // A definite factor always solves. If it did not, conjugate gradients end at the first product that is no number.
+        // A definite factor always solves. If it failed, conjugate gradients would stop at the first NaN
+        // product.
         if self.factor.solve_once(&mut values).is_err() {
             values.fill(f64::NAN);
         }
@@ -114,7 +116,7 @@ impl<const B: usize> Level<B> for Coarsest<B> {
         }
     }
 
-    /// Nothing to improve.
+    /// Does nothing: a direct solution needs no improvement.
     fn improve(&self, _: &[Entry<B>], _: &mut [Entry<B>]) {}
 
     fn sizes(&self, sizes: &mut Vec<(usize, usize)>) {
@@ -122,7 +124,7 @@ impl<const B: usize> Level<B> for Coarsest<B> {
     }
 }
 
-/// The hierarchy of aggregates under a matrix, times `scale`.
+/// Builds the hierarchy of aggregates for `scale` times a matrix.
 pub(super) fn by_aggregates<const B: usize>(
     lower: &impl LowerRows<B>,
     modes: &[Modes<B>],
@@ -134,7 +136,7 @@ pub(super) fn by_aggregates<const B: usize>(
     let (matrix, graph) = (Operator::new(lower, scale), Graph::new(lower));
     let aggregates = aggregates(&matrix, &graph);
     if 2 * aggregates.count > lower.nodes() {
-        // Hardly coupled: no level below would be much smaller.
+        // The nodes are hardly coupled: no coarser level would be much smaller.
         return coarsest(lower, scale);
     }
     let (functions, coarse_modes) = orthonormal(&aggregates, modes);
@@ -146,7 +148,7 @@ pub(super) fn by_aggregates<const B: usize>(
     Ok(Box::new(Smoothed::new(matrix, transfer, below)))
 }
 
-/// A level whose next is that of a nested mesh with these modes.
+/// Builds a level whose next coarser level is a nested mesh with these `modes`.
 pub(super) fn nested(
     lower: &impl LowerRows<3>,
     transfer: Transfer<super::transfer::Diagonal>,

@@ -1,31 +1,32 @@
-//! The lower triangle of a symmetric matrix of B x B blocks: what every level of the hierarchy starts from.
+//! Lower triangle of a symmetric matrix of B x B blocks, from which every level of the hierarchy is built.
 
 use crate::Stiffness;
 
-/// A block by columns.
+/// Block, stored by columns.
 pub(super) type Block<const B: usize> = [[f64; B]; B];
 
-/// Rows of a lower triangle: columns ascend, the diagonal is the last.
+/// Rows of a lower triangle: columns ascend, the diagonal is last.
 pub(super) trait LowerRows<const B: usize>: Sync {
     fn nodes(&self) -> usize;
     fn columns(&self, row: usize) -> &[u32];
-    /// The block at a place of a row. A degree of freedom without a stiffness has one of its own, [`LowerRows::unit`].
+    /// Returns the block at position `at` of a row. A degree of freedom without stiffness has
+    /// [`LowerRows::unit`] on its diagonal.
     fn block(&self, row: usize, at: usize) -> Block<B>;
-    /// The largest diagonal entry.
+    /// Returns the largest diagonal entry.
     fn unit(&self) -> f64;
 }
 
-/// A stiffness with some degrees of freedom held.
+/// Stiffness with some constrained degrees of freedom.
 pub(super) struct Held<'a> {
     stiffness: &'a Stiffness,
     held: &'a [bool],
-    /// Of each node, whether any axis is held: hardly any is, and every block asks for two.
+    /// Whether any axis of each node is constrained. Few are, and every block asks this of two nodes.
     any: Vec<bool>,
     unit: f64,
 }
 
 impl<'a> Held<'a> {
-    /// `held` has an entry for each degree of freedom `3 node + axis`.
+    /// Takes `held`, one entry per degree of freedom `3 node + axis`, true if constrained.
     pub fn new(stiffness: &'a Stiffness, held: &'a [bool]) -> Held<'a> {
         let diagonal = |i: usize| *stiffness.row(i).1.last().expect("every row has its diagonal");
         let nodes = stiffness.pattern().node_count();
@@ -70,7 +71,7 @@ impl LowerRows<3> for Held<'_> {
     }
 }
 
-/// A lower triangle of its own, of a coarse level.
+/// Lower triangle of a coarse level, which owns its blocks.
 pub(super) struct Lower<const B: usize> {
     pub offsets: Vec<usize>,
     pub columns: Vec<u32>,
@@ -79,13 +80,13 @@ pub(super) struct Lower<const B: usize> {
 }
 
 impl<const B: usize> Lower<B> {
-    /// Zeros at these places.
+    /// Returns zeros on this pattern.
     pub fn zeros(offsets: Vec<usize>, columns: Vec<u32>, unit: f64) -> Lower<B> {
         let blocks = vec![[[0.0; B]; B]; columns.len()];
         Lower { offsets, columns, blocks, unit }
     }
 
-    /// Gives degrees of freedom that no function of the finer level sees a stiffness of their own.
+    /// Gives a unit stiffness to degrees of freedom that no function of the finer level sees.
     pub fn fill_empty(&mut self) {
         for end in &self.offsets[1..] {
             let diagonal = &mut self.blocks[end - 1];

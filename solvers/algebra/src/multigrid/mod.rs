@@ -1,9 +1,10 @@
 //! Conjugate gradients with a multigrid preconditioner: smoothed aggregation with the six rigid motions.
 //!
-//! The finest level has blocks of 3 x 3, the others, whose nodes are aggregates that move as rigid bodies, of 6 x 6. A quadratic mesh has
-//! its linear one as first coarse level ([`Coarser`]). Each level is swept forward and backward by block Gauss-Seidel in
-//! chunks, the coarsest is solved directly. The hierarchy is in single precision but for its coarse matrices while they are made,
-//! the iteration and its residual in double.
+//! The finest level has blocks of 3 x 3. The nodes of the other levels are aggregates that move as rigid
+//! bodies, with blocks of 6 x 6. The first coarse level of a quadratic mesh is its linear mesh ([`Coarser`]).
+//! Each level is smoothed by forward and backward sweeps of block Gauss-Seidel in chunks. The coarsest level
+//! is solved directly. The hierarchy is stored in single precision, but its coarse matrices are computed in
+//! double precision. The iteration and its residual are in double precision.
 //!
 //! Nearly incompressible stiffnesses are split: see [`pressure`].
 //!
@@ -37,22 +38,24 @@ use transfer::Transfer;
 pub use conjugate::Iterations;
 pub use pressure::PressureGroup;
 
-/// A stiffness with its hierarchy; serves any number of right-hand sides.
+/// Multigrid hierarchy of a stiffness, for any number of right-hand sides.
 pub struct Multigrid {
     finest: Box<dyn Level<3>>,
-    /// Per degree of freedom `3 node + axis`.
+    /// Whether each degree of freedom `3 node + axis` is constrained.
     held: Vec<bool>,
-    /// Number of degrees of freedom that are not held.
+    /// Number of unconstrained degrees of freedom.
     free: usize,
     levels: Vec<(usize, usize)>,
-    /// What the finest matrix was multiplied by.
+    /// Factor on the finest matrix.
     scale: f64,
     pressures: Option<Box<Pressures>>,
 }
 
 impl Multigrid {
-    /// The hierarchy of a positive definite stiffness at nodes, m; `held` per degree of freedom `3 node + axis`; `linear` is the mesh
-    /// of the next level if there is one.
+    /// Builds the hierarchy of a positive definite stiffness.
+    ///
+    /// `nodes` are the node positions, m. `held` marks the constrained degrees of freedom `3 node + axis`.
+    /// `linear` is the mesh of the next level, if there is one.
     pub fn new(
         stiffness: &Stiffness,
         nodes: &[Point3],
@@ -75,14 +78,17 @@ impl Multigrid {
         Ok(Multigrid { finest, held, free, levels, scale, pressures: None })
     }
 
-    /// For a nearly incompressible stiffness: `without` is what the hierarchy was made of, and the solved one adds
-    /// `excess / volume row row^T` for every group. Their pressures are iterated with the displacements.
+    /// Adds pressures as unknowns, for a nearly incompressible stiffness.
+    ///
+    /// `without` is the stiffness from which the hierarchy was built. The stiffness to be solved adds
+    /// `excess / volume row row^T` for every group. The pressures of the groups are iterated with the
+    /// displacements.
     pub fn with_pressures(self, without: Stiffness, groups: &[PressureGroup]) -> Multigrid {
         let pressures = Pressures::new(without, groups, &self.held);
         Multigrid { pressures: Some(Box::new(pressures)), ..self }
     }
 
-    /// What a solution is recorded as.
+    /// Returns the solver path under which a solution is recorded.
     pub fn path(&self) -> SolverPath {
         if self.pressures.is_some() { SolverPath::MultigridPressures } else { SolverPath::Multigrid }
     }
@@ -92,18 +98,19 @@ impl Multigrid {
         self.free
     }
 
-    /// Degrees of freedom and entries of the matrix of each level, the finest first.
+    /// Degrees of freedom and matrix entries of each level, finest first.
     pub fn levels(&self) -> &[(usize, usize)] {
         &self.levels
     }
 
-    /// Entries of the matrices of all levels over those of the finest.
+    /// Operator complexity: matrix entries of all levels over those of the finest.
     pub fn complexity(&self) -> f64 {
         self.levels.iter().map(|level| level.1 as f64).sum::<f64>() / self.levels[0].1 as f64
     }
 }
 
-/// Translations and rotations about the centre of the nodes, lengths over the largest distance from it; zero where held.
+/// Returns the translations and the rotations about the centre of the nodes. Lengths are relative to the
+/// largest distance from the centre. Entries of constrained degrees of freedom are zero.
 fn rigid_motions(nodes: &[Point3], held: &[bool]) -> Vec<Modes<3>> {
     let centre = nodes.iter().fold(nalgebra::Vector3::zeros(), |sum, x| sum + x.coords) / nodes.len() as f64;
     let reach = nodes.iter().map(|x| (x.coords - centre).norm()).fold(0.0, f64::max);

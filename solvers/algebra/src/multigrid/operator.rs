@@ -1,9 +1,10 @@
-//! The matrix of a level in single precision, rows of B x B blocks, and the chunks that it is swept in.
+//! Matrix of a level in single precision, in rows of B x B blocks, and the chunks of its sweeps.
 //!
-//! Rows are swept in chunks that see each other as they were before the sweep, so that chunks can be swept at once: their
-//! number depends on the size of the matrix alone and the bits not on the threads. Couplings between chunks are added to
-//! the diagonal by rows, which keeps the sweep convergent for every positive definite matrix (the l1 Gauss-Seidel of
-//! Baker, Falgout, Kolev and Yang 2011, SIAM J. Sci. Comput. 33, section 6.2).
+//! Each chunk of rows sees the other chunks as they were before the sweep, so that all chunks can be swept at
+//! once. The number of chunks depends on the size of the matrix alone, so the bits do not depend on the
+//! threads. Couplings between chunks are added to the diagonal by rows, which keeps the sweep convergent for
+//! every positive definite matrix (the l1 Gauss-Seidel of Baker, Falgout, Kolev and Yang 2011, SIAM J. Sci.
+//! Comput. 33, section 6.2).
 
 use std::ops::Range;
 
@@ -13,33 +14,36 @@ use rayon::prelude::*;
 use super::lower::LowerRows;
 use super::sweep::times;
 
-/// One vector entry of a node.
+/// Vector entry of a node.
 pub(super) type Entry<const B: usize> = [f32; B];
 
-/// Columns and blocks of a part of a row.
+/// Columns and blocks of part of a row.
 pub(super) type Part<'a, const B: usize> = (&'a [u32], &'a [[[f32; B]; B]]);
 
-/// Fewest rows of a chunk, and most chunks.
+/// Smallest number of rows in a chunk.
 const CHUNK: usize = 8192;
+/// Largest number of chunks.
 const CHUNKS: usize = 8;
 
-/// A level's matrix, divided by the largest diagonal entry of the finest: its lower triangle, which a product goes through once for both
-/// triangles. On a cube of 107,811 unknowns the iterations take 0.4 (hex8) and 0.5 (tet4) of what they take with whole rows, half of which
-/// are read for nothing in a sweep.
+/// Matrix of a level, divided by the largest diagonal entry of the finest level.
+///
+/// Only the lower triangle is stored; a product passes through it once for both triangles. On a cube of
+/// 107,811 unknowns the iterations take 0.4 (hex8) and 0.5 (tet4) of their time with whole rows, of which a
+/// sweep reads half for nothing.
 pub(super) struct Operator<const B: usize> {
     /// Couplings before the diagonal within the chunk of a row.
     inside: Rows<B>,
-    /// All couplings to other chunks, before and after.
+    /// Couplings to other chunks, before and after.
     outside: Rows<B>,
     diagonals: Vec<[[f32; B]; B]>,
-    /// Of each row, the inverse of the diagonal block that is swept with.
+    /// Inverse of the diagonal block of each row, as used in a sweep.
     inverses: Vec<[[f32; B]; B]>,
-    /// What was added to the diagonal for couplings between chunks; empty with one chunk.
+    /// Additions to the diagonal for couplings between chunks; empty if there is one chunk.
     added: Vec<Entry<B>>,
     chunks: Vec<Range<usize>>,
 }
 
-/// Compressed rows of blocks, each by columns.
+/// Compressed rows of blocks, each stored by columns.
 struct Rows<const B: usize> {
     offsets: Vec<usize>,
     columns: Vec<u32>,
@@ -47,7 +51,7 @@ struct Rows<const B: usize> {
 }
 
 impl<const B: usize> Rows<B> {
-    /// Zeros, with so many blocks in each row.
+    /// Returns zeros with the given number of blocks in each row.
     fn zeros(lengths: impl Iterator<Item = usize>) -> Rows<B> {
         let mut offsets = vec![0];
         offsets.extend(lengths.scan(0, |end, length| {
@@ -66,7 +70,7 @@ impl<const B: usize> Rows<B> {
 }
 
 impl<const B: usize> Operator<B> {
-    /// The matrix of a lower triangle, times `scale`.
+    /// Builds `scale` times the matrix of a lower triangle.
     pub fn new(lower: &impl LowerRows<B>, scale: f64) -> Operator<B> {
         let nodes = lower.nodes();
         let count = (nodes / CHUNK).clamp(1, CHUNKS);
@@ -84,7 +88,7 @@ impl<const B: usize> Operator<B> {
         }
         let (mut inside, mut outside) = (Rows::zeros(within.into_iter()), Rows::zeros(beyond.into_iter()));
         let mut diagonals = vec![[[0.0; B]; B]; nodes];
-        // Rows come in order, so what a row couples to after its chunk fills in ascending order too.
+        // Rows come in order, so the couplings of a row to later chunks fill in ascending order too.
         let (mut next, mut next_outside) = (0, outside.offsets.clone());
         for chunk in &chunks {
             for i in chunk.clone() {
@@ -143,7 +147,7 @@ impl<const B: usize> Operator<B> {
         self.nodes() + 2 * self.inside.columns.len() + self.outside.columns.len()
     }
 
-    /// The block at a place of a row of the lower triangle that this was made of.
+    /// Returns the block at a position of a row of the lower triangle from which the operator was built.
     #[inline(always)]
     pub fn of_lower(&self, row: usize, place: usize) -> &[[f32; B]; B] {
         let (columns, blocks) = self.outside(row);
@@ -155,13 +159,13 @@ impl<const B: usize> Operator<B> {
         }
     }
 
-    /// The part of a row before its diagonal that is in its chunk.
+    /// Part of a row before its diagonal, within its chunk.
     #[inline(always)]
     pub fn inside(&self, i: usize) -> Part<'_, B> {
         self.inside.row(i)
     }
 
-    /// The part of a row in other chunks.
+    /// Part of a row in other chunks.
     #[inline(always)]
     pub fn outside(&self, i: usize) -> Part<'_, B> {
         self.outside.row(i)
@@ -172,15 +176,16 @@ impl<const B: usize> Operator<B> {
         &self.diagonals[i]
     }
 
-    /// Inverse of the diagonal block that a row is swept with.
+    /// Inverse of the diagonal block of a row, as used in a sweep.
     #[inline(always)]
     pub fn inverse(&self, i: usize) -> &[[f32; B]; B] {
         &self.inverses[i]
     }
 
-    /// The largest eigenvalue of `D^-1 A` by six steps of the power method, from below by some per cent.
+    /// Estimates the largest eigenvalue of `D^-1 A` by six steps of the power method, too low by a few per
+    /// cent.
     pub fn largest_eigenvalue(&self) -> f32 {
-        // A fixed sequence without pattern (the golden ratio's multiples).
+        // A fixed sequence without pattern: multiples of the golden ratio.
         let mut x: Vec<Entry<B>> = (0..self.nodes())
             .map(|i| {
                 std::array::from_fn(|a| ((i * B + a) as f64 * 0.618_033_988_749_895).fract() as f32 - 0.5)
@@ -190,7 +195,7 @@ impl<const B: usize> Operator<B> {
         let mut product = zero.clone();
         let mut value = 1.0;
         for _ in 0..6 {
-            // The sign does not matter.
+            // The product is `-A x`; its sign does not matter.
             self.residual(&zero, &x, &mut product);
             let mut squares = [0.0f64; 2];
             for (i, (x, p)) in x.iter_mut().zip(&product).enumerate() {
@@ -211,7 +216,7 @@ impl<const B: usize> Operator<B> {
         value
     }
 
-    /// What was added to the diagonal, times `x`.
+    /// Returns the product of the addition to the diagonal with `x`.
     #[inline(always)]
     pub fn added_part(&self, i: usize, x: &Entry<B>) -> Entry<B> {
         self.added.get(i).map_or([0.0; B], |added| std::array::from_fn(|a| added[a] * x[a]))
@@ -222,7 +227,7 @@ impl<const B: usize> Operator<B> {
         self.chunks.len() > 1
     }
 
-    /// Every chunk with its part of a vector, at once.
+    /// Calls `run` for every chunk and its part of a vector, concurrently.
     pub fn each_chunk(&self, out: &mut [Entry<B>], run: impl Fn(&Range<usize>, &mut [Entry<B>]) + Sync) {
         let parts: Vec<_> = self.chunks.iter().zip(self.split(out)).collect();
         parts.into_par_iter().for_each(|(chunk, part)| run(chunk, part));
@@ -239,7 +244,7 @@ impl<const B: usize> Operator<B> {
         parts.into_par_iter().for_each(|((chunk, first), second)| run(chunk, first, second));
     }
 
-    /// The parts of a vector in each chunk.
+    /// Splits a vector into the parts of the chunks.
     fn split<'a>(&self, vector: &'a mut [Entry<B>]) -> impl Iterator<Item = &'a mut [Entry<B>]> {
         self.chunks.iter().scan(vector, |rest, chunk| {
             let (part, after) = std::mem::take(rest).split_at_mut(chunk.len());
@@ -249,14 +254,14 @@ impl<const B: usize> Operator<B> {
     }
 }
 
-/// A block's transpose.
+/// Returns the transpose of a block.
 pub(super) fn transposed<const B: usize>(block: &[[f32; B]; B]) -> [[f32; B]; B] {
     std::array::from_fn(|b| std::array::from_fn(|a| block[a][b]))
 }
 
-/// Inverse of a diagonal block; of one that is not definite only that of its diagonal.
+/// Inverts a diagonal block. If the block is not definite, only its diagonal is inverted.
 fn inverse<const B: usize>(matrix: &SMatrix<f64, B, B>) -> [[f32; B]; B] {
-    // `Cholesky` needs dimensions that are known to it; Gauss-Jordan on a definite matrix needs no pivots.
+    // `Cholesky` needs dimensions known at compile time; Gauss-Jordan on a definite matrix needs no pivoting.
     let mut left = *matrix;
     let mut right = SMatrix::<f64, B, B>::identity();
     for p in 0..B {

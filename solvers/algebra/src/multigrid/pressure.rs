@@ -1,17 +1,19 @@
 //! Nearly incompressible stiffnesses: displacements and pressures, iterated together.
 //!
-//! With `B u` the volume changes of some groups, V their volumes and k what their bulk moduli have beyond a moderate one, the stiffness
-//! is `K = A + B^T (k / V) B`. The pressures `p = (k / V) B u` as unknowns of their own give
+//! Let `B u` be the volume changes of some groups, V their volumes, and k the part of their bulk moduli
+//! beyond a moderate value. The stiffness is then `K = A + B^T (k / V) B`. With the pressures
+//! `p = (k / V) B u` as unknowns, the system is
 //!
 //! ```text
 //! [ A   B^T   ] [u]   [f]
 //! [ B  -V / k ] [p] = [0]
 //! ```
 //!
-//! where k is no longer large, so that the number of iterations hardly grows with it. A is approximated by a cycle, the
-//! Schur complement of the pressures by a diagonal, one after the other (Elman, Silvester and Wathen 2014, Finite Elements and Fast
-//! Iterative Solvers, section 4.2); the iteration is GCR, its directions orthogonal to the last few (Eisenstat, Elman and Schultz 1983,
-//! SIAM J. Numer. Anal. 20, 345).
+//! Its coefficients are no longer large in k, so that the number of iterations hardly grows with k. The
+//! preconditioner approximates A by a cycle, then the Schur complement of the pressures by a diagonal (Elman,
+//! Silvester and Wathen 2014, Finite Elements and Fast Iterative Solvers, section 4.2). The iteration is GCR,
+//! with directions orthogonal to the last few (Eisenstat, Elman and Schultz 1983, SIAM J. Numer. Anal. 20,
+//! 345).
 
 use std::collections::VecDeque;
 
@@ -22,41 +24,42 @@ use super::conjugate::{Iterations, Precondition, dot, is_rounding, norm};
 use super::level::Cycle;
 use crate::{AlgebraError, Stiffness};
 
-/// A group whose pressure is an unknown.
+/// Group of elements whose pressure is an unknown.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PressureGroup {
-    /// Nodes and their part of the volume change `B u`, m^2.
+    /// Nodes and their coefficients in the volume change `B u`, m^2.
     pub row: Vec<(u32, Vector3)>,
     /// Volume, m^3.
     pub volume: f64,
-    /// Bulk modulus that the pressure stands for, Pa.
+    /// Part of the bulk modulus that the pressure replaces, Pa.
     pub excess: f64,
-    /// Modulus of longitudinal strain that the stiffness has without it, Pa.
+    /// Longitudinal (P-wave) modulus of the stiffness without that part, Pa.
     pub rest: f64,
 }
 
-/// The groups, and the stiffness without what their pressures stand for.
+/// Pressure groups, and the stiffness without the terms that their pressures replace.
 pub(super) struct Pressures {
     without: Stiffness,
     offsets: Vec<usize>,
-    /// Node and part of the volume change, zero where held.
+    /// Node and coefficient in the volume change; zero for constrained degrees of freedom.
     row: Vec<(u32, Vector3)>,
     /// `V / k`, m^3/Pa.
     compliance: Vec<f64>,
-    /// The diagonal for the Schur complement: `V / k + V / rest`, m^3/Pa.
+    /// Diagonal approximation of the Schur complement: `V / k + V / rest`, m^3/Pa.
     schur: Vec<f64>,
-    /// Forces (N) for volume changes (m^3), so that their residuals can be added: a tenth of `rest / h`. Whole ones take a half more
-    /// iterations on hex8, a hundredth of them as many.
+    /// Forces per volume change, N/m^3, with which the residuals of displacements and pressures are added: a
+    /// tenth of `rest / h`. The full `rest / h` takes half as many iterations again on hex8; a hundredth
+    /// takes as many as a tenth.
     force: Vec<f64>,
 }
 
-/// Cycles are taken times this. Those of a nearly incompressible body are too small on average; from 1 to 2 the iterations are
-/// the same within a tenth.
+/// Factor on every cycle. The cycles of a nearly incompressible body are too small on average. For factors
+/// from 1 to 2 the number of iterations is the same within a tenth.
 const LARGER: f64 = 1.5;
-/// Directions that a new one is made orthogonal to. With 10 a cube of hex8 of 105,000 unknowns never converges at nu = 0.495, with 16 in
-/// 55 iterations.
+/// Number of earlier directions to which a new direction is made orthogonal. With 10, a cube of hex8 of
+/// 105,000 unknowns never converges at nu = 0.495; with 16, it converges in 55 iterations.
 const KEPT: usize = 20;
-/// More iterations than this are no solution: a factor is faster.
+/// Largest number of iterations; beyond it a factor is faster.
 const MOST: usize = 300;
 
 /// Displacements, m (or forces, N), and pressures, Pa (or volume changes, m^3).
@@ -66,14 +69,15 @@ struct Pair {
     p: Vec<f64>,
 }
 
-/// A direction, its image, and the square of that.
+/// Direction, its image, and the square of the image.
 struct Direction {
     way: Pair,
     image: Pair,
     square: f64,
 }
 
-/// Entries of a vector that stay in the cache while all directions are gone through: with whole vectors they took longer than a cycle.
+/// Entries of a vector that stay in the cache while all directions are processed. With whole vectors this
+/// took longer than a cycle.
 const CHUNK: usize = 1024;
 
 impl Pressures {
@@ -97,33 +101,34 @@ impl Pressures {
         }
     }
 
-    /// `B u` of every group.
+    /// Returns `B u`, the volume change of every group.
     fn changes<'a>(&'a self, u: &'a [Vector3]) -> impl Iterator<Item = f64> + 'a {
         let rows = self.offsets.windows(2).map(|range| &self.row[range[0]..range[1]]);
         rows.map(|row| row.iter().map(|(node, part)| part.dot(&u[*node as usize])).sum())
     }
 
-    /// `out += B^T p`.
+    /// Computes `out += B^T p`.
     fn add_forces(&self, p: impl Iterator<Item = f64>, out: &mut [Vector3]) {
         for (range, p) in self.offsets.windows(2).zip(p) {
             self.row[range[0]..range[1]].iter().for_each(|(node, part)| out[*node as usize] += part * p);
         }
     }
 
-    /// `|f - K u|` from the residual of the pair: `r_u + B^T (k / V) r_p`.
+    /// Returns `|f - K u|`, from the residual of the pair: `r_u + B^T (k / V) r_p`.
     fn of_displacements(&self, rest: &Pair, scratch: &mut [Vector3]) -> f64 {
         scratch.copy_from_slice(&rest.u);
         self.add_forces(rest.p.iter().zip(&self.compliance).map(|(r, c)| r / c), scratch);
         norm(scratch)
     }
 
-    /// Product of two residuals or images.
+    /// Returns the product of two residuals or images.
     fn dot(&self, a: &Pair, b: &Pair) -> f64 {
         let p: f64 = a.p.iter().zip(&b.p).zip(&self.force).map(|((a, b), force)| a * b * force * force).sum();
         dot(&a.u, &b.u) + p
     }
 
-    /// Solves `K x = b` in place to a residual of `tolerance |b|` or of rounding; a failure leaves `b` as it is. `b` is zero where held.
+    /// Solves `K x = b` in place to a residual of `tolerance |b|` or of rounding. `b` must be zero at
+    /// constrained degrees of freedom. A failure leaves `b` as it is.
     pub fn solve(
         &self,
         multigrid: &Multigrid,
@@ -141,7 +146,8 @@ impl Pressures {
         let mut rest = Pair { u: b.to_vec(), p: vec![0.0; self.schur.len()] };
         let mut cycles = Precondition::new(nodes);
         let (mut count, mut residual, mut at_rounding) = (0, 1.0, false);
-        // The recursion's residual drifts from the true one; begun anew from that, with the pressures of the displacements.
+        // The recursive residual drifts from the true one. A restart takes the true residual, with the
+        // pressures that belong to the displacements.
         for _ in 0..3 {
             self.descend(multigrid, &mut cycles, (&mut x, &mut rest), tolerance * size, &mut count);
             stiffness.multiply_into(&x, &mut image);
@@ -163,7 +169,7 @@ impl Pressures {
         Ok(Iterations { count, residual })
     }
 
-    /// Iterates until `|f - K u|` is at most `limit`, or as often as it may.
+    /// Iterates until `|f - K u|` is at most `limit`, or up to the largest number of iterations.
     fn descend(
         &self,
         multigrid: &Multigrid,
@@ -175,12 +181,13 @@ impl Pressures {
         let mut kept: VecDeque<Direction> = VecDeque::with_capacity(KEPT);
         let mut scratch = vec![Vector3::zeros(); x.len()];
         while *count < MOST {
-            // The residual of the displacements alone is the larger one.
+            // The residual of the displacements alone is larger, so it is computed only when the pair's is
+            // small.
             if self.dot(rest, rest).sqrt() <= limit && self.of_displacements(rest, &mut scratch) <= limit {
                 return;
             }
             let oldest = if kept.len() == KEPT { kept.pop_front() } else { None };
-            // Of a new one every entry is set.
+            // Every entry of a new direction is overwritten.
             let mut next =
                 oldest.unwrap_or_else(|| Direction { way: rest.clone(), image: rest.clone(), square: 0.0 });
             self.direct(multigrid, cycles, rest, &mut next);
@@ -200,7 +207,8 @@ impl Pressures {
         }
     }
 
-    /// A direction for a residual: `u = C r_u` by a cycle C, `p = (B u - r_p) / schur`, and its image `[A u + B^T p, B u - (V / k) p]`.
+    /// Computes a direction for a residual, `u = C r_u` by a cycle C and `p = (B u - r_p) / schur`, and its
+    /// image `[A u + B^T p, B u - (V / k) p]`.
     fn direct(&self, multigrid: &Multigrid, cycles: &mut Precondition, rest: &Pair, out: &mut Direction) {
         let Direction { way, image, .. } = out;
         let cycle = cycles.apply(multigrid, &rest.u, Cycle::V);
@@ -215,7 +223,7 @@ impl Pressures {
         multigrid.release(&mut image.u);
     }
 
-    /// Products of a vector with the images of all directions.
+    /// Returns the products of a vector with the images of all kept directions.
     fn dots(&self, x: &Pair, kept: &VecDeque<Direction>) -> Vec<f64> {
         let mut sums = vec![0.0; kept.len()];
         for (c, u) in x.u.chunks(CHUNK).enumerate() {
@@ -235,7 +243,7 @@ impl Pressures {
 }
 
 impl Pair {
-    /// `self += sum of factor other`.
+    /// Adds `factor * other` for all factors and pairs.
     fn add<'a>(&mut self, factors: &[f64], others: impl Iterator<Item = &'a Pair> + Clone) {
         for (c, u) in self.u.chunks_mut(CHUNK).enumerate() {
             for (factor, other) in factors.iter().zip(others.clone()) {

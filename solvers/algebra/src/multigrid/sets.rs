@@ -1,4 +1,4 @@
-//! Sets of numbers by rows: which nodes of one level belong to which of another.
+//! Sets of numbers by rows, such as the nodes of one level that belong to each node of another.
 
 use rayon::prelude::*;
 
@@ -9,7 +9,7 @@ pub(super) struct Sets {
 }
 
 impl Sets {
-    /// The union of what `visit` shows for each row, out of `count` numbers.
+    /// Builds for each row the union of the numbers that `visit` shows, all below `count`.
     pub fn unions(rows: usize, count: usize, visit: impl Fn(usize, &mut dyn FnMut(&[u32])) + Sync) -> Sets {
         const PART: usize = 512;
         let parts: Vec<(Vec<u32>, Vec<usize>)> = (0..rows.div_ceil(PART))
@@ -51,7 +51,7 @@ impl Sets {
         &self.members[self.offsets[i]..self.offsets[i + 1]]
     }
 
-    /// For each of `count` numbers the rows that have it.
+    /// Returns for each of `count` numbers the rows that contain it.
     pub fn transposed<'a>(rows: usize, count: usize, row: impl Fn(usize) -> &'a [u32]) -> Sets {
         let mut offsets = vec![0; count + 1];
         for i in 0..rows {

@@ -1,4 +1,5 @@
-//! Products of a level's rows with a vector: residuals and Gauss-Seidel sweeps, on the processor's widest lanes.
+//! Products of a level's rows with a vector: residuals and Gauss-Seidel sweeps, on the processor's widest
+//! lanes.
 
 use std::ops::Range;
 
@@ -7,13 +8,13 @@ use lanes::{LanePath, madd_f32, on_path};
 use super::operator::{Entry, Operator, Part};
 
 impl<const B: usize> Operator<B> {
-    /// `out = b - A x`.
+    /// Computes `out = b - A x`.
     pub fn residual(&self, b: &[Entry<B>], x: &[Entry<B>], out: &mut [Entry<B>]) {
         let path = LanePath::best();
         self.each_chunk(out, |chunk, out| residual_rows(path, self, chunk, b, x, out));
     }
 
-    /// One sweep forward from zero: `x = (D + L)^-1 b`; then `rest = b - A x`.
+    /// Sweeps forward from zero, `x = (D + L)^-1 b`, then computes `rest = b - A x`.
     pub fn sweep_forward(&self, b: &[Entry<B>], x: &mut [Entry<B>], rest: &mut [Entry<B>]) {
         let path = LanePath::best();
         self.each_chunk_of_two(x, rest, |chunk, x, rest| forward_rows(path, self, chunk, b, x, rest));
@@ -23,7 +24,7 @@ impl<const B: usize> Operator<B> {
         }
     }
 
-    /// One sweep backward: the transpose of the sweep forward. What `rest` has is lost.
+    /// Sweeps backward, the transpose of the forward sweep. `rest` is overwritten.
     pub fn sweep_backward(&self, b: &[Entry<B>], x: &mut [Entry<B>], rest: &mut [Entry<B>]) {
         let path = LanePath::best();
         rest.copy_from_slice(b);
@@ -80,7 +81,7 @@ fn residual_lanes<const FMA: bool, const B: usize>(
     }
 }
 
-/// Takes the products with what other chunks have from `rest`.
+/// Subtracts the products with entries of other chunks from `rest`.
 #[inline(always)]
 fn outside_lanes<const FMA: bool, const B: usize>(
     matrix: &Operator<B>,
@@ -98,7 +99,8 @@ fn outside_lanes<const FMA: bool, const B: usize>(
     }
 }
 
-/// `D + L` takes its part of `b`; the upper triangle and what was added to the diagonal stay in `rest`.
+/// Solves `(D + L) x = b`. The upper triangle and the additions to the diagonal leave their products in
+/// `rest`.
 #[inline(always)]
 fn forward_lanes<const FMA: bool, const B: usize>(
     matrix: &Operator<B>,
@@ -118,7 +120,7 @@ fn forward_lanes<const FMA: bool, const B: usize>(
     }
 }
 
-/// `rest` is what the rows have to be, less the products with what is swept already.
+/// Solves backward. `rest` holds the right-hand side, less the products with rows already swept.
 #[inline(always)]
 fn backward_lanes<const FMA: bool, const B: usize>(
     matrix: &Operator<B>,
@@ -136,7 +138,7 @@ fn backward_lanes<const FMA: bool, const B: usize>(
     }
 }
 
-/// `out -= A^T x` of a part of a row, where `out` begins at node `start`.
+/// Computes `out -= A^T x` for part of a row, where `out` begins at node `start`.
 #[inline(always)]
 fn subtract_transposed<const FMA: bool, const B: usize>(
     (columns, blocks): Part<'_, B>,
@@ -152,7 +154,7 @@ fn subtract_transposed<const FMA: bool, const B: usize>(
     }
 }
 
-/// A sum of products of blocks: columns go to three sums in turn, none of which has to wait for the other two.
+/// Sum of products of blocks. Columns go to three sums in turn, so that none waits for the other two.
 struct Sum<const FMA: bool, const B: usize>([[f32; WIDTH]; 3]);
 
 /// Lanes of a sum: blocks have 3 or 6 rows.
@@ -165,7 +167,7 @@ impl<const FMA: bool, const B: usize> Sum<FMA, B> {
         Sum([[0.0; WIDTH]; 3])
     }
 
-    /// `self += A x` of a part of a row, where `x` begins at node `start`.
+    /// Computes `self += A x` for part of a row, where `x` begins at node `start`.
     #[inline(always)]
     fn add_all(&mut self, (columns, blocks): Part<'_, B>, x: &[Entry<B>], start: usize) {
         for (&j, block) in columns.iter().zip(blocks) {
@@ -173,7 +175,8 @@ impl<const FMA: bool, const B: usize> Sum<FMA, B> {
         }
     }
 
-    /// The same from the last column to the first: a sweep backward then reads the memory downward, which the processor foresees.
+    /// The same from the last column to the first: a backward sweep then reads the memory downward, which the
+    /// processor prefetches.
     #[inline(always)]
     fn add_all_from_last(&mut self, (columns, blocks): Part<'_, B>, x: &[Entry<B>], start: usize) {
         for (&j, block) in columns.iter().zip(blocks).rev() {
@@ -181,12 +184,13 @@ impl<const FMA: bool, const B: usize> Sum<FMA, B> {
         }
     }
 
-    /// `self += block x`.
+    /// Computes `self += block x`.
     #[inline(always)]
     fn add(&mut self, block: &[[f32; B]; B], x: &Entry<B>) {
         let [first, second, third] = &mut self.0;
         if B == 3 {
-            // Four lanes at once, of which three count: those of the last column are the upper ones.
+            // Four lanes at once, of which three count. The last column is read one entry early: its upper
+            // lanes count.
             let entries = block.as_flattened();
             for l in 0..4 {
                 first[l] = madd_f32::<FMA>(entries[l], x[0], first[l]);
@@ -212,7 +216,7 @@ impl<const FMA: bool, const B: usize> Sum<FMA, B> {
         }
     }
 
-    /// `b` less this sum.
+    /// Returns `b` less this sum.
     #[inline(always)]
     fn from(&self, b: &Entry<B>) -> Entry<B> {
         let [first, second, third] = &self.0;
@@ -221,7 +225,7 @@ impl<const FMA: bool, const B: usize> Sum<FMA, B> {
     }
 }
 
-/// `block x`.
+/// Returns `block x`.
 #[inline(always)]
 pub(super) fn times<const B: usize>(block: &[[f32; B]; B], x: &Entry<B>) -> Entry<B> {
     let mut sum = [0.0; B];

@@ -1,4 +1,4 @@
-//! The parts of the hierarchy against their definitions.
+//! Checks the parts of the hierarchy against their definitions.
 
 use super::aggregate::{MODES, aggregates, orthonormal};
 use super::galerkin::galerkin;
@@ -8,7 +8,7 @@ use super::lower::{Block, Lower, LowerRows};
 use super::operator::Operator;
 use super::transfer::{Dense, Transfer, Weight};
 
-/// A grid of n x n x n nodes tied to their neighbours by springs, the first face tied to the ground.
+/// Grid of n x n x n nodes connected to their neighbours by springs, with the first face on ground springs.
 fn grid(n: usize) -> (Lower<3>, Vec<[[f64; MODES]; 3]>) {
     let node = |x: usize, y: usize, z: usize| (x * n + y) * n + z;
     let at = |i: usize| [i / (n * n), i / n % n, i % n];
@@ -102,7 +102,7 @@ fn a_coarse_matrix_is_the_triple_product() {
     }
 }
 
-/// Smoothing changes a rigid motion only next to what holds it.
+/// Smoothing changes a rigid motion only next to the supports.
 #[test]
 fn rigid_motions_are_prolonged_exactly_away_from_supports() {
     let (lower, modes) = grid(8);
@@ -138,7 +138,7 @@ fn restriction_is_the_transpose_of_prolongation() {
     assert_eq!((fused_up, fused_down), (up, down));
 }
 
-/// A preconditioner of conjugate gradients has to be symmetric and positive: with several chunks too.
+/// A preconditioner of conjugate gradients must be symmetric and positive, also with several chunks.
 #[test]
 fn a_cycle_is_symmetric_and_positive() {
     // 17,576 nodes: two chunks of the sweeps.
@@ -163,13 +163,13 @@ fn a_cycle_is_symmetric_and_positive() {
     let size = inner(&solve(&first), &first);
     assert!(size > 0.0 && inner(&solve(&second), &second) > 0.0);
     assert!((left - right).abs() < 1e-5 * size, "{left} and {right} of {size}");
-    // Cycles are below the inverse, and one that visits the coarser levels twice is nearer to it.
+    // Cycles approximate the inverse from below, and a W-cycle is closer to it.
     let smooth: Vec<[f32; 3]> = modes.iter().map(|rows| std::array::from_fn(|a| rows[a][0] as f32)).collect();
     let (once, twice) = (inner(&cycle(&smooth, Cycle::V), &smooth), inner(&solve(&smooth), &smooth));
     assert!(once > 0.0 && twice > 1.01 * once, "{once} and {twice}");
 }
 
-/// Both triangles from one, across two chunks: residuals, and the sweeps that take parts of them.
+/// Uses both triangles from one, across two chunks: residuals, and the sweeps that update them.
 #[test]
 fn sweeps_leave_the_residual_and_are_transposes() {
     let (lower, _) = grid(26);
@@ -219,7 +219,7 @@ fn sweeps_leave_the_residual_and_are_transposes() {
     };
     let (left, right) = (inner(&forward, &x), inner(&b, &backward(&x, &zero)));
     assert!((left - right).abs() < 1e-5 * inner(&forward, &forward), "{left} and {right}");
-    // From anywhere it is one from zero of what is left.
+    // A backward sweep from `x` adds to `x` a sweep from zero on its residual.
     let mut corrected = backward(&exact, &zero);
     corrected.iter_mut().flatten().zip(x.iter().flatten()).for_each(|(c, x)| *c += x);
     near(&backward(&b, &x), &corrected, "a sweep backward");

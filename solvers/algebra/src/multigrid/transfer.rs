@@ -1,4 +1,4 @@
-//! From a level to the next and back: the prolongation, its rows by node.
+//! Transfer between a level and the next coarser level: the prolongation, with one row per node.
 
 use std::ops::Range;
 
@@ -11,26 +11,26 @@ use super::graph::Graph;
 use super::operator::{Entry, Operator};
 use super::sets::Sets;
 
-/// What a node of a level with B degrees of freedom takes from a node of the next with C.
+/// Weight of a coarse node with C degrees of freedom at a fine node with B.
 pub(super) trait Weight<const B: usize, const C: usize>: Copy + Send + Sync {
-    /// `x += P coarse`.
+    /// Computes `x += P coarse`.
     fn add<const FMA: bool>(&self, coarse: &Entry<C>, x: &mut Entry<B>);
-    /// `sum += P^T rest`.
+    /// Computes `sum += P^T rest`.
     fn add_transposed<const FMA: bool>(&self, rest: &Entry<B>, sum: &mut Entry<C>);
-    /// `rows += A P`, a block by columns, rows by degree of freedom.
+    /// Computes `rows += A P`; the block is stored by columns, `rows` by degree of freedom.
     fn multiply<const FMA: bool>(&self, block: &[[f64; B]; B], rows: &mut [[f64; C]; B]);
-    /// `sum += P^T rows`, by rows.
+    /// Computes `sum += P^T rows`, by rows.
     fn multiply_transposed<const FMA: bool>(&self, rows: &[[f64; C]; B], sum: &mut [[f64; C]; C]);
 }
 
-/// Any linear map: of a smoothed aggregate. By rows.
+/// Dense weight, by rows: any linear map, as for a smoothed aggregate.
 #[derive(Clone, Copy)]
 pub(super) struct Dense<const B: usize>(pub [[f32; MODES]; B]);
 
 impl<const B: usize> Weight<B, MODES> for Dense<B> {
     #[inline(always)]
     fn add<const FMA: bool>(&self, coarse: &Entry<MODES>, x: &mut Entry<B>) {
-        // A sum of its own for each weight: the next does not have to wait for it.
+        // Each weight has its own sum, so that the next does not have to wait for it.
         for (x, row) in x.iter_mut().zip(&self.0) {
             *x += row.iter().zip(coarse).fold(0.0, |sum, (weight, c)| madd_f32::<FMA>(*weight, *c, sum));
         }
@@ -74,7 +74,7 @@ impl<const B: usize> Weight<B, MODES> for Dense<B> {
     }
 }
 
-/// The same for every direction that is free on both sides: of a mesh that another refines.
+/// Diagonal weight, equal in all directions that are free on both sides, as for a nested mesh.
 #[derive(Clone, Copy)]
 pub(super) struct Diagonal(pub [f32; 3]);
 
@@ -108,25 +108,25 @@ impl Weight<3, 3> for Diagonal {
     }
 }
 
-/// A prolongation.
+/// Prolongation from the next coarser level.
 pub(super) struct Transfer<W> {
     offsets: Vec<usize>,
-    /// Nodes of the next level, ascending in each row.
+    /// Nodes of the coarser level, ascending in each row.
     columns: Vec<u32>,
     weights: Vec<W>,
-    /// Number of nodes of the next level.
+    /// Number of nodes of the coarser level.
     pub count: usize,
 }
 
 impl<W> Transfer<W> {
-    /// Nodes of the next level and what is taken of them.
+    /// Nodes of the coarser level with their weights at node `i`.
     #[inline]
     pub fn row(&self, i: usize) -> (&[u32], &[W]) {
         let range = self.offsets[i]..self.offsets[i + 1];
         (&self.columns[range.clone()], &self.weights[range])
     }
 
-    /// `out = P^T rest`.
+    /// Computes `out = P^T rest`.
     pub fn restrict<const B: usize, const C: usize>(&self, rest: &[Entry<B>], out: &mut [Entry<C>])
     where
         W: Weight<B, C>,
@@ -135,7 +135,7 @@ impl<W> Transfer<W> {
         in_parts(rest.len(), out, |rows, out| restrict_rows(path, self, rows, rest, out));
     }
 
-    /// `x += P coarse`.
+    /// Computes `x += P coarse`.
     pub fn prolong<const B: usize, const C: usize>(&self, coarse: &[Entry<C>], x: &mut [Entry<B>])
     where
         W: Weight<B, C>,
@@ -173,7 +173,7 @@ fn restrict_lanes<const FMA: bool, const B: usize, const C: usize, W: Weight<B, 
     }
 }
 
-/// Of the rows from `start` on.
+/// Prolongs to the rows from `start` on.
 #[inline(always)]
 fn prolong_lanes<const FMA: bool, const B: usize, const C: usize, W: Weight<B, C>>(
     transfer: &Transfer<W>,
@@ -190,14 +190,16 @@ fn prolong_lanes<const FMA: bool, const B: usize, const C: usize, W: Weight<B, C
 }
 
 impl<const B: usize> Transfer<Dense<B>> {
-    /// `P = (I - w D^-1 A) T` with `w = 4/3` over the largest eigenvalue of `D^-1 A` (Vanek, Mandel and Brezina 1996).
+    /// Builds the smoothed prolongation `P = (I - w D^-1 A) T` with `w = 4/3` over the largest eigenvalue of
+    /// `D^-1 A` (Vanek, Mandel and Brezina 1996).
     pub fn smoothed(
         matrix: &Operator<B>,
         graph: &Graph,
         aggregates: &Aggregates,
         functions: &[Modes<B>],
     ) -> Transfer<Dense<B>> {
-        // The power method is some per cent below, which does no harm: from 0.9 to 1.2 times this the iterations are the same.
+        // The power method is a few per cent low, which is harmless: from 0.9 to 1.2 times this weight the
+        // number of iterations is the same.
         let weight = 4.0 / (3.0 * matrix.largest_eigenvalue());
         let functions: Vec<[[f32; MODES]; B]> =
             functions.iter().map(|rows| rows.map(|row| row.map(|v| v as f32))).collect();
@@ -219,7 +221,7 @@ impl<const B: usize> Transfer<Dense<B>> {
     }
 }
 
-/// What a prolongation is smoothed with.
+/// Input for smoothing a prolongation.
 struct Smoothing<'a, const B: usize> {
     matrix: &'a Operator<B>,
     graph: &'a Graph,
@@ -230,7 +232,7 @@ struct Smoothing<'a, const B: usize> {
 }
 
 on_path! {
-    /// Rows of `(I - w D^-1 A) T`, whose weights start as zeros.
+    /// Computes rows of `(I - w D^-1 A) T`; their weights start as zeros.
     fn smooth_rows<const B: usize>(
         by: &Smoothing<'_, B>, rows: Range<usize>, offsets: &[usize], columns: &[u32], weights: &mut [Dense<B>],
     ) = smooth_rows_lanes
@@ -273,7 +275,7 @@ fn smooth_rows_lanes<const FMA: bool, const B: usize>(
     }
 }
 
-/// Parts of rows with their entries, at once.
+/// Calls `run` for parts of the rows with their entries, concurrently.
 fn in_rows<T: Send>(offsets: &[usize], entries: &mut [T], run: impl Fn(Range<usize>, &mut [T]) + Sync) {
     const PART: usize = 512;
     let (rows, mut rest) = (offsets.len() - 1, entries);
@@ -288,7 +290,8 @@ fn in_rows<T: Send>(offsets: &[usize], entries: &mut [T], run: impl Fn(Range<usi
 }
 
 impl Transfer<Diagonal> {
-    /// Of degrees of freedom `3 node + axis` that are not held on either side.
+    /// Builds the prolongation of a nested mesh for degrees of freedom `3 node + axis` that are free on both
+    /// sides.
     pub fn nested(coarser: &Coarser, held: &[bool]) -> Transfer<Diagonal> {
         let (mut offsets, mut columns, mut weights) = (vec![0], Vec::new(), Vec::new());
         for i in 0..coarser.rows.len() {
@@ -306,7 +309,8 @@ impl Transfer<Diagonal> {
     }
 }
 
-/// Sums that parts of `rows` rows add to, one sum for each part, then all in order: the parts depend on the number of rows alone.
+/// Sums contributions of `rows` rows in parts with sums of their own, which are then added in order. The
+/// parts depend on the number of rows alone.
 fn in_parts<const C: usize>(
     rows: usize,
     out: &mut [Entry<C>],
