@@ -1,14 +1,14 @@
-//! Dimensions: which units a key takes, and what to write where they are missing or wrong.
+//! Dimensions: the units that a key takes, and help for missing or wrong units.
 
 use crate::problem::Problem;
 use crate::quantity::{Exponents, Quantity};
 
-/// The dimensions that scene files name.
+/// Dimension of a value in a scene file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Dimension {
     /// Metres.
     Length,
-    /// Pascals; moduli, tractions and stresses too.
+    /// Pascals: pressures, moduli, tractions and stresses.
     Pressure,
     /// Kilograms per cubic metre.
     Density,
@@ -20,7 +20,7 @@ pub enum Dimension {
     Time,
     /// Newtons per cubic metre.
     BodyForce,
-    /// Pascals per metre: slopes of contact. The same units as a force per volume, another meaning.
+    /// Pascals per metre: contact slopes. The units are those of a force per volume, the meaning is not.
     ContactSlope,
     /// One per metre.
     Curvature,
@@ -88,7 +88,7 @@ impl Dimension {
         }
     }
 
-    /// The name in messages and in the schema.
+    /// Returns the name used in messages and in the schema.
     pub fn name(self) -> &'static str {
         match self {
             Dimension::Length => "length",
@@ -112,7 +112,7 @@ impl Dimension {
         }
     }
 
-    /// Unit of the value inside the program, as tables print it.
+    /// Returns the SI unit of the value inside the program, as printed in tables.
     pub const fn si_unit(self) -> &'static str {
         match self {
             Dimension::Length => "m",
@@ -136,7 +136,7 @@ impl Dimension {
         }
     }
 
-    /// Units to offer, the usual one first.
+    /// Returns the units offered in messages, the usual one first.
     pub fn offered(self) -> &'static [&'static str] {
         match self {
             Dimension::Length => &["mm", "m", "cm", "um", "km"],
@@ -164,7 +164,7 @@ impl Dimension {
         self.offered().is_empty()
     }
 
-    /// The dimension of that name.
+    /// Returns the dimension with that name.
     pub fn from_name(name: &str) -> Option<Dimension> {
         Dimension::ALL.iter().copied().find(|d| d.name() == name)
     }
@@ -173,12 +173,12 @@ impl Dimension {
         Dimension::ALL.iter().copied().find(|d| d.exponents() == exponents)
     }
 
-    /// The dimension of a quantity, such as that of one in the SI unit `unit` ("" for a bare number).
+    /// Returns the dimension of a quantity in `unit`, such as `kPa` ("" for a bare number).
     pub fn of_unit(unit: &str) -> Option<Dimension> {
         Quantity::read(&format!("1 {unit}")).ok().and_then(|q| Dimension::of(q.exponents))
     }
 
-    /// The name with its article.
+    /// Returns the name with its article.
     fn a_name(self) -> String {
         let article = if matches!(self, Dimension::Angle | Dimension::AngularFrequency | Dimension::Energy) {
             "an"
@@ -188,7 +188,7 @@ impl Dimension {
         format!("{article} {}", self.name())
     }
 
-    /// `a pressure needs a unit: kPa, Pa, ...`
+    /// Returns the help text: `a pressure needs a unit: kPa, Pa, ...`
     fn need(self) -> String {
         match self {
             Dimension::None | Dimension::Bytes => "a number without a unit belongs here".into(),
@@ -196,13 +196,17 @@ impl Dimension {
         }
     }
 
-    /// What to write instead of the bare number `text`.
+    /// Returns the help text for a bare number `text`, with the unit that it lacks.
     pub fn fix(self, text: &str) -> String {
         let unit = self.offered().first().copied().unwrap_or_default();
         format!("write \"{} {unit}\" ({})", text.trim(), self.need())
     }
 
-    /// Reads a quantity of this dimension into SI.
+    /// Reads a quantity of this dimension and returns its value in SI.
+    ///
+    /// # Errors
+    ///
+    /// The text is no quantity, or a quantity of another dimension.
     pub fn read(self, text: &str) -> Result<f64, Problem> {
         let quantity = match Quantity::read(text) {
             Err(bad) if bad.help.is_none() => return Err(bad.help(self.need())),
@@ -211,7 +215,11 @@ impl Dimension {
         self.take(quantity, text)
     }
 
-    /// The value of a quantity that must have this dimension; `text` is how the file has it.
+    /// Returns the SI value of a quantity that must have this dimension. `text` is its wording in the file.
+    ///
+    /// # Errors
+    ///
+    /// The quantity has another dimension, or no unit.
     pub fn take(self, quantity: Quantity, text: &str) -> Result<f64, Problem> {
         if quantity.exponents == self.exponents() {
             return Ok(quantity.value);
@@ -226,7 +234,11 @@ impl Dimension {
         Err(Problem::new(is).found(text).help(self.need()))
     }
 
-    /// Factor to SI of a unit alone, such as the `Pa` of `{ unit = "Pa", of = "z^2" }`.
+    /// Returns the factor to SI of a unit alone, such as the `Pa` of `{ unit = "Pa", of = "z^2" }`.
+    ///
+    /// # Errors
+    ///
+    /// The text is a quantity, an unknown unit, or a unit of another dimension.
     pub fn read_unit(self, text: &str) -> Result<f64, Problem> {
         if text.trim_start().starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c))
             && !text.trim_start().starts_with("1/")

@@ -4,24 +4,24 @@ use crate::names::suggest;
 use crate::parameter::Parameter;
 use crate::problem::Problem;
 
-/// Something that a person can name. `B` is the constructor that its kind shares, a function of checked [`Values`].
+/// Named object of the catalogue. `B` is the type of its constructor, a function of checked [`Values`].
 ///
 /// [`Values`]: crate::Values
 #[derive(Clone, Copy, Debug)]
 pub struct Entry<B> {
     /// Name in files and tables.
     pub name: &'static str,
-    /// What it is, in one line.
+    /// Meaning, in one line.
     pub meaning: &'static str,
-    /// Where it is from; empty for what needs no source.
+    /// Source, such as a paper; empty if none is needed.
     pub source: &'static str,
-    /// What it takes.
+    /// Parameters that the constructor takes.
     pub parameters: &'static [Parameter],
-    /// Makes it.
+    /// Constructor.
     pub build: B,
 }
 
-/// Entries are the same where their names are.
+/// Entries are equal if their names are.
 impl<B> PartialEq for Entry<B> {
     fn eq(&self, other: &Entry<B>) -> bool {
         self.name == other.name
@@ -29,13 +29,17 @@ impl<B> PartialEq for Entry<B> {
 }
 
 impl<B> Entry<B> {
-    /// The parameter of that name.
+    /// Returns the parameter with that name.
     pub fn parameter(&self, name: &str) -> Option<&'static Parameter> {
         self.parameters.iter().find(|parameter| parameter.name == name)
     }
 }
 
-/// The entry of that name, or the nearest name.
+/// Returns the entry with that name.
+///
+/// # Errors
+///
+/// The name is not known; the help gives the nearest name.
 pub fn find<B>(entries: &'static [Entry<B>], name: &str) -> Result<&'static Entry<B>, Problem> {
     entries
         .iter()
@@ -43,7 +47,7 @@ pub fn find<B>(entries: &'static [Entry<B>], name: &str) -> Result<&'static Entr
         .ok_or_else(|| Problem::new("is not known").found(name).help(suggest(name, &names(entries))))
 }
 
-/// The names of all entries, in their order.
+/// Returns the names of all entries, in their order.
 pub fn names<B>(entries: &[Entry<B>]) -> Vec<&'static str> {
     entries.iter().map(|entry| entry.name).collect()
 }

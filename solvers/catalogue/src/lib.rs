@@ -1,11 +1,13 @@
-//! What a person can name, and how it is explained.
+//! Catalogue of everything that a user can name, with explanations.
 //!
-//! A law, a kernel, an exact solution or a metric is an [`Entry`]: a name, a meaning, a source, its [`Parameter`]s with
-//! dimension, default and range, and a constructor from checked SI values. Entries stand beside their implementations;
-//! this crate has their types, the units of their parameters and the nearest known name of a mistyped one. Scene files,
-//! their schema, messages, lists and property tests all walk the same slices of entries.
+//! A law, a kernel, an exact solution or a metric is an [`Entry`]: a name, a meaning, a source, its
+//! [`Parameter`]s with dimension, default and range, and a constructor from checked SI values. Entries are
+//! defined next to their implementations. This crate defines their types and the units of their parameters,
+//! and finds the nearest known name of a mistyped one. Scene files, their schema, messages, lists and
+//! property tests all use the same slices of entries.
 //!
-//! The [metrics](metric) and [warnings](warning) are here themselves, because solvers record them and reports draw them.
+//! The [metrics](metric) and [warnings](warning) are defined here, because solvers record them and reports
+//! draw them.
 //!
 //! ```
 //! use catalogue::{Dimension, Entry, Parameter, Problem, Value, Values, find, metric};

@@ -1,9 +1,9 @@
-//! The known name that a mistyped one most likely meant.
+//! Nearest known name of a mistyped name.
 
-/// The known name nearest to `name` (insertions, deletions, substitutions and swaps: Damerau 1964), the first of
-/// equals, if near enough to be what was meant.
+/// Returns the known name nearest to `name`, counting insertions, deletions, substitutions and swaps (Damerau
+/// 1964). Of equally near names the first is returned. Returns `None` if no name is near enough.
 pub fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
-    // The cost grows with the product of the lengths; no known name is half as long.
+    // The cost grows with the product of the lengths; no known name is half as long as this limit.
     let name: String = name.chars().take(80).collect();
     known
         .into_iter()
@@ -13,7 +13,7 @@ pub fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Opti
         .map(|(_, candidate)| candidate)
 }
 
-/// `did you mean 'x'?` where something is near, and the list of what is known.
+/// Returns `did you mean 'x'?` if a known name is near, and the list of known names.
 pub fn suggest(name: &str, known: &[&str]) -> String {
     let list = format!("known here: {}", known.join(", "));
     match nearest(name, known.iter().copied()) {

@@ -1,29 +1,29 @@
-//! Parameters of entries: what they are, what they take, what they are unless given.
+//! Parameters of entries: meaning, accepted values and defaults.
 
 use crate::dimension::Dimension;
 use crate::problem::Problem;
 use crate::values::Value;
 
-/// One parameter that an entry takes.
+/// Parameter of an entry.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Parameter {
     /// Name in files.
     pub name: &'static str,
-    /// Its dimension: values are in the SI unit of it.
+    /// Dimension; values are in its SI unit.
     pub dimension: Dimension,
-    /// What kind of value it has.
+    /// Kind of value.
     pub kind: Kind,
-    /// Value when not given, of a number; of a flag 1 for true.
+    /// Default of a number or a flag (1 for true); `None` without one.
     pub default: Option<f64>,
-    /// Whether it must be given.
+    /// Whether a value must be given.
     pub required: bool,
-    /// The values it takes; each of them of a list.
+    /// Accepted values, for a list those of every number.
     pub range: Range,
-    /// What it is, in a few words.
+    /// Meaning, in a few words.
     pub meaning: &'static str,
 }
 
-/// What kind of value a parameter has.
+/// Kind of value of a parameter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// A number.
@@ -38,7 +38,7 @@ pub enum Kind {
     Flag,
 }
 
-/// The values that a parameter takes. All are finite.
+/// Range of accepted values. All values must be finite.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Range {
     /// Any number.
@@ -47,7 +47,7 @@ pub enum Range {
     Positive,
     /// Zero or more.
     NotNegative,
-    /// This or more.
+    /// The given number or more.
     AtLeast(f64),
     /// From the first to the second, ends included.
     Within(f64, f64),
@@ -56,13 +56,13 @@ pub enum Range {
 }
 
 impl Parameter {
-    /// A number that must be given.
+    /// Makes a number that must be given.
     pub const fn required(name: &'static str, dimension: Dimension, meaning: &'static str) -> Parameter {
         let (kind, range) = (Kind::Number, Range::Any);
         Parameter { name, dimension, kind, default: None, required: true, range, meaning }
     }
 
-    /// A number that takes a value when it is not given.
+    /// Makes a number with a default.
     pub const fn default(
         name: &'static str,
         dimension: Dimension,
@@ -73,27 +73,31 @@ impl Parameter {
         Parameter { default: Some(default), required: false, ..parameter }
     }
 
-    /// A number that may be absent.
+    /// Makes a number that may be absent.
     pub const fn optional(name: &'static str, dimension: Dimension, meaning: &'static str) -> Parameter {
         Parameter { required: false, ..Parameter::required(name, dimension, meaning) }
     }
 
-    /// The same where it may be absent, as one of several ways to give something.
+    /// Returns the parameter as optional, for several alternative ways to give a value.
     pub const fn may_be_absent(self) -> Parameter {
         Parameter { required: false, ..self }
     }
 
-    /// With another kind of value.
+    /// Returns the parameter with another kind of value.
     pub const fn of(self, kind: Kind) -> Parameter {
         Parameter { kind, ..self }
     }
 
-    /// With a range.
+    /// Returns the parameter with a range.
     pub const fn within(self, range: Range) -> Parameter {
         Parameter { range, ..self }
     }
 
-    /// Refuses a value of another kind or outside of the range.
+    /// Checks the kind and the range of a value.
+    ///
+    /// # Errors
+    ///
+    /// The value is of another kind, not finite or out of range.
     pub fn check(&self, value: &Value) -> Result<(), Problem> {
         let numbers = match (self.kind, value) {
             (Kind::Number | Kind::Count, Value::Number(number)) => std::slice::from_ref(number),
@@ -111,7 +115,7 @@ impl Parameter {
         Ok(())
     }
 
-    /// Of a number out of range: what the parameter is, and of a list which number it is.
+    /// Adds the parameter's meaning to a range error, and for a list the number at fault.
     fn explained(&self, bad: Problem, number: f64) -> Problem {
         let help = match (&bad.help, self.meaning) {
             (Some(help), meaning) if !meaning.is_empty() => Some(format!("{help}: {meaning}")),
@@ -138,7 +142,11 @@ impl Kind {
 }
 
 impl Range {
-    /// Refuses a number outside.
+    /// Checks that a number is finite and in range.
+    ///
+    /// # Errors
+    ///
+    /// The number is not finite or out of range.
     pub fn check(self, value: f64) -> Result<(), Problem> {
         let (holds, problem) = match self {
             Range::Any => (true, ""),
@@ -156,7 +164,7 @@ impl Range {
         }
     }
 
-    /// The range in words.
+    /// Describes the range in words.
     pub fn text(self) -> String {
         match self {
             Range::Any => "any number".into(),
@@ -169,7 +177,7 @@ impl Range {
     }
 }
 
-/// A number as people write it: a small one by its power of ten.
+/// Formats a number as people write it: a small number with its power of ten.
 pub fn short(number: f64) -> String {
     if number != 0.0 && number.abs() < 1e-3 { format!("{number:e}") } else { number.to_string() }
 }

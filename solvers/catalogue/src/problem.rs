@@ -1,39 +1,39 @@
-//! What is wrong with a value, and what would be right.
+//! Errors in a value, with a hint at the right one.
 
 use std::fmt;
 
-/// A finding that doesn't know its place in a file yet.
+/// Error in a value, without its location in a file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Problem {
-    /// The value as the file has it.
+    /// Value as written in the file.
     pub found: Option<String>,
-    /// What is wrong with it.
+    /// Description of the error.
     pub problem: String,
-    /// What would be right.
+    /// Hint at a right value.
     pub help: Option<String>,
-    /// The parameter of an entry that it is about, where a constructor found it.
+    /// Parameter of an entry, if a constructor found the error.
     pub parameter: Option<&'static str>,
 }
 
 impl Problem {
-    /// Without a value and without help.
+    /// Makes an error without a value and without help.
     pub fn new(problem: impl Into<String>) -> Problem {
         Problem { found: None, problem: problem.into(), help: None, parameter: None }
     }
 
-    /// With the value, one line of at most 80 characters.
+    /// Adds the value, clipped to one line of at most 80 characters.
     pub fn found(mut self, found: impl fmt::Display) -> Problem {
         self.found = Some(clip(&found.to_string()));
         self
     }
 
-    /// About a parameter of an entry.
+    /// Names the parameter of an entry.
     pub fn of(mut self, parameter: &'static str) -> Problem {
         self.parameter = Some(parameter);
         self
     }
 
-    /// With what would be right.
+    /// Adds a hint at a right value.
     pub fn help(mut self, help: impl Into<String>) -> Problem {
         self.help = Some(help.into());
         self
@@ -55,7 +55,7 @@ impl fmt::Display for Problem {
 
 impl std::error::Error for Problem {}
 
-/// One line of at most 80 characters.
+/// Clips a text to one line of at most 80 characters.
 pub fn clip(text: &str) -> String {
     let line = text.split_whitespace().collect::<Vec<_>>().join(" ");
     match line.char_indices().nth(80) {

@@ -6,7 +6,7 @@ use crate::problem::Problem;
 /// Exponents of metre, kilogram, second and radian.
 pub type Exponents = [i8; 4];
 
-/// A number in SI together with its dimension.
+/// Number in SI base units with its dimension.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Quantity {
     /// Value in SI base units (angles in radians).
@@ -17,6 +17,10 @@ pub struct Quantity {
 
 impl Quantity {
     /// Reads a number followed by a unit: factors joined by `*`, `/` or a space, each with an integer power.
+    ///
+    /// # Errors
+    ///
+    /// The text does not begin with a finite number, or a unit is not known.
     pub fn read(text: &str) -> Result<Quantity, Problem> {
         let bad = |problem: &str| Problem::new(problem).found(text);
         let trimmed = text.trim();
@@ -43,7 +47,7 @@ fn unknown_unit(text: &str, word: &str) -> Problem {
     }
 }
 
-/// The longest leading number, and the rest.
+/// Splits a text into its longest leading number and the rest.
 fn split_number(text: &str) -> (&str, &str) {
     let bytes = text.as_bytes();
     let digits = |mut i: usize| {
@@ -66,8 +70,8 @@ fn split_number(text: &str) -> (&str, &str) {
     text.split_at(end)
 }
 
-/// A named unit: name, power of ten, further factor, exponents. The power of ten is kept apart so that "35 mm" is read as
-/// the double nearest to 0.035.
+/// Named unit: name, power of ten, further factor, exponents. The power of ten is kept apart so that "35 mm"
+/// is read as the double nearest to 0.035.
 type Named = (&'static str, i32, f64, Exponents);
 
 /// Units that take the prefixes G, M, k, h, c, m, u and n.
@@ -95,20 +99,20 @@ const PLAIN: [Named; 9] = [
     ("mmHg", 0, 133.322_387_415, [-1, 1, -2, 0]),
 ];
 
-/// A word of a unit, as lists show it.
+/// Word of a unit, for lists.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct UnitWord {
     /// The word.
     pub name: &'static str,
     /// Whether it takes the prefixes G, M, k, h, c, m, u and n.
     pub prefixed: bool,
-    /// What one of it is in SI base units.
+    /// Size of the unit in SI base units.
     pub si: f64,
     /// Exponents of metre, kilogram, second and radian.
     pub exponents: Exponents,
 }
 
-/// Every word of a unit.
+/// Iterates over every word of a unit.
 pub fn units() -> impl Iterator<Item = UnitWord> {
     let word = |prefixed: bool| {
         move |&(name, ten, factor, exponents): &Named| UnitWord {
@@ -134,7 +138,7 @@ fn named(name: &str) -> Option<(i32, f64, Exponents)> {
     Some((ten + unit.1, unit.2, unit.3))
 }
 
-/// Power of ten, further factor and dimension of a unit; the word that isn't known otherwise.
+/// Returns power of ten, further factor and dimension of a unit, or the unknown word as the error.
 fn read_unit(text: &str) -> Result<(i32, f64, Exponents), String> {
     let mut ten = 0;
     let mut factor = 1.0;
@@ -162,7 +166,7 @@ fn read_unit(text: &str) -> Result<(i32, f64, Exponents), String> {
     Ok((ten, factor, exponents))
 }
 
-/// `mm^2` or `mm\u{b2}` into name and power; powers beyond 6 are slips of the pen.
+/// Splits `mm^2` or `mm\u{b2}` into name and power. Powers beyond 6 are taken as typing errors.
 fn split_power(word: &str) -> Option<(&str, i8)> {
     let (name, power) = if let Some((name, power)) = word.split_once('^') {
         (name, power.parse::<i8>().ok()?)
@@ -176,7 +180,7 @@ fn split_power(word: &str) -> Option<(&str, i8)> {
     (-6..=6).contains(&power).then_some((name, power))
 }
 
-/// `number` times ten to the `ten`, correctly rounded.
+/// Returns `number` times ten to the power `ten`, correctly rounded.
 fn scaled(number: &str, ten: i32) -> Option<f64> {
     let (mantissa, exponent) = match number.split_once(['e', 'E']) {
         Some((mantissa, exponent)) => (mantissa, exponent.parse::<i32>().ok()?),

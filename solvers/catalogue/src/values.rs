@@ -4,32 +4,37 @@ use crate::names::suggest;
 use crate::parameter::Parameter;
 use crate::problem::Problem;
 
-/// The value of one parameter, in SI.
+/// Value of one parameter, in SI.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Value {
     /// A number.
     Number(f64),
-    /// Several.
+    /// Several numbers.
     List(Vec<f64>),
     /// True or false.
     Flag(bool),
 }
 
-/// Values of the parameters of one entry: those that are given, each known and in its range, and the defaults of the rest.
+/// Values of an entry's parameters: the given ones, each known and in its range, and the defaults of the
+/// rest.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Values {
     parameters: &'static [Parameter],
-    /// In the order of the parameters.
+    /// Given values, in the order of the parameters.
     given: Vec<Option<Value>>,
 }
 
 impl Values {
-    /// Nothing given yet.
+    /// Starts without any given value.
     pub fn new(parameters: &'static [Parameter]) -> Values {
         Values { parameters, given: vec![None; parameters.len()] }
     }
 
-    /// Gives a value; refuses an unknown name and what its parameter does not take.
+    /// Sets the value of a parameter.
+    ///
+    /// # Errors
+    ///
+    /// The name is unknown, or the parameter does not accept the value.
     pub fn give(&mut self, name: &str, value: Value) -> Result<(), Problem> {
         let Some(index) = self.parameters.iter().position(|parameter| parameter.name == name) else {
             let names: Vec<&str> = self.parameters.iter().map(|parameter| parameter.name).collect();
@@ -40,13 +45,13 @@ impl Values {
         Ok(())
     }
 
-    /// The first required parameter that is not given.
+    /// Returns the first required parameter that is not given.
     pub fn missing(&self) -> Option<&'static Parameter> {
         let pairs = self.parameters.iter().zip(&self.given);
         pairs.filter(|(parameter, given)| parameter.required && given.is_none()).map(|(p, _)| p).next()
     }
 
-    /// The parameters that are given, with their values.
+    /// Iterates over the given parameters, with their values.
     pub fn given(&self) -> impl Iterator<Item = (&'static Parameter, &Value)> {
         self.parameters.iter().zip(&self.given).filter_map(|(p, given)| Some((p, given.as_ref()?)))
     }
@@ -56,7 +61,7 @@ impl Values {
         self.value(name).is_some()
     }
 
-    /// A number that is given, or its default; nothing for an optional parameter that is not given.
+    /// Returns a given number or its default; `None` for an optional parameter that is not given.
     pub fn get(&self, name: &str) -> Option<f64> {
         let index = self.parameters.iter().position(|parameter| parameter.name == name)?;
         match &self.given[index] {
@@ -66,18 +71,22 @@ impl Values {
         }
     }
 
-    /// A number that is given, or its default.
+    /// Returns a given number or its default.
+    ///
+    /// # Errors
+    ///
+    /// The parameter is not given and has no default.
     pub fn number(&self, name: &'static str) -> Result<f64, Problem> {
         self.get(name).ok_or_else(|| Problem::new(format!("{name} is missing")))
     }
 
-    /// A list or vector that is given.
+    /// Returns a given list or vector.
     pub fn list(&self, name: &str) -> Option<&[f64]> {
         self.value(name)
             .and_then(|value| if let Value::List(list) = value { Some(list.as_slice()) } else { None })
     }
 
-    /// A flag that is given, or its default.
+    /// Returns a given flag or its default.
     pub fn flag(&self, name: &str) -> bool {
         match self.value(name) {
             Some(Value::Flag(flag)) => *flag,

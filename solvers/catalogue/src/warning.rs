@@ -1,27 +1,27 @@
-//! The warnings: what can make a run's numbers worth less than they look. A run that warns has all its numbers and its
-//! status; whether it is right is for its reader, or for a check, to decide.
+//! Warnings about the results of a run. A run with warnings has all its numbers and its status; its reader,
+//! or a check, decides whether the numbers are right.
 
 use crate::Dimension;
 
-/// A kind of warning.
+/// Kind of warning.
 #[derive(Debug, PartialEq)]
 pub struct Warning {
     /// Code in files and tables.
     pub code: &'static str,
-    /// Dimension of the value that goes with it.
+    /// Dimension of the recorded value.
     pub dimension: Dimension,
-    /// What is wrong, in one line, with the value that is told.
+    /// Meaning in one line, followed by the meaning of the value.
     pub meaning: &'static str,
 }
 
 impl Warning {
-    /// SI unit of its value; `1` for a bare number.
+    /// Returns the SI unit of the value; `1` for a bare number.
     pub fn unit(&self) -> &'static str {
         self.dimension.si_unit()
     }
 }
 
-/// Declares each warning as a static of its own and lists them all.
+/// Declares each warning as a separate static and lists them all.
 macro_rules! warnings {
     ($($id:ident: $code:literal, $dimension:ident, $meaning:literal;)*) => {
         $(
@@ -29,7 +29,7 @@ macro_rules! warnings {
             pub static $id: Warning =
                 Warning { code: $code, dimension: Dimension::$dimension, meaning: $meaning };
         )*
-        /// Every warning, in the order lists show them.
+        /// Every warning, in the order of lists.
         pub static WARNINGS: &[&Warning] = &[$(&$id),*];
     };
 }

@@ -1,8 +1,8 @@
-//! Units by their sizes.
+//! Units, checked by their sizes.
 
 use catalogue::Quantity;
 
-/// A unit's factor is raised to its power like its power of ten.
+/// The power applies to the unit's factor as well as to its power of ten.
 #[test]
 fn powers_are_of_all_of_a_unit() {
     for (text, value) in [

@@ -1,4 +1,4 @@
-//! Files that are inputs of this process, by device and inode.
+//! Input files of this process, identified by device and inode.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs::{File, Metadata};
@@ -6,12 +6,13 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// A file whatever its names: device and inode. Where a system has none, the path without links.
+/// Identity of a file, whatever its names: device and inode. On systems without these, the path without
+/// links.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Identity(#[cfg(unix)] (u64, u64), #[cfg(not(unix))] PathBuf);
 
 impl Identity {
-    /// Identity of the file or folder that a path leads to; `None` if there is none.
+    /// Returns the identity of the file or folder at a path; `None` if there is none.
     pub fn of(path: &Path) -> Option<Identity> {
         #[cfg(unix)]
         return Some(Identity::from(&std::fs::metadata(path).ok()?));
@@ -26,7 +27,7 @@ impl Identity {
     }
 }
 
-/// Files that were read, by where they were found, and files that this process has written.
+/// Input files with the path of their first use, and files written by this process.
 struct Known {
     inputs: BTreeMap<Identity, PathBuf>,
     written: BTreeSet<Identity>,
@@ -37,8 +38,8 @@ fn known() -> MutexGuard<'static, Known> {
     KNOWN.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Notes that a file is an input of this process, read or yet to be read: from now on no output replaces it.
-/// An own output that is read again is none.
+/// Marks a file as an input of this process, read or yet to be read. From then on no output replaces the
+/// file. An output of this process that is read again does not count as an input.
 pub fn input(path: &Path) {
     let Some(identity) = Identity::of(path) else { return };
     let mut known = known();
@@ -50,7 +51,7 @@ pub fn input(path: &Path) {
     }
 }
 
-/// Notes that this process has made or emptied a file.
+/// Marks a file as created or emptied by this process.
 pub(crate) fn written(file: &File, path: &Path) {
     #[cfg(unix)]
     let identity = file.metadata().ok().filter(Metadata::is_file).map(|of| Identity::from(&of));
@@ -63,15 +64,15 @@ pub(crate) fn written(file: &File, path: &Path) {
     known.written.insert(identity);
 }
 
-/// Refuses an output that is an input.
+/// Checks that an output file is not an input file.
 ///
 /// # Errors
-/// An input of this process, with its name.
+/// The file is an input of this process; the message names it.
 pub fn spare(out: &Path) -> io::Result<()> {
     let Some(identity) = Identity::of(out) else { return Ok(()) };
     let known = known();
     match known.inputs.get(&identity) {
-        // The number of a file that is gone may be that of a new one.
+        // The inode of a deleted file may be reused by a new file.
         Some(name) if Identity::of(name).as_ref() == Some(&identity) => {
             let problem = format!("is the input file {}; give another name", name.display());
             Err(io::Error::new(io::ErrorKind::InvalidInput, problem))

@@ -1,57 +1,57 @@
-//! Kinds of files, with the largest size that is read of each.
+//! Kinds of files, with the largest size that is read of each kind.
 
 use std::fs::Metadata;
 
 const MIB: u64 = 1 << 20;
 
-/// A kind of file.
+/// Kind of a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Kind {
-    /// Its name in messages.
+    /// Name in messages.
     pub(crate) name: &'static str,
-    /// Most bytes that are read of it.
+    /// Largest number of bytes that are read.
     pub(crate) most: u64,
-    /// Whether no output may replace it. What a command both reads and writes, such as results that it
-    /// resumes, is replaced.
+    /// Whether outputs must not replace the file. Files that a command both reads and writes, such as results
+    /// that it resumes, may be replaced.
     pub(crate) input: bool,
 }
 
 impl Kind {
-    /// Scenes, studies, shared methods, claims: written by hand.
+    /// Scenes, studies, shared methods and claims, written by hand.
     pub const SCENE: Kind = Kind::input("a scene, study or list", 4 * MIB);
-    /// Meshes, surfaces, decks and what they include, positions of nodes.
+    /// Meshes, surfaces, decks with their included files, and node positions.
     pub const MESH: Kind = Kind::input("a mesh or a list of points", 1_000_000_000);
     /// Stored references.
     pub const REFERENCE: Kind = Kind::input("a reference", 128 * MIB);
     /// The files of an adapter, together.
     pub const ADAPTER: Kind = Kind::input("the files of an adapter", 256 * MIB);
-    /// The text of a problem for another solver, and of its answer.
+    /// Text of a problem for another solver, or of its answer.
     pub const MESSAGE: Kind = Kind { name: "a problem or an answer", most: MIB, input: false };
-    /// Arrays of a problem for another solver, and of its answer.
+    /// Arrays of a problem for another solver, or of its answer.
     pub const ARRAY: Kind = Kind { name: "an array", ..Kind::MESH };
-    /// A file of a history.
+    /// File of a history.
     pub const HISTORY: Kind = Kind::input("a file of a history", 16 * MIB);
-    /// Accepted numbers.
+    /// Accepted values.
     pub const BASELINE: Kind = Kind { name: "a baseline", most: 16 * MIB, input: false };
-    /// A file of results.
+    /// File of results.
     pub const RESULTS: Kind = Kind { name: "a file of results", most: 256 * MIB, input: false };
 
     const fn input(name: &'static str, most: u64) -> Kind {
         Kind { name, most, input: true }
     }
 
-    /// A file of the same kind whose size is known better.
+    /// Returns the same kind with a tighter size limit, bytes.
     pub fn at_most(self, bytes: u64) -> Kind {
         Kind { most: bytes.min(self.most), ..self }
     }
 
-    /// Most bytes that are read of it.
+    /// Returns the largest number of bytes that are read.
     pub fn most(self) -> u64 {
         self.most
     }
 }
 
-/// Name of a kind of file that is not regular.
+/// Returns the name of a file type that is not regular.
 pub(crate) fn irregular(of: &Metadata) -> &'static str {
     #[cfg(unix)]
     {

@@ -1,9 +1,8 @@
-//! Files in and out: the only code that opens what others have made, and the only code that writes where they
-//! have files.
+//! File access: the only code that opens files made by others, and the only code that writes next to them.
 //!
-//! A reader takes regular files up to the size of their [`Kind`]: a pipe that nobody fills, a device without
-//! an end or a file larger than any of its kind is refused at once. A writer refuses a file that this process
-//! has read as an input, by whatever name or link it is reached.
+//! A reader takes regular files up to the size limit of their [`Kind`]. It refuses at once a pipe without a
+//! writer, an endless device, or a file larger than its kind allows. A writer refuses a file that this
+//! process has read as an input, whatever the name or link by which the file is reached.
 
 mod identity;
 mod kind;

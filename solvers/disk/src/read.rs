@@ -1,4 +1,4 @@
-//! Opening and reading.
+//! Opening and reading files.
 
 use std::fs::{File, Metadata, OpenOptions};
 use std::io::{self, ErrorKind, Read};
@@ -7,10 +7,10 @@ use std::path::Path;
 use crate::kind::{Kind, irregular};
 use crate::{input, write::without_waiting};
 
-/// Opens a regular file; it ends after the most bytes of its kind.
+/// Opens a regular file for reading, up to the size limit of its kind.
 ///
 /// # Errors
-/// A file that is not there, can't be opened, is not regular or is larger than its kind.
+/// The file does not exist, cannot be opened, is not regular or is larger than its kind allows.
 pub fn open(path: &Path, kind: Kind) -> io::Result<impl Read> {
     Ok(opened(path, kind)?.0.take(kind.most))
 }
@@ -22,23 +22,23 @@ pub fn open(path: &Path, kind: Kind) -> io::Result<impl Read> {
 pub fn read(path: &Path, kind: Kind) -> io::Result<Vec<u8>> {
     let (file, length) = opened(path, kind)?;
     let mut bytes = Vec::with_capacity(length as usize);
-    // It may grow while it is read, and files of the kernel have no length.
+    // The file may grow while it is read, and kernel files report no length.
     file.take(kind.most + 1).read_to_end(&mut bytes)?;
     fits(bytes.len() as u64, kind)?;
     Ok(bytes)
 }
 
-/// Reads a regular file of text.
+/// Reads a regular text file.
 ///
 /// # Errors
-/// As [`open`], and a file that is no UTF-8.
+/// As [`open`], and if the file is not UTF-8.
 pub fn read_text(path: &Path, kind: Kind) -> io::Result<String> {
     let no_text = |_| io::Error::new(ErrorKind::InvalidData, "stream did not contain valid UTF-8");
     String::from_utf8(read(path, kind)?).map_err(no_text)
 }
 
-/// Asked before the file is opened, as to open a device or a pipe has effects; and of the open file, which
-/// may be another by then.
+/// Opens a file and returns its length, bytes. The type is checked before opening, because opening a device
+/// or a pipe has effects. It is checked again on the open file, which may be another by then.
 fn opened(path: &Path, kind: Kind) -> io::Result<(File, u64)> {
     regular(&std::fs::metadata(path)?, kind)?;
     let file = without_waiting(OpenOptions::new().read(true)).open(path)?;

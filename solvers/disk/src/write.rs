@@ -1,4 +1,4 @@
-//! Creating, replacing and removing.
+//! Creating, replacing and removing files.
 
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, BufWriter, ErrorKind, Write};
@@ -7,10 +7,10 @@ use std::path::{Path, PathBuf};
 use crate::identity::{spare, written};
 use crate::kind::irregular;
 
-/// Makes or empties the file of a name that a person gave. A pipe or a device is written to as it is.
+/// Creates or empties a file whose name the user gave. A pipe or a device is opened as it is.
 ///
 /// # Errors
-/// An input of this process, a pipe that nobody reads, or what the system has against it.
+/// The file is an input of this process or a pipe without a reader, or the system refuses.
 pub fn create(path: &Path) -> io::Result<File> {
     spare(path)?;
     let opened = without_waiting(OpenOptions::new().write(true).create(true).truncate(true)).open(path);
@@ -26,22 +26,22 @@ pub fn create(path: &Path) -> io::Result<File> {
     Ok(file)
 }
 
-/// Writes the file of a name that a person gave.
+/// Writes a file whose name the user gave.
 ///
 /// # Errors
-/// As [`create`], or a disk that is full.
+/// As [`create`], and if the disk is full.
 pub fn write(path: &Path, bytes: impl AsRef<[u8]>) -> io::Result<()> {
     create(path)?.write_all(bytes.as_ref())
 }
 
-/// Tries whether a file can be written, long before there is something to write.
+/// Tests whether a file can be written, long before there are data to write.
 ///
 /// # Errors
 /// As [`create`].
 pub fn try_create(path: &Path) -> io::Result<()> {
     spare(path)?;
     let exists = match fs::metadata(path) {
-        // Who reads a pipe would take a trial for its end.
+        // The reader of a pipe would take a test for the end of the data.
         Ok(of) if !of.is_file() && !of.is_dir() => return Ok(()),
         found => found.is_ok(),
     };
@@ -49,11 +49,11 @@ pub fn try_create(path: &Path) -> io::Result<()> {
     if exists { Ok(()) } else { fs::remove_file(path) }
 }
 
-/// Writes a file beside its place and renames it, so that what stands there is never half of it. A link there
-/// is replaced, not followed.
+/// Writes a new file next to `path` and renames it, so that the file at `path` is always complete. A link at
+/// `path` is replaced, not followed.
 ///
 /// # Errors
-/// An input of this process, a device or a pipe, or what the system has against it.
+/// The file is an input of this process, a device or a pipe, or the system refuses.
 pub fn replace(path: &Path, write: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>) -> io::Result<()> {
     spare(path)?;
     if let Some(of) =
@@ -67,7 +67,7 @@ pub fn replace(path: &Path, write: impl FnOnce(&mut BufWriter<File>) -> io::Resu
     let partial = PathBuf::from(partial);
     remove(&partial).or_else(|bad| if bad.kind() == ErrorKind::NotFound { Ok(()) } else { Err(bad) })?;
     let all = || {
-        // A new file: what another has put there in the meantime is not followed.
+        // The file must be new: a link that was put there in the meantime is not followed.
         let mut file = BufWriter::new(OpenOptions::new().write(true).create_new(true).open(&partial)?);
         written(file.get_ref(), &partial);
         write(&mut file)?;
@@ -80,19 +80,20 @@ pub fn replace(path: &Path, write: impl FnOnce(&mut BufWriter<File>) -> io::Resu
     })
 }
 
-/// Removes a file; a link itself, not the file it leads to.
+/// Removes a file. Of a link, the link itself is removed, not its target.
 ///
 /// # Errors
-/// An input of this process, or what the system has against it.
+/// The file is an input of this process, or the system refuses.
 pub fn remove(path: &Path) -> io::Result<()> {
     spare(path)?;
     fs::remove_file(path)
 }
 
-/// Opens a file that only locks and names their holders, made where there is none. A link is not followed.
+/// Opens a lock file, which only names the holders of locks, and creates it if it does not exist. Links are
+/// not followed.
 ///
 /// # Errors
-/// A link, a pipe, a device, an input of this process, or what the system has against it.
+/// The file is a link, a pipe, a device or an input of this process, or the system refuses.
 pub fn create_lock(path: &Path) -> io::Result<File> {
     spare(path)?;
     let mut options = OpenOptions::new();
@@ -104,7 +105,7 @@ pub fn create_lock(path: &Path) -> io::Result<File> {
     Err(io::Error::new(ErrorKind::InvalidInput, "is no regular file"))
 }
 
-/// Without waiting for another end of a pipe.
+/// Sets the flags with which opening a pipe does not wait for its other end.
 pub(crate) fn without_waiting(options: &mut OpenOptions) -> &mut OpenOptions {
     #[cfg(unix)]
     {
@@ -115,7 +116,7 @@ pub(crate) fn without_waiting(options: &mut OpenOptions) -> &mut OpenOptions {
     options
 }
 
-/// The same, and not through a link.
+/// Sets the flags with which opening does not wait and does not follow a link.
 fn at_itself(options: &mut OpenOptions) -> &mut OpenOptions {
     #[cfg(unix)]
     {

@@ -1,7 +1,8 @@
-//! Which instructions the lane kernels run on, chosen once at run time: the only place that asks the processor.
+//! Instruction sets of the lane kernels, chosen once at run time; the only code that queries the processor.
 //!
-//! A kernel is plain scalar code over arrays of [`LANES`] numbers. [`on_path!`] compiles it once for each instruction set, with the
-//! compiler's own vectorisation, and calls the copy that a [`LanePath`] names.
+//! A kernel is plain scalar code over arrays of [`LANES`] numbers. [`on_path!`] compiles it once for each
+//! instruction set and relies on the compiler's vectorisation. The generated function calls the copy that a
+//! [`LanePath`] names.
 //!
 //! ```
 //! use lanes::{LANES, LanePath, madd, on_path};
@@ -21,43 +22,45 @@
 //! assert_eq!(y, [7.0; LANES]);
 //! ```
 
-/// Lanes of one block: eight f64 fill one AVX-512 register or two of AVX2.
+/// Number of lanes in a block: eight f64 fill one AVX-512 register or two of AVX2.
 pub const LANES: usize = 8;
 
-/// One number of each lane.
+/// One number for each lane.
 pub type Lanes = [f64; LANES];
 
-/// `a b + c`, fused where the path has the instruction (elsewhere a fused product is a library call).
+/// Returns `a b + c`, fused if the path has the instruction (a fused product is a library call otherwise).
 #[inline(always)]
 pub fn madd<const FMA: bool>(a: f64, b: f64, c: f64) -> f64 {
     if FMA { a.mul_add(b, c) } else { a * b + c }
 }
 
-/// [`madd`] in single precision.
+/// Returns `a b + c` in single precision; see [`madd`].
 #[inline(always)]
 pub fn madd_f32<const FMA: bool>(a: f32, b: f32, c: f32) -> f32 {
     if FMA { a.mul_add(b, c) } else { a * b + c }
 }
 
-/// Asks for the cache lines of a value to come, at any address: the processor's own guess of what follows ends at the page.
+/// Prefetches the cache lines of a value at any address. The hardware prefetcher stops at the end of a page.
 #[inline(always)]
 pub fn fetch<T>(at: *const T) {
     #[cfg(target_arch = "x86_64")]
     for line in 0..size_of::<T>().div_ceil(64) {
         use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
-        // SAFETY: a hint, which reads nothing.
+        // SAFETY: a prefetch is only a hint and reads nothing.
         unsafe { _mm_prefetch::<_MM_HINT_T0>(at.cast::<i8>().wrapping_add(64 * line)) };
     }
     #[cfg(not(target_arch = "x86_64"))]
     let _ = at;
 }
 
-/// Instruction set of the lane kernels. Results have the same bits at any number of threads on one path; another path
-/// changes the last bits (fused multiply-add, width of sums), so a record names its path.
+/// Instruction set of the lane kernels.
+///
+/// On one path the results have the same bits at any number of threads. Another path changes the last bits
+/// (fused multiply-add, width of sums), so a record names its path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LanePath(Kind);
 
-/// What a path is made of; for [`on_path!`] alone.
+/// Kind of a path; only for use by [`on_path!`].
 #[doc(hidden)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
@@ -69,10 +72,10 @@ pub enum Kind {
 }
 
 impl LanePath {
-    /// No instruction beyond the target's own: everywhere available.
+    /// The target's baseline instructions, available everywhere.
     pub const PORTABLE: LanePath = LanePath(Kind::Portable);
 
-    /// The widest path of this processor. Nothing is allocated.
+    /// Returns the widest path of this processor, without allocating.
     pub fn best() -> LanePath {
         #[cfg(target_arch = "x86_64")]
         {
@@ -86,7 +89,7 @@ impl LanePath {
         LanePath::PORTABLE
     }
 
-    /// All paths of this processor, the widest last.
+    /// Returns all paths of this processor, the widest last.
     pub fn available() -> Vec<LanePath> {
         #[allow(unused_mut)]
         let mut paths = vec![LanePath::PORTABLE];
@@ -98,7 +101,7 @@ impl LanePath {
         paths
     }
 
-    /// Name for the record: `portable`, `avx2` or `avx512`.
+    /// Returns the name for records: `portable`, `avx2` or `avx512`.
     pub fn name(self) -> &'static str {
         match self.0 {
             Kind::Portable => "portable",
@@ -109,7 +112,7 @@ impl LanePath {
         }
     }
 
-    /// For [`on_path!`] alone.
+    /// Returns the kind; only for use by [`on_path!`].
     #[doc(hidden)]
     #[inline]
     pub fn kind(self) -> Kind {
@@ -130,9 +133,10 @@ fn has_avx512() -> bool {
         && is_x86_feature_detected!("avx512vl")
 }
 
-/// Defines `fn $name(path, args)` that runs `$kernel::<FMA>(args)` compiled for the instructions of `path`; of
-/// `fn $name<const B: usize; W: [Weight<B>]>` it is `$kernel::<FMA, B, W>(args)`. A kernel that is named `$kernel::<BITS>` gets the
-/// width of the registers after `FMA`: 64, 256 or 512.
+/// Defines `fn $name(path, args)`, which runs `$kernel::<FMA>(args)` compiled for the instructions of `path`.
+///
+/// For `fn $name<const B: usize; W: [Weight<B>]>` the call is `$kernel::<FMA, B, W>(args)`. A kernel written
+/// as `$kernel::<BITS>` gets the register width after `FMA`: 64, 256 or 512 bits.
 #[macro_export]
 macro_rules! on_path {
     ($(#[$doc:meta])* $vis:vis fn $name:ident $(<$(const $size:ident: usize),* $(; $($kind:ident: [$($bound:tt)+]),+)?>)? ($($arg:ident: $ty:ty),* $(,)?) $(-> $out:ty)? = $kernel:ident $(::<$bits:ident>)?) => {
@@ -148,7 +152,7 @@ macro_rules! on_path {
                     $(const $bits: usize = 256;)?
                     #[target_feature(enable = "avx2,fma")]
                     fn run $(<$(const $size: usize),* $(, $($kind: $($bound)+),+)?>)? ($($arg: $ty),*) $(-> $out)? { $kernel::<true $(, $bits)? $($(, $size)* $($(, $kind)+)?)?>($($arg),*) }
-                    // SAFETY: a path of this kind is made only where these features were detected.
+                    // SAFETY: a path of this kind is constructed only if these features were detected.
                     unsafe { run $(::<$($size),* $(, $($kind),+)?>)? ($($arg),*) }
                 }
                 #[cfg(target_arch = "x86_64")]

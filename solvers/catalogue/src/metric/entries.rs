@@ -1,9 +1,9 @@
-//! The metrics, each one entry.
+//! Definitions of the metrics.
 
 use super::{Kind, Metric, Needs};
 use crate::Dimension;
 
-/// Declares each metric as a static of its own and lists them all.
+/// Declares each metric as a separate static and lists them all.
 macro_rules! metrics {
     ($($id:ident: $name:literal, $label:literal, $dimension:ident, $kind:ident, $needs:ident, $meaning:literal;)*) => {
         $(
@@ -17,7 +17,7 @@ macro_rules! metrics {
                 meaning: $meaning,
             };
         )*
-        /// Every metric, in the order lists show them.
+        /// Every metric, in the order of lists.
         pub static METRICS: &[&Metric] = &[$(&$id),*];
     };
 }
@@ -333,10 +333,10 @@ pub static INTEGRATION_RMS_PARTS: [&Metric; 4] =
 pub static DISCRETISATION_RMS_PARTS: [&Metric; 4] =
     [&DISCRETISATION_RMS_X, &DISCRETISATION_RMS_Y, &DISCRETISATION_RMS_Z, &DISCRETISATION_RMS];
 
-/// The force of a support along x, y and z.
+/// Force of a support along x, y and z.
 pub static REACTION_PARTS: [&Metric; 3] = [&REACTION_X, &REACTION_Y, &REACTION_Z];
 
-/// The mean displacement of a face along x, y and z.
+/// Mean displacement of a face along x, y and z.
 pub static MEAN_PARTS: [&Metric; 3] = [&MEAN_X, &MEAN_Y, &MEAN_Z];
 
 /// [`BESIDE_RMS`] along x, y and z, and of the magnitude.

@@ -1,4 +1,4 @@
-//! Metrics: every number that is recorded, checked or drawn, explained.
+//! Metrics: every number that is recorded, checked or drawn, with an explanation.
 
 mod entries;
 
@@ -8,43 +8,43 @@ use crate::Dimension;
 use crate::names::nearest;
 use crate::problem::Problem;
 
-/// A number computed from one run, or from a family of runs at several levels.
+/// Number computed from one run, or from a family of runs at several levels.
 #[derive(Debug, PartialEq, Eq)]
 pub struct Metric {
     /// Name in files, records and tables.
     pub name: &'static str,
-    /// What a column or an axis says, without the unit.
+    /// Label of a column or an axis, without the unit.
     pub label: &'static str,
-    /// Its dimension.
+    /// Dimension of the value.
     pub dimension: Dimension,
-    /// What sort of number it is.
+    /// Kind of number.
     pub kind: Kind,
-    /// What a scene must have for it to be computed.
+    /// Requirements on a scene.
     pub needs: Needs,
-    /// What it is.
+    /// Meaning, in one phrase.
     pub meaning: &'static str,
 }
 
-/// What sort of number a metric is.
+/// Kind of number that a metric is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
-    /// A distance from what is right: lower is better.
+    /// A distance from the right value: lower is better.
     Error,
     /// An observed order of convergence: higher is better.
     Order,
-    /// Time or memory of the machine: lower is better, and no two runs share it to the bit.
+    /// Time or memory of the machine: lower is better, and two runs differ.
     Cost,
     /// A result, neither good nor bad by itself.
     Value,
-    /// How often something happened or is there.
+    /// A number of events or objects.
     Count,
-    /// One per tool: the first tool's has the bare name, others have `-2`, `-3` and so on appended.
+    /// One value per tool: the first tool has the bare name, the others have `-2`, `-3` and so on appended.
     Tool,
-    /// One per support, or per face whose mean is asked for, numbered as those of tools are.
+    /// One value per support, or per face with a requested mean, numbered like the tools.
     Place,
 }
 
-/// What a metric needs to be computed.
+/// Requirement for computing a metric.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Needs {
     /// A run alone.
@@ -65,7 +65,7 @@ pub enum Needs {
     Newton,
     /// Vibrations.
     Modes,
-    /// Vibrations, and an exact solution of them.
+    /// Vibrations, and an exact solution for them.
     ModesReference,
     /// Dynamics.
     Dynamics,
@@ -85,32 +85,32 @@ pub enum Needs {
     StepsReference,
     /// A support.
     Support,
-    /// A face whose mean is asked for.
+    /// A face with a requested mean.
     Mean,
     /// Dynamics with probes.
     Motion,
-    /// Dynamics with probes, and an exact solution that moves.
+    /// Dynamics with probes, and an exact solution that depends on time.
     Exact,
 }
 
 impl Metric {
-    /// SI unit of the recorded value; `1` for a bare number.
+    /// Returns the SI unit of the recorded value; `1` for a bare number.
     pub const fn unit(&self) -> &'static str {
         self.dimension.si_unit()
     }
 
-    /// Whether less of it is better; a result or a count is neither better nor worse.
+    /// Whether a lower value is better. A result or a count is neither better nor worse.
     pub const fn lower_is_better(&self) -> bool {
         matches!(self.kind, Kind::Error | Kind::Cost)
     }
 
-    /// The name of the metric of one tool, support or face, counted from 0.
+    /// Returns the name of the metric for one tool, support or face, counted from 0.
     pub fn numbered(&self, index: usize) -> String {
         if index == 0 { self.name.into() } else { format!("{}-{}", self.name, index + 1) }
     }
 }
 
-/// The metric of that name; of `tool-force-2`, which is the second tool's, the metric `tool-force`.
+/// Returns the metric with that name; for `tool-force-2`, which belongs to the second tool, `tool-force`.
 pub fn find(name: &str) -> Option<&'static Metric> {
     let named = |name: &str| METRICS.iter().copied().find(|metric| metric.name == name);
     named(name).or_else(|| {
@@ -120,10 +120,14 @@ pub fn find(name: &str) -> Option<&'static Metric> {
     })
 }
 
-/// Metrics that were renamed: old and new.
+/// Renamed metrics: old and new name.
 const RENAMED: [(&str, &str); 1] = [("estimated-error", "stress-jump")];
 
-/// The metric of exactly that name, or the nearest name.
+/// Returns the metric with exactly that name.
+///
+/// # Errors
+///
+/// The name is unknown or was renamed; the help gives the nearest or the new name.
 pub fn named(name: &str) -> Result<&'static Metric, Problem> {
     METRICS.iter().copied().find(|metric| metric.name == name).ok_or_else(|| {
         if let Some((_, new)) = RENAMED.iter().find(|(old, _)| *old == name) {
