@@ -1,4 +1,4 @@
-//! Contact over a surface: skipped, near without touching, touching; with and without tangents.
+//! Benchmark of contact over a surface: skipped, near without touching, touching; with and without tangents.
 
 use std::hint::black_box;
 

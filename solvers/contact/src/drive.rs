@@ -1,19 +1,19 @@
-//! Tools that are driven, and where they stand.
+//! Driven tools and their states.
 
 use shape::Vector3;
 
 use crate::{Contacts, Tool};
 
-/// How a tool is driven: the value at the end of the loading, reached in proportion to time.
+/// Drive of a tool: the value at the end of the loading, approached in proportion to time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Drive {
-    /// Closure, m.
+    /// Displacement of the tool along its direction (closure), m.
     Closure(f64),
-    /// Force that the tool exerts along its way, N; its closure is an unknown.
+    /// Force that the tool exerts along its direction, N; the closure is an unknown.
     Force(f64),
 }
 
-/// A tool and its drive.
+/// Tool with its drive.
 #[derive(Clone, Copy, Debug)]
 pub struct DrivenTool<'a> {
     /// The tool.
@@ -22,27 +22,27 @@ pub struct DrivenTool<'a> {
     pub drive: Drive,
 }
 
-/// A tool after a step.
+/// State of a tool after a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ToolState {
-    /// Closure, m.
+    /// Displacement along the tool's direction (closure), m.
     pub closure: f64,
     /// Force on the tool, N.
     pub force: Vector3,
-    /// Moment on the tool about its own place, N m.
+    /// Moment on the tool about its own origin, N m.
     pub moment: Vector3,
-    /// Surface points in contact.
+    /// Number of surface points in contact.
     pub active: usize,
-    /// How many of them carry the force, see [`Contacts::carriers`].
+    /// Effective number of points that carry the force, see [`Contacts::carriers`].
     pub carriers: f64,
-    /// Their undeformed area, m^2.
+    /// Undeformed area of the points in contact, m^2.
     pub area: f64,
     /// Deepest penetration, m.
     pub penetration: f64,
 }
 
 impl ToolState {
-    /// At that closure (m) with these contacts; `None` where nothing is near.
+    /// Collects the state at a closure (m) with these contacts; `None` if no point is near the tool.
     pub fn new(closure: f64, contacts: Option<&Contacts>) -> ToolState {
         let zero = Vector3::zeros;
         ToolState {

@@ -7,11 +7,11 @@ use shape::{Matrix3, Vector3};
 use super::law::Response;
 use super::{ContactError, ContactHistory, ContactSurface, Slip, Tool};
 
-/// Clusters per task, and the least number that is worth more than one: below, the hand-over to other threads costs
-/// more than the points.
+/// Clusters per task, and half the number from which several tasks are used. With fewer clusters,
+/// distribution to other threads costs more than the points.
 const CHUNK: usize = 16;
 
-/// The points in contact with one tool, in ascending order, and what they sum up to.
+/// Points in contact with one tool, in ascending order, with their resultants.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Contacts {
     points: Vec<u32>,
@@ -27,22 +27,27 @@ pub struct Contacts {
     dissipated: f64,
 }
 
-/// What evaluations did and what they could leave; counts add up over calls.
+/// Counters of evaluations and of the work that they skipped; they add up over calls.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ContactCounts {
-    /// Evaluations asked for.
+    /// Number of evaluations.
     pub evaluations: u64,
-    /// Of these, skipped whole: no point near the tool.
+    /// Number of evaluations skipped as a whole, because no point was near the tool.
     pub skipped: u64,
-    /// Points whose distance was computed.
+    /// Number of points whose distance was computed.
     pub distances: u64,
-    /// Points found in contact.
+    /// Number of points found in contact.
     pub active: u64,
 }
 
 impl ContactSurface<'_> {
-    /// Tractions and tangents at all points in contact in the state `u` (m, one vector per node), or `None` if no
-    /// point can be near the tool. The same bits at any number of threads.
+    /// Evaluates tractions and tangents at all points in contact in the state `u` (m, one vector per node).
+    ///
+    /// Returns `None` if no point can be near the tool. The bits do not depend on the number of threads.
+    ///
+    /// # Errors
+    ///
+    /// [`ContactError::PassedThrough`] if a point is too deep in the tool, and errors of the input.
     pub fn evaluate(
         &self,
         tool: &Tool,
@@ -62,7 +67,8 @@ impl ContactSurface<'_> {
         }))
     }
 
-    /// As [`ContactSurface::evaluate`] without tangents: for explicit dynamics, line searches and reactions.
+    /// Evaluates as [`ContactSurface::evaluate`], but without tangents: for explicit dynamics, line searches
+    /// and reactions.
     pub fn tractions(
         &self,
         tool: &Tool,
@@ -77,7 +83,7 @@ impl ContactSurface<'_> {
         Ok(found.map(|found| Contacts::new(self, tool, closure, u, found, Vec::new())))
     }
 
-    /// Counts an evaluation and checks what it is given; the gap (m) up to which a point may touch.
+    /// Counts an evaluation and checks its input. Returns the gap (m) up to which a point may touch.
     pub(super) fn reach(
         &self,
         tool: &Tool,
@@ -93,11 +99,11 @@ impl ContactSurface<'_> {
             return Err(ContactError::Place { what: "the closure" });
         }
         counts.evaluations += 1;
-        // A point with a multiplier may touch from outside: as far as l - k_n g > 0.
+        // A point with a multiplier touches from outside while l - k_n g > 0.
         Ok(history.largest_multiplier() / tool.law().penalty())
     }
 
-    /// Contact of some points, which are all that may touch.
+    /// Evaluates contact at the points `near`; no other point can touch.
     pub(super) fn scan<T: Send>(
         &self,
         tool: &Tool,
@@ -201,12 +207,12 @@ impl Contacts {
         }
     }
 
-    /// Points in contact, ascending. All arrays below go by this one.
+    /// Points in contact, ascending. All arrays below are in this order.
     pub fn points(&self) -> &[u32] {
         &self.points
     }
 
-    /// Tractions on the tissue, per undeformed area, Pa.
+    /// Tractions on the tissue per undeformed area, Pa.
     pub fn tractions(&self) -> &[Vector3] {
         &self.tractions
     }
@@ -222,7 +228,7 @@ impl Contacts {
         &self.slip
     }
 
-    /// Normal pressures, per undeformed area, Pa.
+    /// Normal pressures per undeformed area, Pa.
     pub fn pressures(&self) -> &[f64] {
         &self.pressures
     }
@@ -232,13 +238,13 @@ impl Contacts {
         self.force
     }
 
-    /// Moment on the tool about its present [`Tool::place`], N m.
+    /// Moment on the tool about its current [`Tool::place`], N m.
     pub fn moment(&self) -> Vector3 {
         self.moment
     }
 
-    /// Undeformed area of the points in contact, m^2: `sum_q w`. A face is in contact point by point, so that the edge of the
-    /// contact is known to half a face's width.
+    /// Undeformed area of the points in contact, m^2: `sum_q w`. Each point is in contact or not, so the edge
+    /// of the contact is known to half a face's width.
     pub fn area(&self) -> f64 {
         self.area
     }
@@ -248,8 +254,9 @@ impl Contacts {
         self.max_penetration
     }
 
-    /// How many points carry the load: `(sum F_q)^2 / sum F_q^2` of the normal forces `F_q = w p`, n for n points with the same
-    /// force and 1 where one of many has it all; 0 without contact.
+    /// Effective number of points that carry the load: `(sum F_q)^2 / sum F_q^2` with the normal forces
+    /// `F_q = w p`. This is n for n points with the same force, 1 if a single point carries all of it, and 0
+    /// without contact.
     pub fn carriers(&self) -> f64 {
         self.carriers
     }

@@ -1,15 +1,16 @@
-//! What contact keeps between converged steps: elastic slip for friction, multipliers for the augmented Lagrangian.
+//! State of contact between converged steps: elastic slip for friction, multipliers for the augmented
+//! Lagrangian.
 
 use shape::Vector3;
 
 use super::{ContactSurface, Contacts, Slip, Tool};
 
-/// History of all points of a surface against one tool. Evaluating contact never changes it: during the iterations of
-/// a step every trial state starts from the last committed one.
+/// History of all points of a surface against one tool. Evaluating contact never changes the history: during
+/// the iterations of a step, every trial state starts from the last committed state.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ContactHistory {
     points: usize,
-    /// Empty without friction.
+    /// Slip of each point; empty without friction.
     slip: Vec<Slip>,
     /// Points whose slip is not [`Slip::NONE`].
     stuck: Vec<u32>,
@@ -22,7 +23,7 @@ pub struct ContactHistory {
 }
 
 impl ContactHistory {
-    /// Nothing has touched yet. Without friction no slip is kept.
+    /// Starts a history in which no point has touched. Without friction no slip is stored.
     pub fn new(tool: &Tool, points: usize) -> ContactHistory {
         let kept = if tool.law().friction() > 0.0 { points } else { 0 };
         ContactHistory {
@@ -50,13 +51,14 @@ impl ContactHistory {
         self.multiplier.get(point).copied().unwrap_or(0.0)
     }
 
-    /// Largest multiplier, Pa.
+    /// Returns the largest multiplier, Pa.
     pub(super) fn largest_multiplier(&self) -> f64 {
         self.largest
     }
 
-    /// As [`ContactHistory::commit`], and the place of every point that does not touch is kept too, so that one which
-    /// touches in the next step has friction from its touch on. For large steps: it looks at every point.
+    /// Commits as [`ContactHistory::commit`], and also stores the position of every point that does not
+    /// touch. A point that touches in the next step then has friction from its first contact on. For large
+    /// steps: every point is processed.
     pub fn commit_all(
         &mut self,
         contacts: Option<&Contacts>,
@@ -70,15 +72,15 @@ impl ContactHistory {
         for (q, slip) in self.slip.iter_mut().enumerate() {
             if touching.binary_search(&(q as u32)).is_err() {
                 let at = tool.local(closure, &surface.position(q, u));
-                // A point that would touch were it not for its multiplier has no way left to its touch.
+                // A point that touches only through its multiplier has no path left to its contact.
                 *slip = Slip::at(&at, tool.shape().foot(&at).0.max(0.0));
                 self.stuck.push(q as u32);
             }
         }
     }
 
-    /// After a converged step: the slip of the points that touch is kept, all others forget theirs. `None` when the
-    /// tool was skipped.
+    /// Commits the slip of the points in contact after a converged step, and resets that of all others.
+    /// `contacts` is `None` if the tool was skipped.
     pub fn commit(&mut self, contacts: Option<&Contacts>) {
         if self.slip.is_empty() {
             return;
@@ -95,9 +97,11 @@ impl ContactHistory {
         }
     }
 
-    /// One step of Uzawa, after a converged solve: `l <- max(0, l - k_n g)` at every point, which is the pressure just
-    /// found. Repeat solve and augmentation until [`Contacts::max_penetration`] is small enough, then commit. Friction
-    /// is bounded by the augmented pressure and keeps its elastic stick.
+    /// Performs one Uzawa step after a converged solve: `l <- max(0, l - k_n g)` at every point, which is the
+    /// pressure just computed.
+    ///
+    /// Repeat solve and augmentation until [`Contacts::max_penetration`] is small enough, then commit.
+    /// Friction is bounded by the augmented pressure and keeps its elastic stick.
     pub fn augment(&mut self, contacts: Option<&Contacts>) {
         self.multiplier.resize(self.points, 0.0);
         for &q in &self.pressed {

@@ -1,27 +1,31 @@
-//! The law of one contact point, in the tool's frame: penalty along the normal, Coulomb friction across it.
+//! Contact law of one point, in the tool's frame: penalty along the normal, Coulomb friction across it.
 //!
-//! With the gap `g` (signed distance, m), its unit gradient `n` and the multiplier `l` (Pa, 0 for a plain penalty):
+//! With the gap `g` (signed distance, m), its unit gradient `n` and the multiplier `l` (Pa, 0 for a plain
+//! penalty):
 //!
 //! ```text
 //! p   = max(0, l - k_n g)                          normal pressure; the point touches while p > 0
-//! e*  = (I - n n^T)(e_n + x - x_n)                 trial elastic slip: committed one and motion since, made tangent
-//! t_t = -k_t e*                if k_t |e*| <= mu p (stick)
+//! e*  = (I - n n^T)(e_n + x - x_n)                 trial elastic slip: committed one and motion since, made
+//! tangent t_t = -k_t e*                if k_t |e*| <= mu p (stick)
 //!     = -mu p e* / |e*|        otherwise           (slip: radial return)
 //! t   = p n + t_t,             e = -t_t / k_t
 //! ```
 //!
-//! Positions are those in the tool's frame, so a tool that moves drags the tissue. Projecting `e_n` on the present
-//! tangent plane can only shorten it: on a curved tool the spring never gains energy. A point that comes into contact
-//! has `e_n = 0` and only the part `g / (g - g_n)` of its motion since the last commit, that after the touch, counts;
-//! `g_n > 0` is the gap it had then. Without that part friction lags by one step, and a step that lets many points
-//! touch at once slides away sideways. A point whose last place is not known starts where it is found.
+//! Positions are relative to the tool's frame, so a moving tool drags the tissue. Projecting `e_n` onto the
+//! current tangent plane can only shorten it: on a curved tool the spring never gains energy.
+//!
+//! A point that comes into contact has `e_n = 0`. Only the part `g / (g - g_n)` of its motion since the last
+//! commit counts, which is the part after contact; `g_n > 0` is its gap at the last commit. Without this
+//! factor friction lags by one step, and a step in which many points come into contact slides away sideways.
+//! A point whose last position is unknown starts at its current position.
+//!
 //! Source: Wriggers, Computational Contact Mechanics (2006), ch. 5 and 6; Simo & Laursen (1992).
 
 use shape::{Matrix3, Vector3};
 
 use super::ContactError;
 
-/// Moduli of a contact: per undeformed area, so in Pa/m.
+/// Moduli of a contact per undeformed area, Pa/m, and the coefficient of friction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactLaw {
     penalty: f64,
@@ -30,13 +34,22 @@ pub struct ContactLaw {
 }
 
 impl ContactLaw {
-    /// Normal penalty `k_n` (Pa/m), no friction.
+    /// Makes a law with normal penalty `k_n` (Pa/m) and without friction.
+    ///
+    /// # Errors
+    ///
+    /// [`ContactError::Modulus`] if the penalty is not positive and finite.
     pub fn frictionless(penalty: f64) -> Result<ContactLaw, ContactError> {
         modulus("penalty", penalty)?;
         Ok(ContactLaw { penalty, friction: 0.0, stick: 0.0 })
     }
 
-    /// Normal penalty `k_n` (Pa/m), coefficient of friction `mu` and elastic stick slope `k_t` (Pa/m).
+    /// Makes a law with normal penalty `k_n` (Pa/m), coefficient of friction `mu` and elastic stick slope
+    /// `k_t` (Pa/m).
+    ///
+    /// # Errors
+    ///
+    /// [`ContactError::Modulus`] or [`ContactError::Friction`] if a value is not positive and finite.
     pub fn coulomb(penalty: f64, friction: f64, stick: f64) -> Result<ContactLaw, ContactError> {
         modulus("penalty", penalty)?;
         modulus("stick slope", stick)?;
@@ -62,7 +75,7 @@ impl ContactLaw {
         self.stick
     }
 
-    /// The response at position `at` (tool's frame) with gap and unit normal; none when separated.
+    /// Returns the response at position `at` (tool's frame) with gap and unit normal; `None` if separated.
     #[inline]
     pub(super) fn respond(
         &self,
@@ -94,7 +107,8 @@ impl ContactLaw {
             return Some(response);
         };
         let motion = at - last.at;
-        // The part of the way after the touch; a multiplier may hold a point that is still outside: none of it.
+        // The part of the motion after contact. A point that a multiplier keeps in contact from outside has
+        // none.
         let (after, by_gap) = if last.gap > 0.0 && gap < 0.0 {
             let whole = last.gap - gap;
             (-gap / whole, -last.gap / (whole * whole))
@@ -119,7 +133,8 @@ impl ContactLaw {
         Some(response)
     }
 
-    /// Consistent tangent `dt/dx` (3, 3), Pa/m, in the tool's frame; `hessian` is that of the distance.
+    /// Returns the consistent tangent `dt/dx` (3, 3), Pa/m, in the tool's frame; `hessian` is the Hessian of
+    /// the distance.
     ///
     /// ```text
     /// normal  -k_n n n^T + p H
@@ -128,8 +143,9 @@ impl ContactLaw {
     /// slip    mu k_n s n^T - (mu p / |e*|) (I - s s^T) A,                    s = e* / |e*|
     /// ```
     ///
-    /// with `c = 1`, or the part of the motion after the touch. The slip part is not symmetric. As `x` is relative to the tool, the derivative by the tool's own displacement
-    /// `d` is `dt/dd = -dt/dx`, history included: for a tool that closes along `a`, `dt/dclosure = -(dt/dx) a`.
+    /// Here `c` is 1, or the part of the motion after contact. The slip part is not symmetric. As `x` is
+    /// relative to the tool, the derivative with respect to the tool's own displacement `d` is
+    /// `dt/dd = -dt/dx`, history included: for a tool that closes along `a`, `dt/dclosure = -(dt/dx) a`.
     #[inline]
     pub(super) fn tangent(&self, response: &Response, normal: &Vector3, hessian: &Matrix3) -> Matrix3 {
         let mut tangent = hessian * response.pressure - normal * normal.transpose() * self.penalty;
@@ -159,7 +175,7 @@ fn modulus(what: &'static str, value: f64) -> Result<(), ContactError> {
     if value > 0.0 && value.is_finite() { Ok(()) } else { Err(ContactError::Modulus { what, value }) }
 }
 
-/// What friction remembers of one point between converged steps, in the tool's frame.
+/// Friction history of one point between converged steps, in the tool's frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Slip(Option<Stick>);
 
@@ -167,33 +183,34 @@ pub struct Slip(Option<Stick>);
 struct Stick {
     /// Elastic slip `e`, m.
     stretch: Vector3,
-    /// Where the point was, m.
+    /// Position of the point, m.
     at: Vector3,
-    /// Gap it had, m; 0 if it touched.
+    /// Gap of the point, m; 0 if it touched.
     gap: f64,
 }
 
 impl Slip {
-    /// A point of which nothing is known.
+    /// History of a point that has none.
     pub const NONE: Slip = Slip(None);
 
-    /// A point without elastic slip at `at` (tool's frame, m) with `gap` (m, 0 if it touches).
+    /// Makes the history of a point without elastic slip at `at` (tool's frame, m) with `gap` (m, 0 if it
+    /// touches).
     pub(super) fn at(at: &Vector3, gap: f64) -> Slip {
         Slip(Some(Stick { stretch: Vector3::zeros(), at: *at, gap }))
     }
 
-    /// Elastic slip `e` (m) in the tool's frame, `t_t = -k_t e`; zero for a point not in contact.
+    /// Elastic slip `e` (m) in the tool's frame, `t_t = -k_t e`; zero for a point that is not in contact.
     pub fn stretch(&self) -> Vector3 {
         self.0.map_or_else(Vector3::zeros, |s| s.stretch)
     }
 }
 
-/// A touching point's answer, in the tool's frame.
+/// Response of a point in contact, in the tool's frame.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Response {
-    /// `p`, Pa.
+    /// Pressure `p`, Pa.
     pub pressure: f64,
-    /// `t`, Pa.
+    /// Traction `t`, Pa.
     pub traction: Vector3,
     /// History to commit if the step converges here.
     pub slip: Slip,
@@ -201,7 +218,7 @@ pub(super) struct Response {
     pub dissipated: f64,
     /// `v = e_n + c (x - x_n)`, m.
     drift: Vector3,
-    /// `c`: part of the motion that friction sees.
+    /// Factor `c`: the part of the motion that friction sees.
     after: f64,
     /// `(x - x_n) dc/dg`.
     speed: Vector3,
@@ -210,10 +227,10 @@ pub(super) struct Response {
 
 #[derive(Clone, Copy, Debug)]
 enum State {
-    /// No friction, or none yet: first touch.
+    /// No friction, or none yet at first contact.
     Free,
     Stick,
-    /// `s` and `|e*|`.
+    /// Sliding in direction `s` with trial slip `|e*|`, m.
     Slide {
         direction: Vector3,
         length: f64,

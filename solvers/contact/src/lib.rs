@@ -1,14 +1,16 @@
 //! Contact of a deformable surface with rigid tools: signed distances, a pointwise law with friction, and its
 //! evaluation over the quadrature points of a surface.
 //!
-//! A [`Tool`] is a [`ToolShape`] put somewhere, with a [`ContactLaw`]; it moves by `closure` (m) along its direction.
-//! A [`ContactSurface`] is a surface quadrature with its boxes. Evaluating one against the other gives [`Contacts`]:
-//! tractions per undeformed area and their consistent tangents at the points that touch, and nothing at the others.
-//! Over many small steps a [`ContactSearch`] finds the same with less work.
+//! A [`Tool`] is a [`ToolShape`] at a position, with a [`ContactLaw`]; it moves by `closure` (m) along its
+//! direction. A [`ContactSurface`] is a surface quadrature with bounding boxes. Evaluating a tool against a
+//! surface gives [`Contacts`]: tractions per undeformed area and their consistent tangents at the points that
+//! touch, and nothing at the others. Over many small steps a [`ContactSearch`] finds the same contacts with
+//! less work.
 //!
-//! Between converged steps a [`ContactHistory`] keeps the elastic stick and the multipliers. What no state shows by itself is
-//! checked after a step: [`ContactSurface::check_passage`] finds tools that jumped over the surface, and
-//! [`ContactSurface::check_overlap`] those that stand in the body between its points.
+//! Between converged steps a [`ContactHistory`] keeps the elastic stick and the multipliers. Some errors do
+//! not show in a single state and are checked after a step: [`ContactSurface::check_passage`] finds tools
+//! that jumped over the surface, and [`ContactSurface::check_overlap`] finds tools that overlap the body
+//! between its points.
 //!
 //! ```
 //! use contact::{ContactLaw, Slip, Sphere, Tool};

@@ -1,17 +1,20 @@
-//! Tools that stand in the body and touch none of the surface's points: without a force, and wrong without a word.
+//! Detection of tools that overlap the body but touch no contact point: they have no force, without any other
+//! sign of error.
 
 use shape::{Point3, PointRows, Vector3};
 
 use super::{ContactError, ContactSurface, Stand, Tool};
 
-/// How deep a place of the surface may stand in a tool that touches no point, over its distance to the nearest one: on the way
-/// the points may be about to touch, in the end they are not.
+/// Largest depth of a surface location in a tool without contact, relative to the distance to the nearest
+/// contact point, during the loading: points may be about to touch.
 const ON_THE_WAY: f64 = 0.5;
+/// The same at the end of the loading, when no contact can follow.
 const IN_THE_END: f64 = 0.01;
-/// Times that a triangle is divided in four to find its deepest place.
+/// Number of subdivisions of a triangle into four, to find its deepest location.
 const DIVISIONS: usize = 5;
 
-/// A surface in triangles, without quadrature: it carries no force, but tells where the body is between the contact points.
+/// Triangulated surface without quadrature: it carries no force, but represents the body between the contact
+/// points.
 #[derive(Clone, Copy, Debug)]
 pub struct Outline<'a> {
     rows: &'a PointRows,
@@ -19,7 +22,11 @@ pub struct Outline<'a> {
 }
 
 impl<'a> Outline<'a> {
-    /// Triangles between the points of a table.
+    /// Makes the outline from triangles between the points of a table.
+    ///
+    /// # Errors
+    ///
+    /// [`ContactError::Length`] if a corner is not a point of the table.
     pub fn new(rows: &'a PointRows, triangles: &'a [[u32; 3]]) -> Result<Outline<'a>, ContactError> {
         let expected = rows.points().len();
         match triangles.iter().flatten().find(|&&k| k as usize >= expected) {
@@ -43,8 +50,12 @@ impl<'a> Outline<'a> {
 }
 
 impl ContactSurface<'_> {
-    /// Fails where a corner of the outline stands in a tool that touches no point, deeper than on the way to the next point: for
-    /// states that are reported.
+    /// Checks that no corner of the outline is too deep in a tool that touches no point. For reported states:
+    /// a depth at which the next point is about to touch is allowed.
+    ///
+    /// # Errors
+    ///
+    /// [`ContactError::Overlap`] with the deepest corner.
     pub fn check_overlap(&self, tool: &Tool, stand: Stand) -> Result<(), ContactError> {
         let Some(outline) = self.outline else { return Ok(()) };
         let mut worst = Deepest::default();
@@ -58,8 +69,12 @@ impl ContactSurface<'_> {
         self.refuse(worst)
     }
 
-    /// Fails where any place of the outline stands in a tool that touches no point, at the end of the loading, where no way is left
-    /// to the next point.
+    /// Checks that no location of the outline is in a tool that touches no point, at the end of the loading,
+    /// when no further point can come into contact.
+    ///
+    /// # Errors
+    ///
+    /// [`ContactError::Overlap`] with the deepest location.
     pub fn check_end(&self, tool: &Tool, stand: Stand) -> Result<(), ContactError> {
         let Some(outline) = self.outline else { return Ok(()) };
         let mut worst = Deepest::default();
@@ -77,12 +92,12 @@ impl ContactSurface<'_> {
         self.refuse(if worst.depth > allowed { worst } else { Deepest::default() })
     }
 
-    /// Depth (m) that a place may have without a force.
+    /// Returns the depth (m) that is allowed without a force.
     fn allowed(&self, tool: &Tool, reference: &Point3, part: f64) -> f64 {
         (part * self.apart(reference)).min(tool.deepest())
     }
 
-    /// Distance (m) to the nearest contact point in the undeformed body.
+    /// Returns the distance (m) to the nearest contact point in the undeformed body.
     fn apart(&self, reference: &Point3) -> f64 {
         let squares = self.rows().points().iter().map(|p| (p - reference).norm_squared());
         squares.fold(f64::INFINITY, f64::min).sqrt()
@@ -96,7 +111,7 @@ impl ContactSurface<'_> {
     }
 }
 
-/// The deepest place found, m; none at a depth of 0.
+/// Deepest location found, m; none if the depth is 0.
 #[derive(Default)]
 struct Deepest {
     depth: f64,
@@ -105,7 +120,7 @@ struct Deepest {
 }
 
 impl Deepest {
-    /// Looks at one place; its depth.
+    /// Updates the deepest location with one location, and returns its depth.
     fn meet(&mut self, tool: &Tool, closure: f64, at: Point3, reference: Point3) -> f64 {
         let depth = -tool.shape().foot(&tool.local(closure, &at)).0;
         if depth > self.depth {
@@ -114,13 +129,13 @@ impl Deepest {
         depth
     }
 
-    /// Looks for a deeper one in a triangle, of which each corner has a place and one in the undeformed body.
+    /// Searches a triangle for a deeper location. Each corner has a current and an undeformed position.
     fn search(&mut self, tool: &Tool, closure: f64, corners: [(Point3, Point3); 3], divided: usize) {
         let middle =
             |points: [Point3; 3]| Point3::from(points.iter().map(|p| p.coords).sum::<Vector3>() / 3.0);
         let (at, reference) = (middle(corners.map(|c| c.0)), middle(corners.map(|c| c.1)));
         let depth = self.meet(tool, closure, at, reference);
-        // The distance changes by no more than the way gone.
+        // The distance function changes by no more than the distance travelled.
         let size = corners.iter().map(|c| (c.0 - at).norm()).fold(0.0, f64::max);
         if divided == DIVISIONS || depth + size <= self.depth {
             return;

@@ -1,20 +1,22 @@
-//! Tools that jumped over the surface in a step.
+//! Detection of tools that jumped over the surface in a step.
 //!
-//! Contact sees a state, not how it was reached. A tool that travels farther in a step than it is thick ends beyond the
-//! surface, where nothing touches. Seen from the tool every point goes a straight way during a step, and the distance to a
-//! convex shape is convex along it: its least value is found by halving the way at the sign of its slope.
+//! Contact depends on a state, not on how the state was reached. A tool that travels farther in a step than
+//! its own thickness ends beyond the surface, where nothing touches it. Relative to the tool every point
+//! moves on a straight line during a step, and the distance to a convex shape is convex along that line. Its
+//! minimum is found by bisection on the sign of the slope.
 
 use shape::{Point3, Vector3};
 
 use super::{ContactError, ContactSurface, Tool};
 
-/// Halvings of a way: to a millionth of it.
+/// Number of bisections of a path: to a millionth of its length.
 const HALVINGS: usize = 20;
 
-/// Part of the deepest penetration that a point may have had on its way where nothing touches in the end.
+/// Largest depth along its path, as part of the deepest penetration, of a point if nothing touches at the
+/// end.
 const UNSEEN: f64 = 0.08;
 
-/// Where a tool and a surface stand.
+/// State of a tool and a surface.
 #[derive(Clone, Copy, Debug)]
 pub struct Stand<'u> {
     /// Closure, m.
@@ -24,8 +26,8 @@ pub struct Stand<'u> {
 }
 
 impl ContactSurface<'_> {
-    /// As [`ContactSurface::check_passage`] of a tool that travels while the surface stays: no work on short ways, which take no
-    /// point in and out again.
+    /// Checks as [`ContactSurface::check_passage`] for a tool that travels while the surface stays. Short
+    /// travels, within which no point can enter and leave the tool, cost nothing.
     pub fn check_travel(
         &self,
         tool: &Tool,
@@ -39,11 +41,15 @@ impl ContactSurface<'_> {
         self.check_passage(tool, Stand { closure: from, u }, Stand { closure: to, u }, touches)
     }
 
-    /// Fails where a step from one state to another took the surface through the tool; whether the tool touches any point of it in
-    /// the end is `touches`.
+    /// Checks that no step from one state to another took the surface through the tool. `touches` states
+    /// whether the tool touches any point of the surface at the end.
     ///
-    /// A point that goes deeper on its way than [`Tool::deepest`] has been jumped over: points that slide along a tool cut its
-    /// corners by less. Where nothing touches in the end, much less is one too many.
+    /// A point that goes deeper along its path than [`Tool::deepest`] has been jumped over: points that slide
+    /// along a tool cut its corners by less. If nothing touches at the end, a much smaller depth is an error.
+    ///
+    /// # Errors
+    ///
+    /// [`ContactError::JumpedOver`] with the deepest point.
     pub fn check_passage(
         &self,
         tool: &Tool,
@@ -72,7 +78,8 @@ impl ContactSurface<'_> {
         if depth > limit { Err(ContactError::JumpedOver { depth, at, travel }) } else { Ok(()) }
     }
 
-    /// Points of each cluster that may come deeper than `limit` (m) into the tool on the way; all others cannot.
+    /// Returns the points of each cluster that may come deeper than `limit` (m) into the tool along their
+    /// paths; all others cannot.
     fn passed(&self, tool: &Tool, from: Stand, to: Stand, limit: f64) -> Result<Vec<&[u32]>, ContactError> {
         let mut passed = Vec::new();
         for cluster in &self.clusters {
@@ -83,7 +90,7 @@ impl ContactSurface<'_> {
             let [(a, half_a), (b, half_b)] = [ends[0].clone()?, ends[1].clone()?];
             let (low, high) = ((a - half_a).inf(&(b - half_b)), (a + half_a).sup(&(b + half_b)));
             let (middle, half) = (nalgebra::center(&low, &high), (high - low) * 0.5);
-            // The distance changes by no more than the way gone.
+            // The distance function changes by no more than the distance travelled.
             if tool.shape().foot(&tool.local(0.0, &middle)).0 - half.norm() < -limit {
                 passed.push(&self.order[cluster.points.clone()]);
             }
@@ -92,18 +99,18 @@ impl ContactSurface<'_> {
     }
 }
 
-/// The deepest that a point has come on its way.
+/// Deepest passage of a point along its path.
 struct Passage {
-    /// m.
+    /// Depth, m.
     depth: f64,
-    /// Where the point stands in the end, m.
+    /// Final position of the point, m.
     at: Point3,
-    /// Way of the point as seen from the tool, m.
+    /// Path length of the point relative to the tool, m.
     travel: f64,
 }
 
 impl Passage {
-    /// Follows one point. One that was as deep before the step, or is after it, has not been passed by.
+    /// Follows one point. A point that is as deep before or after the step has not been jumped over.
     fn meet(&mut self, tool: &Tool, closures: [f64; 2], ends: [Point3; 2]) {
         let [a, b] = [tool.local(closures[0], &ends[0]), tool.local(closures[1], &ends[1])];
         let (way, foot) = (b - a, |part: f64| tool.shape().foot(&(a + (b - a) * part)));

@@ -1,34 +1,38 @@
-//! The contact search over many small steps: points that can touch before the body or the tool has moved by a margin are listed once
-//! and looked at until then (Verlet, Phys. Rev. 159 (1967), 98-103).
+//! Contact search over many small steps.
 //!
-//! A point that is farther from a tool than the margin cannot touch it while it and the tool have moved by less together. Over
-//! explicit steps of a micrometre a list serves some hundreds of them. On the published ramp a step looked at 191 points and made 256
-//! boxes around clusters for 17 points that touched, which took a fifth of its time.
+//! Points that can touch before the body or the tool has moved by a margin are listed once, and only these
+//! are processed until then (Verlet, Phys. Rev. 159 (1967), 98-103). A point that is farther from a tool than
+//! the margin cannot touch the tool while both together have moved by less. In explicit steps of a micrometre
+//! a list lasts for some hundreds of steps. Without lists, a step of the published ramp processed 191 points
+//! and built 256 boxes around clusters for 17 points in contact, which took a fifth of its time.
 
 use shape::Vector3;
 
 use super::surface::CLUSTER;
 use super::{ContactCounts, ContactError, ContactHistory, ContactSurface, Contacts, Tool};
 
-/// Margin over the mean distance between points: a larger one keeps a list for longer, with more points in it.
+/// Margin over the mean distance between points. A larger margin keeps a list for longer, with more points in
+/// it.
 const MARGIN: f64 = 0.125;
-/// Part of the margin that is left to rounding: enough for bodies that are a hundred million margins away from the origin.
+/// Part of the margin reserved for rounding: enough for bodies that are a hundred million margins away from
+/// the origin.
 const ROUNDING: f64 = 1e-6;
 
-/// Finds contact for the same tools in one state after another. What it finds has the same bits as that of
-/// [`ContactSurface::tractions`], whatever the states before.
+/// Contact search for the same tools in successive states. The contacts have the same bits as those of
+/// [`ContactSurface::tractions`], whatever the earlier states.
 #[derive(Clone, Debug)]
 pub struct ContactSearch<'a> {
     surface: &'a ContactSurface<'a>,
-    /// Nodes that the surface sees, each once, and their displacements (m) in the state that the lists are from.
+    /// Nodes of the surface, each once.
     nodes: Vec<u32>,
+    /// Displacements (m) of these nodes in the state of the lists.
     listed_at: Vec<Vector3>,
-    /// States in which lists were made: one of an earlier state is out of date.
+    /// Counter of the states in which lists were made; a list of an earlier state is out of date.
     state: u64,
     lists: Vec<List>,
-    /// m.
+    /// Margin, m.
     margin: f64,
-    /// Bound of a point's motion over the largest change of a nodal displacement's component.
+    /// Bound of a point's motion over the largest change of a component of a nodal displacement.
     stretch: f64,
 }
 
@@ -37,14 +41,14 @@ pub struct ContactSearch<'a> {
 struct List {
     state: u64,
     points: Vec<u32>,
-    /// Of the tool when the list was made, m.
+    /// Closure of the tool when the list was made, m.
     closure: f64,
-    /// Gap at which a point with a multiplier still touches, m.
+    /// Gap up to which a point with a multiplier touches, m.
     reach: f64,
 }
 
 impl<'a> ContactSearch<'a> {
-    /// For that many tools.
+    /// Prepares the search for the given number of tools.
     pub fn new(surface: &'a ContactSurface<'a>, tools: usize) -> ContactSearch<'a> {
         let mut nodes = surface.nodes.clone();
         nodes.sort_unstable();
@@ -63,18 +67,19 @@ impl<'a> ContactSearch<'a> {
         }
     }
 
-    /// The search in the state `u` (m, one vector per node).
+    /// Starts the search in the state `u` (m, one vector per node).
     pub fn at<'s>(&'s mut self, u: &'s [Vector3]) -> SearchAt<'s, 'a> {
         let moved = self.stretch * self.largest_change(u);
         SearchAt { search: self, u, moved }
     }
 
-    /// Largest change of a component since the lists were made, m; infinite where one is no number.
+    /// Returns the largest change of a component since the lists were made, m; infinite if a change is NaN.
     fn largest_change(&self, u: &[Vector3]) -> f64 {
         if u.len() != self.surface.rows().rows().node_count() {
             return f64::INFINITY;
         }
-        // Four nodes side by side: none waits for the one before. A maximum forgets a NaN, a sum does not.
+        // Four nodes are processed side by side, so that none waits for another. A maximum ignores a NaN, a
+        // sum does not.
         let (mut most, mut finite) = ([0.0f64; 12], [0.0; 12]);
         let (fours, rest) = self.nodes.as_chunks::<4>();
         let (before, rest_before) = self.listed_at.as_chunks::<4>();
@@ -95,17 +100,18 @@ impl<'a> ContactSearch<'a> {
     }
 }
 
-/// A [`ContactSearch`] in one state.
+/// Search of a [`ContactSearch`] in one state.
 #[derive(Debug)]
 pub struct SearchAt<'s, 'a> {
     search: &'s mut ContactSearch<'a>,
     u: &'s [Vector3],
-    /// How far any point may have moved since the lists were made, m.
+    /// Largest possible motion of any point since the lists were made, m.
     moved: f64,
 }
 
 impl SearchAt<'_, '_> {
-    /// As [`ContactSurface::tractions`], for the tool of that number: the same one in every state.
+    /// Evaluates as [`ContactSurface::tractions`], for the tool with this number. The number must be the same
+    /// in every state.
     pub fn tractions(
         &mut self,
         number: usize,
@@ -128,7 +134,7 @@ impl SearchAt<'_, '_> {
         let ContactSearch { state, margin, lists, .. } = &*self.search;
         let list = &lists[number];
         let moved = self.moved + (closure - list.closure).abs();
-        // `moved <= ..`: a NaN must not pass. The first state is 1.
+        // A NaN must not pass, hence `moved <= ..`. The first state is 1.
         *state > 0 && list.state == *state && reach <= list.reach && moved <= (1.0 - ROUNDING) * margin
     }
 
@@ -137,7 +143,7 @@ impl SearchAt<'_, '_> {
         let surface = search.surface;
         let far = reach + search.margin;
         let near = surface.near(tool, closure, far, u)?;
-        // Lists of other tools that were made in another state are out of date from here on.
+        // Lists of other tools from an earlier state are out of date from here on.
         if search.state == 0 || self.moved != 0.0 {
             search.listed_at.iter_mut().zip(&search.nodes).for_each(|(to, &node)| *to = u[node as usize]);
             search.state += 1;

@@ -1,4 +1,4 @@
-//! A surface quadrature in clusters of neighbouring points, each with a box: the broad phase of contact.
+//! Broad phase of contact: a surface quadrature in clusters of neighbouring points, each with a box.
 
 use std::ops::Range;
 
@@ -6,33 +6,36 @@ use shape::{Point3, SurfaceRows, Vector3};
 
 use super::{ContactError, Contacts, Outline, Tool};
 
-/// Points per cluster, at most.
+/// Largest number of points in a cluster.
 pub(super) const CLUSTER: usize = 32;
 
-/// A surface made ready for contact. Made once per surface, for any number of tools and states.
+/// Surface prepared for contact: made once per surface, for any number of tools and states.
 #[derive(Clone, Debug)]
 pub struct ContactSurface<'a> {
     rows: &'a SurfaceRows,
-    /// Points, neighbours together.
+    /// Points, with neighbours next to each other.
     pub(super) order: Vec<u32>,
     pub(super) clusters: Vec<Cluster>,
-    /// Nodes that the clusters see, one cluster after another.
+    /// Nodes of the clusters, one cluster after another.
     pub(super) nodes: Vec<u32>,
-    /// Where the surface is between its points, if that is given.
+    /// Surface between the points, if given.
     pub(super) outline: Option<Outline<'a>>,
-    /// For each point two others beside it, counter-clockwise seen from outside; the point itself where there are none.
+    /// Two neighbours of each point, counter-clockwise seen from outside; the point itself if it has none.
     beside: Vec<[u32; 2]>,
 }
 
-/// The current position of a point is `x = X + sum_I N_I u_I`. With `m` the middle and `h` the half range of `u` over
-/// the cluster's nodes, `|x - X - m| <= max(sum |N_I|) h + max|sum N_I - 1| |m|` per axis: a box for all its points
-/// from the nodes alone, for any basis.
+/// Cluster of points with a bounding box.
+///
+/// The current position of a point is `x = X + sum_I N_I u_I`. With `m` the middle and `h` the half range of
+/// `u` over the cluster's nodes, `|x - X - m| <= max(sum |N_I|) h + max|sum N_I - 1| |m|` per axis. This
+/// bounds all points of the cluster from the nodes alone, for any basis.
 #[derive(Clone, Debug)]
 pub(super) struct Cluster {
     pub(super) points: Range<usize>,
     nodes: Range<usize>,
-    /// Middle and half extents of the box of reference positions, m.
+    /// Middle of the box of reference positions, m.
     middle: Point3,
+    /// Half extents of this box, m.
     half: Vector3,
     /// Largest `sum |N_I|`.
     lebesgue: f64,
@@ -41,7 +44,7 @@ pub(super) struct Cluster {
 }
 
 impl<'a> ContactSurface<'a> {
-    /// Sorts the points into clusters.
+    /// Sorts the points of a surface quadrature into clusters.
     pub fn new(rows: &'a SurfaceRows) -> ContactSurface<'a> {
         let mut order: Vec<u32> = (0..rows.points().len() as u32).collect();
         let mut ranges = Vec::new();
@@ -59,7 +62,7 @@ impl<'a> ContactSurface<'a> {
         ContactSurface { rows, order, clusters, nodes, beside, outline: None }
     }
 
-    /// With the surface between its points, to find tools that stand in the body there.
+    /// Adds the surface between the points, to find tools that overlap the body there.
     pub fn with_outline(mut self, outline: Outline<'a>) -> ContactSurface<'a> {
         self.outline = Some(outline);
         self
@@ -75,25 +78,27 @@ impl<'a> ContactSurface<'a> {
         self.clusters.len()
     }
 
-    /// Largest `sum |N_I|` of all points.
+    /// Returns the largest `sum |N_I|` of all points.
     pub(super) fn lebesgue(&self) -> f64 {
         self.clusters.iter().map(|cluster| cluster.lebesgue).fold(0.0, f64::max)
     }
 
-    /// Smallest signed distance (m) of all points to the tool in the state `u`; infinite without points.
+    /// Returns the smallest signed distance (m) of any point to the tool in the state `u`; infinite without
+    /// points.
     pub fn gap(&self, tool: &Tool, closure: f64, u: &[Vector3]) -> f64 {
         (0..self.rows.points().len())
             .map(|q| tool.gap(closure, &self.position(q, u)))
             .fold(f64::INFINITY, f64::min)
     }
 
-    /// Where the points are that lie within the tool in the state `u` (m), each with its signed distance (m, below 0).
+    /// Returns the points that lie within the tool in the state `u` (m): positions and signed distances (m,
+    /// below 0).
     pub fn within(&self, tool: &Tool, closure: f64, u: &[Vector3]) -> Vec<(Point3, f64)> {
         let places = (0..self.rows.points().len()).map(|q| self.position(q, u));
         places.map(|x| (x, tool.gap(closure, &x))).filter(|(_, gap)| *gap < 0.0).collect()
     }
 
-    /// Points of each cluster that may come within `reach` (m) of the tool; all others cannot.
+    /// Returns the points of each cluster that may come within `reach` (m) of the tool; all others cannot.
     pub(super) fn near(
         &self,
         tool: &Tool,
@@ -107,7 +112,7 @@ impl<'a> ContactSurface<'a> {
         for cluster in &self.clusters {
             let (middle, half) = cluster.current_box(&self.nodes, u)?;
             let apart = (0..3).any(|a| middle[a] + half[a] < low[a] || middle[a] - half[a] > high[a]);
-            // The distance changes by no more than the way gone.
+            // The distance function changes by no more than the distance travelled.
             if apart || tool.shape().foot(&tool.local(closure, &middle)).0 > half.norm() + reach {
                 continue;
             }
@@ -116,10 +121,16 @@ impl<'a> ContactSurface<'a> {
         Ok(near)
     }
 
-    /// Fails where a tool pushes out of the body instead of into it, with more than a tenth of its force: it has slipped
-    /// through between points, and now lifts them from within. The deformed normal `(x_b - x_a) x (x_c - x_a)` comes from two
-    /// points beside, which leaves out what bends between them: a push that leaves the surface by less than 12 degrees is let
-    /// be, and so are a few points on a crease.
+    /// Checks that a tool pushes into the body, not out of it with more than a tenth of its force: such a
+    /// tool has slipped through between points and lifts them from within.
+    ///
+    /// The deformed normal `(x_b - x_a) x (x_c - x_a)` is computed from two neighbouring points, which
+    /// ignores any bending between them. A push that leaves the surface by less than 12 degrees is therefore
+    /// accepted, and so are a few points on a crease.
+    ///
+    /// # Errors
+    ///
+    /// [`ContactError::WithinBody`] with the first point that is pushed outwards.
     pub fn check_side(&self, contacts: &Contacts, u: &[Vector3]) -> Result<(), ContactError> {
         let (mut all, mut outwards, mut first) = (0.0, 0.0, None);
         for (&point, traction) in contacts.points().iter().zip(contacts.tractions()) {
@@ -177,7 +188,7 @@ impl Cluster {
         Cluster { points, nodes: first..kept, middle, half, lebesgue, excess }
     }
 
-    /// Middle and half extents of a box that holds the cluster's points in the state `u`.
+    /// Returns middle and half extents of a box that contains the cluster's points in the state `u`.
     pub(super) fn current_box(
         &self,
         nodes: &[u32],
@@ -202,11 +213,12 @@ impl Cluster {
     }
 }
 
-/// The two points that span the surface around `q` best: near, and well apart as seen from it.
+/// Returns the two points that span the surface around `q` best: close to `q`, and in clearly different
+/// directions.
 fn two_beside(rows: &SurfaceRows, q: u32, near: &[u32]) -> [u32; 2] {
     let normal = rows.normals()[q as usize];
     let way = |other: u32| rows.points()[other as usize] - rows.points()[q as usize];
-    // Not around an edge, whose other side has another normal.
+    // Points beyond an edge, where the normal differs, are excluded.
     let mut flat: Vec<u32> =
         near.iter().copied().filter(|&p| p != q && normal.dot(&rows.normals()[p as usize]) > 0.7).collect();
     flat.sort_by(|&a, &b| way(a).norm().total_cmp(&way(b).norm()));
@@ -227,7 +239,8 @@ fn range(vectors: impl Iterator<Item = Vector3>) -> (Vector3, Vector3) {
     })
 }
 
-/// Halves the points at the median of their longest extent until at most [`CLUSTER`] are left; ties go by index.
+/// Bisects the points at the median of their longest extent until at most [`CLUSTER`] are left; ties are
+/// broken by index.
 fn split(order: &mut [u32], start: usize, points: &[Point3], ranges: &mut Vec<Range<usize>>) {
     if order.len() <= CLUSTER {
         ranges.push(start..start + order.len());

@@ -1,11 +1,11 @@
-//! A tool in the world: a shape, where it stands, the way it closes and its contact law.
+//! Tool in world coordinates: shape, position, direction of motion and contact law.
 
 use shape::{Matrix3, Point3, Vector3};
 
 use super::law::Response;
 use super::{ContactError, ContactLaw, Slip, ToolShape};
 
-/// A rigid tool that moves by `closure * along` (m) and does not turn while it moves.
+/// Rigid tool that moves by `closure * along` (m) without rotating.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tool {
     shape: ToolShape,
@@ -34,8 +34,12 @@ pub struct PointContact {
 }
 
 impl Tool {
-    /// `at` is where the origin of the shape's frame stands at closure 0, `rotation` (3, 3) takes that frame's axes to
-    /// the world's, `along` is the unit direction in which the tool closes.
+    /// Makes a tool. `at` is the position of the shape's origin at closure 0 (m). `rotation` (3, 3) maps the
+    /// shape's axes to the world's. `along` is the unit direction of motion.
+    ///
+    /// # Errors
+    ///
+    /// A length, the position, the rotation or the direction is not valid.
     pub fn new(
         shape: ToolShape,
         at: Point3,
@@ -60,8 +64,9 @@ impl Tool {
         Ok(Tool { shape, at, rotation, along, law, deepest: 0.5 * shape.inradius() })
     }
 
-    /// A rotation that takes the z axis to the unit vector `axis`: a plate's face, a cylinder's axis. The turn about
-    /// `axis` itself is free; the shortest rotation is taken, and half a turn about x for `-z`.
+    /// Returns a rotation that maps the z axis to the unit vector `axis`, the normal of a plate's face or the
+    /// axis of a cylinder. The rotation about `axis` itself is free: the shortest rotation is taken, and half
+    /// a turn about x for `-z`.
     pub fn turned_to(axis: &Vector3) -> Matrix3 {
         nalgebra::Rotation3::rotation_between(&Vector3::z(), axis)
             .unwrap_or_else(|| nalgebra::Rotation3::from_axis_angle(&Vector3::x_axis(), std::f64::consts::PI))
@@ -78,23 +83,24 @@ impl Tool {
         &self.law
     }
 
-    /// Unit direction of closing.
+    /// Unit direction of motion.
     pub fn along(&self) -> Vector3 {
         self.along
     }
 
-    /// Where the origin of the shape's frame stands.
+    /// Position of the shape's origin at a closure (m), m.
     pub fn place(&self, closure: f64) -> Point3 {
         self.at + self.along * closure
     }
 
-    /// A point deeper than this (m) is an error: half the inradius. At the inradius the nearest face changes and the
-    /// point would be pushed out on the far side.
+    /// Depth beyond which a point is an error, m: half the inradius. At the inradius the nearest face
+    /// changes, and the point would be pushed out on the far side.
     pub fn deepest(&self) -> f64 {
         self.deepest
     }
 
-    /// Lowest and highest corner of a box along the world's axes that holds the tool; infinite for a plate.
+    /// Lowest and highest corner of a box along the world's axes that contains the tool; infinite for a
+    /// plate.
     pub fn bounds(&self, closure: f64) -> (Point3, Point3) {
         let place = self.place(closure);
         let (_, corner) = self.shape.bounds();
@@ -106,8 +112,8 @@ impl Tool {
         (place - half, place + half)
     }
 
-    /// Half of the least breadth across the direction of closing, m: the tool fits between points that leave more free. Infinite
-    /// for a plate.
+    /// Half of the smallest breadth across the direction of motion, m; infinite for a plate. The tool fits
+    /// between points that leave more space.
     pub fn half_breadth(&self) -> f64 {
         if self.shape.is_endless() {
             return f64::INFINITY;
@@ -121,8 +127,8 @@ impl Tool {
         (0..24).map(|k| breadth((7.5 * f64::from(k)).to_radians())).fold(f64::INFINITY, f64::min)
     }
 
-    /// Contact at the current position `x` (m), from the last committed history. `augmented` is the multiplier of the
-    /// augmented Lagrangian, Pa, 0 for a plain penalty.
+    /// Evaluates contact at the current position `x` (m), from the last committed history. `augmented` is the
+    /// multiplier of the augmented Lagrangian, Pa; 0 for a plain penalty.
     pub fn contact(&self, closure: f64, x: &Point3, history: &Slip, augmented: f64) -> PointContact {
         let p = self.local(closure, x);
         let (gap, normal) = self.shape.foot(&p);
@@ -146,12 +152,12 @@ impl Tool {
         }
     }
 
-    /// Signed distance of the current position `x` (m), m; negative inside.
+    /// Returns the signed distance of the current position `x` (m), m; negative inside.
     pub fn gap(&self, closure: f64, x: &Point3) -> f64 {
         self.shape.foot(&self.local(closure, x)).0
     }
 
-    /// Position in the tool's frame.
+    /// Returns the position in the tool's frame.
     #[inline]
     pub(super) fn local(&self, closure: f64, x: &Point3) -> Vector3 {
         self.rotation.tr_mul(&(x - self.place(closure)))
@@ -162,7 +168,7 @@ impl Tool {
         self.rotation * v
     }
 
-    /// `dt/dx` in the world's axes.
+    /// Returns `dt/dx` in the world's axes.
     #[inline]
     pub(super) fn stiffness(&self, response: &Response, p: &Vector3, normal: &Vector3) -> Matrix3 {
         self.rotation * self.law.tangent(response, normal, &self.shape.hessian(p)) * self.rotation.transpose()

@@ -1,4 +1,4 @@
-//! File access: the only code that opens files made by others, and the only code that writes next to them.
+//! File access: the only code that opens files made by others, and the only code that could overwrite them.
 //!
 //! A reader takes regular files up to the size limit of their [`Kind`]. It refuses at once a pipe without a
 //! writer, an endless device, or a file larger than its kind allows. A writer refuses a file that this

@@ -1,17 +1,18 @@
-//! The capsule: distance to the segment `|z| <= l` of the axis, less the radius. Beside the segment it is a cylinder,
-//! `H = (I - z z^T - n n^T) / rho`, beyond its ends a ball. On the segment the gradient is +x.
+//! Capsule: distance to the segment `|z| <= l` of the axis, less the radius. Next to the segment the Hessian
+//! is that of a cylinder, `H = (I - z z^T - n n^T) / rho`; beyond the ends that of a ball. On the segment the
+//! gradient is +x.
 
 use shape::{Matrix3, Vector3};
 
 use super::{AXIS, Entry, LENGTH, MEDIAL, RADIUS, Shape, ToolShapeEntry, cylinder, outline, size, sphere};
 use crate::ContactError;
 
-/// The points within `radius` of a segment of the z axis.
+/// Capsule: the points within `radius` of a segment of the z axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Capsule {
     /// Radius, m.
     pub radius: f64,
-    /// Half the length of the segment, m: the whole capsule reaches `half_length + radius`.
+    /// Half length of the segment, m. The whole capsule extends to `half_length + radius`.
     pub half_length: f64,
 }
 

@@ -1,20 +1,21 @@
-//! The cylinder with flat ends: in the half plane of `rho = |(x, y)|` and `z` it is a rectangle, so with
+//! Cylinder with flat ends. In the half plane of `rho = |(x, y)|` and `z` it is a rectangle, so that with
 //! `q = (rho - r, |z| - l)`, `sd = |max(q, 0)| + min(max(q_r, q_z), 0)`.
 //!
-//! Inside, where side and end are equally near the side is taken; on the axis the side's normal is +x, halfway
-//! between the ends the upper end is the near one.
+//! If side and end are equally near inside, the side is taken. On the axis the side's normal is +x. Halfway
+//! between the ends the upper end is taken.
 
 use shape::{Matrix3, Vector3};
 
 use super::{AXIS, Entry, LENGTH, MEDIAL, RADIUS, Shape, ToolShapeEntry, outline, size};
 use crate::ContactError;
 
-/// A cylinder about the z axis with flat ends and sharp rims. A `half_length` far beyond the body makes a roller.
+/// Cylinder about the z axis with flat ends and sharp rims. If `half_length` is far larger than the body, it
+/// is a roller.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cylinder {
     /// Radius, m.
     pub radius: f64,
-    /// Half its length, m.
+    /// Half length, m.
     pub half_length: f64,
 }
 
@@ -64,7 +65,7 @@ impl Shape for Cylinder {
     }
 }
 
-/// `rho` and the unit vector away from the axis; +x on the axis.
+/// Returns `rho` and the unit vector away from the axis; +x on the axis.
 #[inline]
 fn radial(radius: f64, p: &Vector3) -> (f64, Vector3) {
     let rho = p.x.hypot(p.y);
@@ -89,7 +90,7 @@ fn foot(radius: f64, half_length: f64, p: &Vector3) -> (f64, Vector3) {
     }
 }
 
-/// `(I - z z^T - n n^T) / rho = s s^T / rho`, `s` along the circumference; zero on the axis.
+/// Returns `(I - z z^T - n n^T) / rho = s s^T / rho`, `s` along the circumference; zero on the axis.
 #[inline]
 pub(super) fn side_hessian(radius: f64, p: &Vector3) -> Matrix3 {
     let (rho, n) = radial(radius, p);
@@ -105,7 +106,8 @@ fn hessian(radius: f64, half_length: f64, p: &Vector3) -> Matrix3 {
     let (rho, outward) = radial(radius, p);
     let (side, flat) = (rho - radius, p.z.abs() - half_length);
     if side > 0.0 && flat > 0.0 {
-        // Distance to the rim: a circle in the half plane, `1 / value` across, and `n_r / rho` along the rim.
+        // Distance to the rim: a circle in the half plane, with `1 / value` across the rim and `n_r / rho`
+        // along it.
         let (value, normal) = foot(radius, half_length, p);
         let across = (outward * flat - end(p) * side) / value;
         across * across.transpose() / value + side_hessian(radius, p) * normal.dot(&outward)

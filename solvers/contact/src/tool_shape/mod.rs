@@ -1,8 +1,10 @@
-//! Rigid tools as signed distances, each in its own frame: negative inside, gradient a unit vector pointing out.
+//! Rigid tools as signed distances, each in its own frame: negative inside, gradient a unit vector pointing
+//! out.
 //!
-//! Each shape is a file with its distance and its [`ToolShapeEntry`], and a line of the list below. Outside and near the
-//! surface the distances are exact. On the medial axis, where the nearest point is not unique, one of them is taken (the
-//! files say which) and the Hessian's infinite part is left out: no NaN anywhere.
+//! Each shape has a file with its distance and its [`ToolShapeEntry`], and a line in the list below. Outside
+//! and near the surface the distances are exact. On the medial axis, where the nearest point is not unique,
+//! one of the nearest points is taken (each file states which), and the infinite part of the Hessian is left
+//! out: no value is NaN.
 
 mod outline;
 
@@ -11,46 +13,49 @@ use shape::{Matrix3, Point3, Vector3};
 
 use crate::ContactError;
 
-/// A shape of tools that scene files can name.
+/// Shape of tools that scene files can name.
 pub type ToolShapeEntry = Entry<fn(&Values) -> Result<ToolShape, Problem>>;
 
-/// A centre, axis or core is met within this part of the tool's size: there the direction to it is noise.
+/// Part of the tool's size within which a point counts as lying on a centre, an axis or a core: the direction
+/// to it is noise.
 const MEDIAL: f64 = 1e-12;
 
-/// What a shape is, in its own frame. Lengths in metres.
+/// Shape of a tool, in its own frame. Lengths are in metres.
 trait Shape {
-    /// Signed distance and its gradient.
+    /// Returns the signed distance and its gradient.
     fn foot(&self, p: &Vector3) -> (f64, Vector3);
 
-    /// Hessian of the distance (3, 3), 1/m.
+    /// Returns the Hessian of the distance (3, 3), 1/m.
     fn hessian(&self, p: &Vector3) -> Matrix3;
 
-    /// Half of a box about the origin that holds the shape; infinite where it has no end.
+    /// Returns the half extents of a box about the origin that contains the shape; infinite for an unbounded
+    /// shape.
     fn half_extents(&self) -> Vector3;
 
-    /// Radius of the largest ball inside.
+    /// Returns the radius of the largest ball inside.
     fn inradius(&self) -> f64;
 
-    /// Points whose convex hull is the shape, for pictures beside a body of that extent.
+    /// Returns points whose convex hull is the shape, for pictures of it next to a body of size `body`.
     fn outline(&self, body: f64) -> Vec<Vector3>;
 
-    /// Where the z axis of the frame points unless a scene says, of a tool that closes along a direction; `None` for a shape
-    /// that stands along the axes of the scene.
+    /// Returns the default direction of the frame's z axis for a tool that moves along a direction; `None`
+    /// for a shape that is aligned with the axes of the scene.
     fn axis(&self, _along: Vector3) -> Option<Vector3> {
         None
     }
 
-    /// Area of the face that presses where the tool closes along a direction, m^2; `None` without a face of its own.
+    /// Returns the area of the face that presses if the tool moves along a direction, m^2; `None` if it has
+    /// no such face.
     fn face_area(&self, _along: &Vector3) -> Option<f64> {
         None
     }
 
-    /// Refuses lengths that make no shape.
+    /// Checks the lengths.
     fn check(&self) -> Result<(), ContactError>;
 }
 
-/// Declares the files of the shapes, the closed enum that tells them apart without a call through a pointer, and the slice of
-/// their entries.
+/// Declares the modules of the shapes, the enum that dispatches to them without a call through a pointer, and
+/// the slice of their entries.
 macro_rules! tool_shapes {
     ($($file:ident::$shape:ident,)*) => {
         $(
@@ -63,25 +68,25 @@ macro_rules! tool_shapes {
             }
         )*
 
-        /// A rigid tool in its own frame.
+        /// Rigid tool in its own frame.
         #[derive(Clone, Copy, Debug, PartialEq)]
         #[allow(missing_docs)] // each is its type
         pub enum ToolShape {
             $($shape($shape),)*
         }
 
-        /// Every shape, in the order tables list them.
+        /// Every shape, in the order of tables.
         pub static TOOL_SHAPES: &[ToolShapeEntry] = &[$($file::ENTRY),*];
 
         impl ToolShape {
-            /// The name used in scene files and tables.
+            /// Returns the name used in scene files and tables.
             pub fn name(&self) -> &'static str {
                 match self {
                     $(ToolShape::$shape(_) => $file::ENTRY.name,)*
                 }
             }
 
-            /// Signed distance and gradient only.
+            /// Returns signed distance and gradient only.
             #[inline]
             pub fn foot(&self, p: &Vector3) -> (f64, Vector3) {
                 match self {
@@ -89,7 +94,7 @@ macro_rules! tool_shapes {
                 }
             }
 
-            /// Hessian only (3, 3), 1/m.
+            /// Returns the Hessian only (3, 3), 1/m.
             #[inline]
             pub fn hessian(&self, p: &Vector3) -> Matrix3 {
                 match self {
@@ -119,7 +124,7 @@ const LENGTH: Parameter = Parameter::required("length", Dimension::Length, "leng
 const AXIS: Parameter =
     Parameter::optional("axis", Dimension::None, "axis; along z unless given").of(Kind::Vector);
 
-/// Signed distance with its derivatives, at one point.
+/// Signed distance with its derivatives at one point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Distance {
     /// Signed distance, m; negative inside.
@@ -131,36 +136,37 @@ pub struct Distance {
 }
 
 impl ToolShape {
-    /// Signed distance, gradient and Hessian at `p`, all in the tool's frame.
+    /// Returns signed distance, gradient and Hessian at `p`, all in the tool's frame.
     pub fn distance(&self, p: &Vector3) -> Distance {
         let (value, gradient) = self.foot(p);
         Distance { value, gradient, hessian: self.hessian(p) }
     }
 
-    /// Lowest and highest corner of a box (tool's frame) that holds the tool; infinite for a half space, but for its face.
+    /// Returns the lowest and highest corner of a box (tool's frame) that contains the tool; infinite for a
+    /// half space, except at its face.
     pub fn bounds(&self) -> (Point3, Point3) {
         let half = self.shape().half_extents();
         let low = if self.is_endless() { Vector3::repeat(f64::NEG_INFINITY) } else { -half };
         (Point3::from(low), Point3::from(half))
     }
 
-    /// Whether the shape has no end.
+    /// Whether the shape is unbounded.
     pub fn is_endless(&self) -> bool {
         self.shape().half_extents().iter().any(|half| half.is_infinite())
     }
 
-    /// Radius of the largest ball inside, m: nothing is deeper than that. Infinite for a plate.
+    /// Returns the radius of the largest ball inside, m: no point is deeper. Infinite for a plate.
     pub fn inradius(&self) -> f64 {
         self.shape().inradius()
     }
 
-    /// Points whose convex hull is the tool, for pictures beside a body of that extent (m).
+    /// Returns points whose convex hull is the tool, for pictures of it next to a body of size `body` (m).
     pub fn outline(&self, body: f64) -> Vec<Vector3> {
         self.shape().outline(body)
     }
 
-    /// The surface as quadrangles, for pictures beside a body of that extent (m): those of a grid on the box that holds the tool, drawn
-    /// towards its middle. Edges of boxes stay edges.
+    /// Returns the surface as quadrangles, for pictures of it next to a body of size `body` (m). A grid on
+    /// the bounding box of the tool is projected towards the middle of the box. Edges of boxes stay edges.
     pub fn skin(&self, body: f64) -> (Vec<Vector3>, Vec<[u32; 4]>) {
         let outline = self.outline(body);
         let low = outline.iter().fold(Vector3::repeat(f64::INFINITY), |low, p| low.inf(p));
@@ -170,7 +176,7 @@ impl ToolShape {
         for point in &mut points {
             let way = point.component_mul(&half);
             let is_inside = |part: f64| self.foot(&(middle + way * part)).0 < 0.0;
-            // Of a tool without end the box is what is drawn.
+            // An unbounded tool is drawn as its box.
             let (mut inside, mut outside) = (0.0, 1.0);
             if !is_inside(1.0) {
                 for _ in 0..40 {
@@ -183,13 +189,14 @@ impl ToolShape {
         (points, quads)
     }
 
-    /// Where the z axis of the frame points unless a scene says, of a tool that closes along a unit vector; `None` for a shape
-    /// that stands along the axes of the scene.
+    /// Returns the default direction of the frame's z axis for a tool that moves along a unit vector; `None`
+    /// for a shape that is aligned with the axes of the scene.
     pub fn axis(&self, along: Vector3) -> Option<Vector3> {
         self.shape().axis(along)
     }
 
-    /// Area of the face that presses where the tool closes along a unit vector, m^2; `None` without a face of its own.
+    /// Returns the area of the face that presses if the tool moves along a unit vector, m^2; `None` if it has
+    /// no such face.
     pub fn face_area(&self, along: &Vector3) -> Option<f64> {
         self.shape().face_area(along)
     }
@@ -199,7 +206,7 @@ impl ToolShape {
     }
 }
 
-/// Refuses a length that is none; written so that a NaN fails.
+/// Checks that a length is positive and finite; written so that a NaN fails.
 fn size(what: &'static str, value: f64) -> Result<(), ContactError> {
     if value > 0.0 && value.is_finite() { Ok(()) } else { Err(ContactError::Size { what, value }) }
 }
@@ -226,7 +233,7 @@ mod tests {
                 assert!(shape.foot(&middle).1.dot(&normal) > 0.0, "{}", shape.name());
                 volume += middle.dot(&normal) / 6.0;
             }
-            // A ball of the same surface for scale: corners cut 1 to 3 % off.
+            // A ball of radius `inradius` gives the scale; the flat cells cut 1 to 3 % off.
             let ball = 4.0 / 3.0 * std::f64::consts::PI * shape.inradius().powi(3);
             assert!(volume > 0.95 * ball, "{}: {volume} of {ball}", shape.name());
         }

@@ -1,9 +1,9 @@
-//! What outlines of tools are made of in pictures.
+//! Building blocks for outlines of tools in pictures.
 
 use shape::Vector3;
 
-/// Unit vectors of the octant of positive coordinates, every 15 degrees: a silhouette of a rounding of radius r is r / 100 too
-/// small at most.
+/// Returns unit vectors of the octant of positive coordinates, every 15 degrees. The silhouette of a rounding
+/// of radius r is too small by r / 100 at most.
 pub(super) fn octant() -> Vec<Vector3> {
     let sine = |k: i32| {
         if k == 0 {
@@ -24,7 +24,7 @@ pub(super) fn octant() -> Vec<Vector3> {
     out
 }
 
-/// With the mirror images at the planes of the axes named.
+/// Adds the mirror images at the planes normal to the selected axes.
 pub(super) fn mirrored(mut points: Vec<Vector3>, axes: [bool; 3]) -> Vec<Vector3> {
     for axis in (0..3).filter(|&a| axes[a]) {
         for mut image in points.clone() {
@@ -35,11 +35,11 @@ pub(super) fn mirrored(mut points: Vec<Vector3>, axes: [bool; 3]) -> Vec<Vector3
     points
 }
 
-/// Cells along each edge of the cube below.
+/// Number of cells along each edge of the cube below.
 const CELLS: usize = 12;
 
-/// The surface of the cube from -1 to 1: its points and quadrangles that look outwards. The cells grow towards the middle, since tools are
-/// rounded at their edges.
+/// Returns the surface of the cube from -1 to 1: points and outward quadrangles. The cells grow towards the
+/// middle of each face, because tools are rounded at their edges.
 pub(super) fn cube() -> (Vec<Vector3>, Vec<[u32; 4]>) {
     let ticks: Vec<f64> = (0..=CELLS)
         .map(|k| (std::f64::consts::FRAC_PI_2 * (2.0 * k as f64 / CELLS as f64 - 1.0)).sin())

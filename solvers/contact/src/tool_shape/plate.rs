@@ -1,11 +1,11 @@
-//! The half space `z <= 0`: `sd = z`.
+//! Half space `z <= 0`, with the distance `sd = z`.
 
 use shape::{Matrix3, Vector3};
 
 use super::{Dimension, Entry, Kind, Parameter, Shape, ToolShapeEntry, outline};
 use crate::ContactError;
 
-/// The half space `z <= 0`: a plate without end or thickness, its face looking along +z.
+/// Half space `z <= 0`: a plate of unlimited extent and thickness, whose face points along +z.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Plate;
 
@@ -43,7 +43,7 @@ impl Shape for Plate {
         f64::INFINITY
     }
 
-    /// A slab as wide as the body.
+    /// Returns a slab as wide as the body.
     fn outline(&self, body: f64) -> Vec<Vector3> {
         let half = 0.5 * body;
         let corners = vec![Vector3::new(half, half, 0.0), Vector3::new(half, half, -0.1 * half)];

@@ -1,7 +1,7 @@
-//! The box with rounded edges: with `q = |p| - (half - r)`, `sd = |max(q, 0)| + min(max(q_x, q_y, q_z), 0) - r`.
+//! Box with rounded edges: with `q = |p| - (half - r)`, `sd = |max(q, 0)| + min(max(q_x, q_y, q_z), 0) - r`.
 //!
-//! Deeper than `r` (in the core `q <= 0`) the nearest face pushes; of equally near faces the first of x, y, z, and
-//! the positive one of a pair.
+//! Deeper than `r` (in the core `q <= 0`) the nearest face pushes. Of equally near faces the first of x, y, z
+//! is taken, and the positive face of a pair.
 
 use shape::{Matrix3, Vector3};
 
@@ -10,12 +10,12 @@ use super::{
 };
 use crate::ContactError;
 
-/// A box about the origin, all edges and corners rounded.
+/// Box about the origin with all edges and corners rounded.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RoundedBox {
     /// Half extents, rounding included, m.
     pub half: [f64; 3],
-    /// Rounding radius, from 0 to the least half extent, m.
+    /// Rounding radius, from 0 to the smallest half extent, m.
     pub radius: f64,
 }
 
@@ -62,7 +62,7 @@ impl Shape for RoundedBox {
         outline::mirrored(outline::octant().iter().map(|d| core + d * self.radius).collect(), [true; 3])
     }
 
-    /// Of a box that closes along one of its axes, roundings included.
+    /// Returns the area of the face, roundings included, of a box that moves along one of its axes.
     fn face_area(&self, along: &Vector3) -> Option<f64> {
         let closes = (0..3).find(|&a| along[a].abs() > 1.0 - 1e-9)?;
         Some((0..3).filter(|&a| a != closes).map(|a| 2.0 * self.half[a]).product())
@@ -76,7 +76,7 @@ impl Shape for RoundedBox {
     }
 }
 
-/// `q`, and the length of `max(q, 0)`: none in the core.
+/// Returns `q` and the length of `max(q, 0)`; no length in the core.
 #[inline]
 fn beyond_core(half: [f64; 3], radius: f64, p: &Vector3) -> (Vector3, Option<f64>) {
     let q = p.abs() - Vector3::from(half).add_scalar(-radius);
@@ -108,7 +108,7 @@ fn foot(half: [f64; 3], radius: f64, p: &Vector3) -> (f64, Vector3) {
     }
 }
 
-/// `(D - n n^T) / |max(q, 0)|` with `D` the axes along which `q > 0`; zero in the core.
+/// Returns `(D - n n^T) / |max(q, 0)|` with `D` the axes along which `q > 0`; zero in the core.
 #[inline]
 fn hessian(half: [f64; 3], radius: f64, p: &Vector3) -> Matrix3 {
     let (q, length) = beyond_core(half, radius, p);

@@ -1,11 +1,11 @@
-//! The ball: `sd = |p| - r`, Hessian `(I - n n^T) / |p|`. At the centre the gradient is +z and the Hessian zero.
+//! Ball: `sd = |p| - r`, Hessian `(I - n n^T) / |p|`. At the centre the gradient is +z and the Hessian zero.
 
 use shape::{Matrix3, Vector3};
 
 use super::{Entry, MEDIAL, RADIUS, Shape, ToolShapeEntry, outline, size};
 use crate::ContactError;
 
-/// A ball about the origin.
+/// Ball about the origin.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sphere {
     /// Radius, m.
