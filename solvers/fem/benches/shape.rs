@@ -1,5 +1,5 @@
-//! The shape stage: volume rows of boxes of about 6,000 tet4, 6,000 tet10 and 1,000 hex20, and rows at 1,331
-//! points of the tet4 box. Not covered: surface and flux rows, points outside.
+//! Benchmark of the shape stage: volume rows of boxes of about 6,000 tet4, 6,000 tet10 and 1,000 hex20, and
+//! rows at 1,331 points of the tet4 box. Surface and flux rows and points outside are not covered.
 
 use std::hint::black_box;
 

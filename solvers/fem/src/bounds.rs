@@ -1,8 +1,8 @@
-//! Boxes that surely hold a cell or a facet, curved or not.
+//! Boxes that are certain to contain a cell or a facet, curved or not.
 
 use geometry::{Facet, Mesh, Point3};
 
-/// An axis-parallel box, m.
+/// Axis-parallel box, m.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Bounds {
     pub(crate) min: [f64; 3],
@@ -33,7 +33,7 @@ impl Bounds {
         (0..3).map(|i| (self.max[i] - self.min[i]).powi(2)).sum::<f64>().sqrt()
     }
 
-    /// Wider by `margin` (m) on every side.
+    /// Returns the box enlarged by `margin` (m) on every side.
     fn grown(mut self, margin: f64) -> Bounds {
         for i in 0..3 {
             self.min[i] -= margin;
@@ -52,12 +52,13 @@ impl Bounds {
     }
 }
 
-/// A box around one cell.
+/// Returns a box that contains one cell.
 ///
-/// A quadratic map is the (tri)linear map of its corners plus, per edge, the deviation of the mid-edge node from
-/// the middle times a function between 0 and 1. Those functions sum to at most 3/2 on a tet (`4 sum L_a L_b`) and
-/// 3 on a hexahedron (each axis' four to at most 1), so corners plus that many largest deviations bound the cell.
-/// Grown by 1e-9 of the diagonal, so that rounding leaves no gap between cells.
+/// A quadratic map is the (tri)linear map of its corners plus, per edge, the deviation of the mid-edge node
+/// from the middle times a function between 0 and 1. These functions sum to at most 3/2 on a tet
+/// (`4 sum L_a L_b`) and 3 on a hexahedron (the four of each axis sum to at most 1). The corners plus that
+/// many largest deviations therefore bound the cell. The box is enlarged by 1e-9 of its diagonal, so that
+/// rounding leaves no gap between cells.
 pub(crate) fn cell_bounds(mesh: &Mesh, cell: usize) -> Bounds {
     let kind = mesh.kind(cell);
     let local: [usize; 20] = std::array::from_fn(|i| i);
@@ -72,7 +73,8 @@ pub(crate) fn cell_bounds(mesh: &Mesh, cell: usize) -> Bounds {
     )
 }
 
-/// A box around one facet, by the argument of [`cell_bounds`]: 4/3 on a triangle, 2 on a quadrilateral.
+/// Returns a box that contains one facet, by the argument of [`cell_bounds`]: 4/3 on a triangle, 2 on a
+/// quadrilateral.
 pub(crate) fn facet_bounds(mesh: &Mesh, facet: Facet) -> Bounds {
     const EDGES: [[usize; 2]; 4] = [[0, 1], [1, 2], [2, 3], [3, 0]];
     const TRIANGLE: [[usize; 2]; 3] = [[0, 1], [1, 2], [2, 0]];

@@ -1,4 +1,4 @@
-//! The point of the mesh surface nearest to a point outside.
+//! Point of the mesh surface nearest to a point outside.
 
 use geometry::{Facet, Mesh, Point3, Vector3};
 
@@ -7,7 +7,7 @@ use crate::face::{Face, into_cell, is_triangle, with_face};
 use crate::locate::Place;
 use crate::map::Nodes;
 
-/// The boundary facets of a mesh with their boxes.
+/// Boundary facets of a mesh with their boxes.
 pub(crate) struct Surface<'a> {
     mesh: &'a Mesh,
     facets: Vec<(Facet, Bounds)>,
@@ -19,11 +19,13 @@ impl<'a> Surface<'a> {
         Surface { mesh, facets }
     }
 
-    /// The nearest place on the surface and its distance (m). Exact for flat facets; on a curved one the nearest
-    /// of the stationary points reached from its middle and the middles of its edges.
+    /// Returns the nearest place on the surface and its distance (m). The result is exact for flat facets.
+    /// For a curved facet it is the nearest of the stationary points reached from the middle of the facet and
+    /// the middles of its edges.
     pub(crate) fn closest(&self, p: &Point3) -> (Place, f64) {
         let mut best = (Place { cell: 0, xi: [0.0; 3] }, f64::INFINITY);
-        // The box that is nearest first: its facet bounds the distance well and spares most of the others.
+        // The facet with the nearest box comes first: it bounds the distance well and excludes most other
+        // facets.
         let first = (0..self.facets.len())
             .min_by(|&a, &b| self.facets[a].1.distance(p).total_cmp(&self.facets[b].1.distance(p)));
         for index in first.into_iter().chain(0..self.facets.len()) {
@@ -41,7 +43,7 @@ impl<'a> Surface<'a> {
     }
 }
 
-/// Reference coordinates and distance of the point of one facet nearest to `p`.
+/// Returns reference coordinates and distance (m) of the point of one facet nearest to `p`.
 fn closest_on_facet(mesh: &Mesh, facet: Facet, p: &Point3) -> ([f64; 2], f64) {
     let kind = mesh.kind(facet.cell as usize).face_kind();
     with_face!(kind, F, N => {
@@ -75,7 +77,7 @@ fn closest_on_facet(mesh: &Mesh, facet: Facet, p: &Point3) -> ([f64; 2], f64) {
     })
 }
 
-/// Gauss-Newton with step halving on `|gap(s)|^2`, unconstrained.
+/// Minimises `|gap(s)|^2` by Gauss-Newton with step halving, unconstrained.
 fn descend(
     start: [f64; 2],
     gap: &impl Fn([f64; 2]) -> Vector3,
@@ -108,7 +110,7 @@ fn descend(
     s
 }
 
-/// The same along the edge from corner `a` to corner `b`, clamped to it.
+/// Minimises along the edge from corner `a` to corner `b` in the same way, clamped to the edge.
 fn descend_edge(
     a: [f64; 2],
     b: [f64; 2],

@@ -1,4 +1,4 @@
-//! One list of properties, held by every element and every face.
+//! Properties shared by every element and every face.
 
 use geometry::CellKind;
 use proptest::prelude::*;
@@ -6,7 +6,7 @@ use proptest::prelude::*;
 use crate::face::{Face, into_cell, is_triangle, with_face};
 use geometry::element::{Element, centre, excess, nodes, with_element};
 
-/// A point inside the reference cell of a kind, from three numbers in (0, 1).
+/// Maps three numbers in (0, 1) to a point inside the reference cell of a kind.
 fn inside(kind: CellKind, r: [f64; 3]) -> [f64; 3] {
     let corners = &nodes(kind)[..kind.corner_count()];
     let mix = |t: f64, a: [f64; 3], b: [f64; 3]| std::array::from_fn(|i| a[i] + t * (b[i] - a[i]));
@@ -76,12 +76,13 @@ proptest! {
             prop_assert!(excess(kind, xi) <= 1e-15);
             with_element!(kind, E, N => {
                 let (n, dn) = (E::shape(xi), E::shape_grad(xi));
-                // Partition of unity; 20 terms of size 1, a few last bits each.
+                // Partition of unity: 20 terms of size 1, with a few last bits of error each.
                 prop_assert!((n.iter().sum::<f64>() - 1.0).abs() < 1e-14);
                 for k in 0..3 {
                     prop_assert!(dn.iter().map(|d| d[k]).sum::<f64>().abs() < 1e-13);
                 }
-                // Gradients: central differences of cubics with step h err by h^2 |N'''| / 6 + eps / h < 1e-9.
+                // Gradients: central differences of cubics with step h err by h^2 |N'''| / 6 + eps / h <
+                // 1e-9.
                 let h = 1e-5;
                 for k in 0..3 {
                     let (mut up, mut down) = (xi, xi);

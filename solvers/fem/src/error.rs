@@ -1,9 +1,9 @@
 use shape::ShapeError;
 
-/// What keeps a table from being built.
+/// Reason why a table cannot be built.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum FemError {
-    /// A cell that is turned inside out or flat at one of the points asked for.
+    /// A cell is inverted or degenerate at one of the requested points.
     #[error(
         "cell {element} is inverted or degenerate: det J = {det_j:e} m^3 at one of its points (must be > 0)"
     )]
@@ -13,7 +13,7 @@ pub enum FemError {
         /// Determinant of the Jacobian `dx/dxi`, m^3.
         det_j: f64,
     },
-    /// A facet without area at one of its points.
+    /// A facet has no area at one of its points.
     #[error("face {face} of cell {cell} has no area: |dx/ds x dx/dt| = {area:e} m^2 at one of its points")]
     FlatFacet {
         /// Cell index.
@@ -23,7 +23,7 @@ pub enum FemError {
         /// Norm of the cross product of the tangents, m^2.
         area: f64,
     },
-    /// A facet that the mesh does not have.
+    /// The mesh does not have the facet.
     #[error("face {face} of cell {cell} does not exist (the mesh has {cells} cells)")]
     NoSuchFacet {
         /// Cell index.
@@ -33,38 +33,38 @@ pub enum FemError {
         /// Number of cells.
         cells: usize,
     },
-    /// A number of points for which there is no rule.
+    /// There is no rule with that number of points.
     #[error("no quadrature rule of {points} {counted} for {kind}; there are {known}")]
     NoRule {
         /// Cell or face kind.
         kind: &'static str,
-        /// The number asked for.
+        /// Requested number.
         points: usize,
-        /// What the number counts: points in all, or points along each axis.
+        /// Meaning of the number: points in all, or points along each axis.
         counted: &'static str,
-        /// The numbers there are.
+        /// Available numbers.
         known: String,
     },
-    /// A point with a coordinate that is not a finite number.
+    /// A point has a coordinate that is not finite.
     #[error("point {point} has a coordinate that is not finite")]
     NotFinite {
-        /// Index into the points asked for.
+        /// Index into the requested points.
         point: usize,
     },
-    /// A point that no cell contains.
+    /// No cell contains the point.
     #[error(
         "point {point} at ({:e}, {:e}, {:e}) m lies outside the mesh, {distance:e} m from its surface",
         position[0], position[1], position[2]
     )]
     Outside {
-        /// Index into the points asked for.
+        /// Index into the requested points.
         point: usize,
-        /// Its position, m.
+        /// Position of the point, m.
         position: [f64; 3],
         /// Distance to the nearest point of the mesh surface, m.
         distance: f64,
     },
-    /// A table that fails its own checks.
+    /// A table fails its own checks.
     #[error(transparent)]
     Shape(#[from] ShapeError),
 }

@@ -1,7 +1,7 @@
 //! Finite elements: from a mesh to shape tables.
 //!
-//! tet4, tet10, hex8 and hex20 cells, in any mixture, curved or straight. A table is built once and knows nothing
-//! of what it is used for: stiffness, loads, boundary terms, probes and transfer all read the same rows.
+//! Cells are tet4, tet10, hex8 and hex20 in any mixture, curved or straight. A table is built once,
+//! independently of its use: stiffness, loads, boundary terms, probes and transfer all read the same rows.
 //! Everything is in the reference configuration, in metres.
 //!
 //! ```

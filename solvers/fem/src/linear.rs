@@ -1,12 +1,12 @@
-//! The linear mesh under a quadratic one.
+//! Linear mesh of a quadratic mesh.
 
 use geometry::Mesh;
 use shape::{Coarser, Rows, Unity};
 
 use crate::FemError;
 
-/// The corners of all cells and what their linear functions are at every node: one at a corner, halves at the middle of an edge. `None`
-/// for a mesh of linear cells alone.
+/// Returns the corners of all cells with the values of their linear functions at every node: 1 at a corner,
+/// 1/2 at the middle of an edge. Returns `None` for a mesh of linear cells alone.
 pub fn linear_nodes(mesh: &Mesh) -> Result<Option<Coarser>, FemError> {
     const NONE: u32 = u32::MAX;
     let nodes = mesh.points().len();
@@ -40,7 +40,7 @@ pub fn linear_nodes(mesh: &Mesh) -> Result<Option<Coarser>, FemError> {
         }
         offsets.push(columns.len());
     }
-    // A node of no cell has an empty row.
+    // A node without a cell has an empty row.
     let rows = Rows::new(places.len(), offsets, columns, values, Unity::NotPromised)?;
     Ok(Some(Coarser { rows, places }))
 }

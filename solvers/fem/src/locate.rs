@@ -1,4 +1,5 @@
-//! Which cell holds a point, and where in it: boxes on a grid, then the inverse of the isoparametric map.
+//! Search for the cell that contains a point, and the reference coordinates in it: boxes on a grid, then the
+//! inverse of the isoparametric map.
 
 use geometry::{CellKind, Mesh, Point3, Vector3};
 
@@ -6,11 +7,11 @@ use crate::bounds::{Bounds, cell_bounds};
 use crate::map::{Nodes, cofactors};
 use geometry::element::{self, Element, with_element};
 
-/// How far outside its reference cell a point may lie and still count as inside, in reference units: rounding
-/// leaves points of a face some 1e-15 outside both its cells.
+/// Largest distance outside its reference cell at which a point counts as inside, in reference units.
+/// Rounding leaves points of a face some 1e-15 outside both its cells.
 const INSIDE: f64 = 1e-9;
 
-/// A place in a mesh.
+/// Place in a mesh: cell and reference coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Place {
     pub(crate) cell: usize,
@@ -44,7 +45,7 @@ impl<'a> Locator<'a> {
         locator
     }
 
-    /// Counting sort of the cells into all bins that their boxes touch.
+    /// Sorts the cells into all bins that their boxes touch (counting sort).
     fn fill_bins(&mut self) {
         let mut counts = vec![0; self.bins.iter().product::<usize>() + 1];
         for cell in 0..self.boxes.len() {
@@ -81,7 +82,7 @@ impl<'a> Locator<'a> {
         ((share * self.bins[axis] as f64) as usize).min(self.bins[axis] - 1)
     }
 
-    /// The place of a point in the cell of lowest index that holds it, or `None` outside the mesh.
+    /// Returns the place of a point in the cell of lowest index that contains it, or `None` outside the mesh.
     pub(crate) fn find(&self, p: &Point3) -> Option<Place> {
         if !self.all.contains(p) {
             return None;
@@ -99,9 +100,10 @@ impl<'a> Locator<'a> {
         };
         candidates()
             .find_map(|cell| from(cell, element::centre(self.mesh.kind(cell))))
-            // In a strongly distorted cell Newton may leave from the middle and miss: try from near every node. Of
-            // 3000 hex20 (tet10) with all nodes shifted by up to 12 % (15 %) of the edge, 19 (104) held points that
-            // only this finds; none were left over.
+            // In a strongly distorted cell, Newton's method from the middle may leave the cell and miss: it
+            // is repeated from near every node. Of 3000 hex20 (tet10) with all nodes shifted by up to 12 %
+            // (15 %) of the edge, 19 (104) contained points that only the repetition finds; none were left
+            // over.
             .or_else(|| {
                 candidates().filter(|&cell| self.mesh.kind(cell) != CellKind::Tet4).find_map(|cell| {
                     let (kind, nodes) = (self.mesh.kind(cell), element::nodes(self.mesh.kind(cell)));
@@ -114,8 +116,8 @@ impl<'a> Locator<'a> {
     }
 }
 
-/// Solves `x(xi) = p` in one cell by Newton's method with step halving, from `start`. `None` if it leaves the
-/// neighbourhood of the reference cell, meets a singular Jacobian or stalls.
+/// Solves `x(xi) = p` in one cell by Newton's method with step halving, from `start`. Returns `None` if the
+/// iteration leaves the neighbourhood of the reference cell, meets a singular Jacobian or stalls.
 fn invert(mesh: &Mesh, cell: usize, p: &Point3, start: [f64; 3]) -> Option<[f64; 3]> {
     with_element!(mesh.kind(cell), E, N => newton::<E, N>(mesh, cell, p, start))
 }
@@ -141,7 +143,8 @@ fn newton<E: Element<N>, const N: usize>(
         loop {
             let trial = std::array::from_fn(|k| xi[k] + share * step[k]);
             let rest = target - x.offset(&E::shape(trial));
-            // A step this small squares to less than rounding: no test of the residual, which is noise by now.
+            // The square of a step this small is below rounding. The residual is noise by now and is not
+            // tested.
             if step.amax() < 1e-8 {
                 return Some(trial);
             }

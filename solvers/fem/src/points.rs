@@ -1,4 +1,4 @@
-//! Rows at given points: probes, transfer targets, places where stress is wanted.
+//! Rows at given points: probes, transfer targets, points of stress output.
 
 use geometry::{Mesh, Point3, Vector3};
 use rayon::prelude::*;
@@ -11,47 +11,52 @@ use crate::map::{Nodes, inverse, physical};
 use crate::volume::UNITY;
 use geometry::element::{Element, with_element};
 
-/// Points that the mesh does not hold, answered at the nearest point of its surface instead.
+/// Points outside the mesh, which were replaced by the nearest point of its surface.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Outside {
-    /// (index into the points asked for, distance to the mesh in metres), by ascending index.
+    /// Pairs (index into the requested points, distance to the mesh in metres), by ascending index.
     pub points: Vec<(usize, f64)>,
 }
 
 impl Outside {
-    /// The farthest point and its distance, m.
+    /// Returns the farthest point and its distance, m.
     pub fn farthest(&self) -> Option<(usize, f64)> {
         self.points.iter().copied().max_by(|a, b| a.1.total_cmp(&b.1))
     }
 }
 
-/// Values at points of the mesh (m), by the inverse of the isoparametric map. A point of several cells belongs to
-/// the one of lowest index. A point outside (by more than rounding) is an error naming its distance.
+/// Returns shape values at points of the mesh (m), by the inverse of the isoparametric map. A point on
+/// several cells belongs to the cell of lowest index.
+///
+/// # Errors
+///
+/// [`FemError::Outside`] with the distance, if a point is outside by more than rounding.
 pub fn point_rows(mesh: &Mesh, points: &[Point3]) -> Result<PointRows, FemError> {
     values(mesh, points, &inside(mesh, points)?)
 }
 
-/// Values and gradients (1/m) at points of the mesh, as [`point_rows`]. On a face, gradients are those of the
-/// cell of lowest index.
+/// Returns shape values and gradients (1/m) at points of the mesh, as [`point_rows`]. On a face, the
+/// gradients are those of the cell of lowest index.
 pub fn grad_rows(mesh: &Mesh, points: &[Point3]) -> Result<GradRows, FemError> {
     gradients(mesh, points, &inside(mesh, points)?)
 }
 
-/// As [`point_rows`], but points outside take the values at the nearest point of the mesh surface and are listed.
+/// Returns rows as [`point_rows`], but points outside take the values at the nearest point of the mesh
+/// surface and are listed.
 pub fn nearest_point_rows(mesh: &Mesh, points: &[Point3]) -> Result<(PointRows, Outside), FemError> {
     let (places, outside) = nearest(mesh, points)?;
     Ok((values(mesh, points, &places)?, outside))
 }
 
-/// As [`grad_rows`], but points outside take values and gradients at the nearest point of the mesh surface and
-/// are listed.
+/// Returns rows as [`grad_rows`], but points outside take values and gradients at the nearest point of the
+/// mesh surface and are listed.
 pub fn nearest_grad_rows(mesh: &Mesh, points: &[Point3]) -> Result<(GradRows, Outside), FemError> {
     let (places, outside) = nearest(mesh, points)?;
     Ok((gradients(mesh, points, &places)?, outside))
 }
 
-/// The cell that holds each point, or of which the nearest point of the surface is, with the distance to the mesh (m, 0
-/// inside).
+/// Returns the cell that contains each point, or the cell at the nearest point of the surface, with the
+/// distance to the mesh (m, 0 inside).
 pub fn nearest_cells(mesh: &Mesh, points: &[Point3]) -> Result<Vec<(usize, f64)>, FemError> {
     let (places, outside) = nearest(mesh, points)?;
     let mut found: Vec<(usize, f64)> = places.iter().map(|place| (place.cell, 0.0)).collect();
@@ -82,7 +87,7 @@ fn nearest(mesh: &Mesh, points: &[Point3]) -> Result<(Vec<Place>, Outside), FemE
     Ok((places, Outside { points: outside }))
 }
 
-/// One place per point, in parallel; the order of the result is that of the points.
+/// Finds one place per point, in parallel; the order of the result is that of the points.
 fn find(mesh: &Mesh, points: &[Point3]) -> Result<Vec<Option<Place>>, FemError> {
     if let Some(point) = points.iter().position(|p| !p.coords.iter().all(|c| c.is_finite())) {
         return Err(FemError::NotFinite { point });
@@ -119,7 +124,7 @@ fn gradients(mesh: &Mesh, points: &[Point3], places: &[Place]) -> Result<GradRow
     Ok(GradRows::new(points.to_vec(), rows, grads)?)
 }
 
-/// Row starts and nodes: each row holds its cell's nodes, in the cell's order.
+/// Returns row starts and nodes: each row has the nodes of its cell, in the cell's order.
 fn pattern(mesh: &Mesh, places: &[Place]) -> (Vec<usize>, Vec<u32>) {
     let mut offsets = vec![0];
     let mut nodes = Vec::new();

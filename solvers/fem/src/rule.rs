@@ -1,15 +1,15 @@
-//! Which quadrature each kind of cell and face uses, by name or by number of points.
+//! Quadrature of each kind of cell and face, by name or by number of points.
 
 use geometry::quadrature::{self, Parts, Rule, TET_RULES, TRI_RULES};
 use geometry::{CellKind, FaceKind};
 
 use crate::FemError;
 
-/// Most Gauss points along an axis: beyond it the count is a typing error rather than a wish.
+/// Largest number of Gauss points along an axis; a larger number is taken for a typing error.
 const MOST_PER_AXIS: usize = 16;
 
-/// One volume quadrature per cell kind: points per cell for tets (one of [`TET_RULES`]), points along each axis
-/// for hexahedra (1 to 16).
+/// Volume quadrature for each kind of cell: points per cell for tets (one of [`TET_RULES`]), points along
+/// each axis for hexahedra (1 to 16).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct VolumeRule {
     tet4: usize,
@@ -19,15 +19,20 @@ pub struct VolumeRule {
 }
 
 impl VolumeRule {
-    /// What integrates the stiffness of an affine cell exactly: tet4 1 point, tet10 4, hex8 2 x 2 x 2,
-    /// hex20 3 x 3 x 3 (full integration).
+    /// Full integration, exact for the stiffness of an affine cell: tet4 1 point, tet10 4, hex8 2 x 2 x 2,
+    /// hex20 3 x 3 x 3.
     pub const STANDARD: VolumeRule = VolumeRule { tet4: 1, tet10: 4, hex8: 2, hex20: 3 };
 
-    /// One order more and better, for error norms against solutions that the cells cannot hold: tet4 14 points
-    /// (degree 5), tet10 24 (degree 6), hex8 3 x 3 x 3, hex20 4 x 4 x 4.
+    /// Integration of at least one order more, for error norms against solutions that the cells cannot
+    /// represent: tet4 14 points (degree 5), tet10 24 (degree 6), hex8 3 x 3 x 3, hex20 4 x 4 x 4.
     pub const FINE: VolumeRule = VolumeRule { tet4: 14, tet10: 24, hex8: 3, hex20: 4 };
 
-    /// The same choice but for one kind: `points` per cell (tets) or along each axis (hexahedra).
+    /// Returns the rule with another number for one kind: `points` per cell (tets) or along each axis
+    /// (hexahedra).
+    ///
+    /// # Errors
+    ///
+    /// [`FemError::NoRule`] if there is no such rule.
     pub fn with(self, kind: CellKind, points: usize) -> Result<VolumeRule, FemError> {
         check(kind.name(), kind.is_tet(), points, &TET_RULES)?;
         Ok(match kind {
@@ -63,8 +68,8 @@ impl VolumeRule {
     }
 }
 
-/// One surface quadrature per face kind: points per face for triangles (one of [`TRI_RULES`]), points along each
-/// axis for quadrilaterals (1 to 16).
+/// Surface quadrature for each kind of face: points per face for triangles (one of [`TRI_RULES`]), points
+/// along each axis for quadrilaterals (1 to 16).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SurfaceRule {
     tri3: usize,
@@ -74,15 +79,20 @@ pub struct SurfaceRule {
 }
 
 impl SurfaceRule {
-    /// What integrates a traction of the face's own order exactly on a flat straight-sided face: tri3 3 points,
-    /// tri6 6, quad4 2 x 2, quad8 3 x 3.
+    /// Integration that is exact for a traction of the face's own order on a flat straight-sided face: tri3 3
+    /// points, tri6 6, quad4 2 x 2, quad8 3 x 3.
     pub const STANDARD: SurfaceRule = SurfaceRule { tri3: 3, tri6: 6, quad4: 2, quad8: 3 };
 
-    /// For tractions that are no polynomial of low order: tri3 7 points (degree 5), tri6 16 (degree 8),
-    /// quad4 4 x 4, quad8 5 x 5.
+    /// Integration for tractions that are not polynomials of low order: tri3 7 points (degree 5), tri6 16
+    /// (degree 8), quad4 4 x 4, quad8 5 x 5.
     pub const FINE: SurfaceRule = SurfaceRule { tri3: 7, tri6: 16, quad4: 4, quad8: 5 };
 
-    /// The same choice but for one kind: `points` per face (triangles) or along each axis (quadrilaterals).
+    /// Returns the rule with another number for one kind: `points` per face (triangles) or along each axis
+    /// (quadrilaterals).
+    ///
+    /// # Errors
+    ///
+    /// [`FemError::NoRule`] if there is no such rule.
     pub fn with(self, kind: FaceKind, points: usize) -> Result<SurfaceRule, FemError> {
         check(face_name(kind), is_triangle(kind), points, &TRI_RULES)?;
         Ok(match kind {
@@ -108,7 +118,7 @@ impl SurfaceRule {
         }
     }
 
-    /// The same on parts of a face.
+    /// Returns the rule on parts of a face.
     pub(crate) fn divided(&self, kind: FaceKind, parts: Parts) -> Result<Rule<2>, FemError> {
         let whole = self.rule(kind)?;
         Ok(if is_triangle(kind) { parts.tri(&whole) } else { parts.quad(&whole) })

@@ -14,14 +14,14 @@ use crate::{
     nearest_grad_rows, nearest_point_rows, outline_rows, pressure_rows, regions, surface_rows, volume_rows,
 };
 
-/// Elements of a mesh, whose nodes are the method's.
+/// Elements of a mesh, whose nodes are the nodes of the method.
 pub struct Elements {
     mesh: Arc<Mesh>,
     rule: VolumeRule,
 }
 
 impl Elements {
-    /// The cells of a mesh with their quadrature.
+    /// Makes a source from the cells of a mesh with their quadrature.
     pub fn new(mesh: Arc<Mesh>, rule: VolumeRule) -> Elements {
         Elements { mesh, rule }
     }
@@ -32,8 +32,9 @@ impl RowSource for Elements {
         &self.mesh
     }
 
-    /// The edge of a cube of the mean cell's volume, six tetrahedra to a cube. A size from the number of nodes would not do: on
-    /// coarse meshes it falls more slowly than the cells and flatters the observed order by up to 15 %.
+    /// Returns the edge of a cube with the mean cell's volume, counting six tetrahedra to a cube, m. A size
+    /// derived from the number of nodes is not suitable: on coarse meshes it decreases more slowly than the
+    /// cells and improves the observed order by up to 15 %.
     fn spacing(&self, volume: &VolumeRows) -> f64 {
         let cubes: f64 = (0..self.mesh.cell_count())
             .map(|c| if self.mesh.kind(c).is_tet() { 1.0 / 6.0 } else { 1.0 })
@@ -77,9 +78,10 @@ impl RowSource for Elements {
         Ok(surface_rows(&self.mesh, facets, &SurfaceRule::FINE)?)
     }
 
-    /// Quadratic triangles in 4 x 4 parts: at the corners of Saint-Venant's square section, where derivatives have no bound, a rule
-    /// of any degree loses h^3, as much as a quadratic element's displacement. On 2 x 2 squares of two faces each tet10 was
-    /// 3.4 % farther off, and is 0.05 % now.
+    /// Divides quadratic triangles into 4 x 4 parts. At the corners of Saint-Venant's square section, where
+    /// derivatives are unbounded, a rule of any degree loses h^3, as much as the displacement of a quadratic
+    /// element. On 2 x 2 squares of two faces each, the error of tet10 was larger by 3.4 %; with the parts it
+    /// is larger by 0.05 %.
     fn field_surface(&self, facets: &[Facet]) -> Result<SurfaceRows, SourceError> {
         let parts = |facet: &Facet| match self.mesh.kind(facet.cell as usize).face_kind() {
             FaceKind::Tri6 => Parts::Inside(4),
@@ -89,16 +91,17 @@ impl RowSource for Elements {
         Ok(divided_surface_rows(&self.mesh, facets, &SurfaceRule::FINE, &parts)?)
     }
 
-    /// 3 points per linear triangle and 2 x 2 per quadrilateral (on a kidney of 1331 nodes between two jaws, more change the
-    /// force by 0.1 %), 16 and 5 x 5 per quadratic face (with 3 x 3 on hex20 of 3519 nodes the force was 1.1 % lower where the
-    /// jaw's edge crosses the faces).
+    /// Uses 3 points per linear triangle and 2 x 2 per linear quadrilateral, 16 and 5 x 5 per quadratic face.
+    /// On a kidney of 1331 nodes between two jaws, more points per linear face change the force by 0.1 %.
+    /// With 3 x 3 on hex20 of 3519 nodes the force was 1.1 % lower, because the jaw's edge crosses the faces.
     fn contact_surface(&self, parts: &[Parts]) -> Result<SurfaceRows, SourceError> {
         let quadratic = self.mesh.uniform_kind().is_some_and(|kind| kind.order() == 2);
         let rule = if quadratic { SurfaceRule::FINE } else { SurfaceRule::STANDARD };
         Ok(divided_surface_rows(&self.mesh, &self.mesh.boundary(), &rule, parts)?)
     }
 
-    /// A row of a node for each vertex, of all nodes of a facet for its middle.
+    /// Returns one row per vertex with a single node, and one row per facet with all its nodes, at its
+    /// middle.
     fn outline(&self, facets: &[Facet]) -> Result<PointRows, SourceError> {
         Ok(outline_rows(&self.mesh, facets)?)
     }
@@ -111,7 +114,8 @@ impl RowSource for Elements {
         SurfaceRule::FINE.points(FaceKind::Tri3)
     }
 
-    /// A coarse mesh is smaller than its curved body: points outside take the value at the nearest point of its surface.
+    /// Evaluates at points; a point outside takes the value at the nearest point of the mesh surface, because
+    /// a coarse mesh is smaller than its curved body.
     fn at_points(&self, points: &[Point3]) -> Result<(PointRows, usize), SourceError> {
         let (rows, outside) = nearest_point_rows(&self.mesh, points)?;
         Ok((rows, outside.points.len()))

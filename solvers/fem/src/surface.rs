@@ -10,14 +10,19 @@ use crate::volume::UNITY;
 use crate::{FemError, SurfaceRule};
 use geometry::element::{Element, with_element};
 
-/// Values, weights `w |dx/ds x dx/dt|` (m^2) and outward unit normals at the points of every facet, in the order
-/// given. Curved faces count as they are. Rows hold the facet's own nodes, in the order of
-/// [`Mesh::facet_nodes`]: no other node of the cell counts on the facet.
+/// Returns shape values, weights `w |dx/ds x dx/dt|` (m^2) and outward unit normals at the points of every
+/// facet, in the order given. Curved faces are integrated as they are. Rows have the facet's own nodes, in
+/// the order of [`Mesh::facet_nodes`]: the functions of all other nodes of the cell vanish on the facet.
+///
+/// # Errors
+///
+/// [`FemError::NoSuchFacet`] or [`FemError::FlatFacet`] for an invalid facet.
 pub fn surface_rows(mesh: &Mesh, facets: &[Facet], rule: &SurfaceRule) -> Result<SurfaceRows, FemError> {
     divided_surface_rows(mesh, facets, rule, &[])
 }
 
-/// As [`surface_rows`], with points on parts of the facets: parts for each, or none for whole facets.
+/// Returns rows as [`surface_rows`], with points on parts of the facets: `parts` for each facet, or empty for
+/// whole facets.
 pub fn divided_surface_rows(
     mesh: &Mesh,
     facets: &[Facet],
@@ -47,7 +52,7 @@ pub fn divided_surface_rows(
     Ok(SurfaceRows::new(PointRows::new(table.points, rows)?, table.weights, table.normals)?)
 }
 
-/// Values at the nodes of some facets, in ascending order, and then at the middle of each.
+/// Returns shape values at the nodes of the facets, in ascending order, and then at the middle of each facet.
 pub fn outline_rows(mesh: &Mesh, facets: &[Facet]) -> Result<PointRows, FemError> {
     let mut table = Table::new();
     for node in mesh.facet_group_nodes(facets) {
@@ -66,8 +71,8 @@ pub fn outline_rows(mesh: &Mesh, facets: &[Facet]) -> Result<PointRows, FemError
     Ok(PointRows::new(table.points, rows)?)
 }
 
-/// As [`surface_rows`], but each row holds all nodes of the facet's cell, in the cell's order, with gradients
-/// (1/m): the boundary stress depends on them all.
+/// Returns rows as [`surface_rows`], but each row has all nodes of the facet's cell, in the cell's order,
+/// with gradients (1/m), because the boundary stress depends on all of them.
 pub fn flux_rows(mesh: &Mesh, facets: &[Facet], rule: &SurfaceRule) -> Result<FluxRows, FemError> {
     let rules = rules(rule)?;
     let mut table = Table::new();
@@ -136,7 +141,7 @@ impl Table {
     }
 }
 
-/// One rule per face kind, by `FaceKind as usize`.
+/// Returns one rule per face kind, indexed by `FaceKind as usize`.
 fn rules(rule: &SurfaceRule) -> Result<[Rule<2>; 4], FemError> {
     Ok([
         rule.rule(FaceKind::Tri3)?,
@@ -146,7 +151,7 @@ fn rules(rule: &SurfaceRule) -> Result<[Rule<2>; 4], FemError> {
     ])
 }
 
-/// The kind of a facet's cell, if the mesh has such a facet.
+/// Returns the kind of a facet's cell, if the mesh has such a facet.
 fn check(mesh: &Mesh, facet: Facet) -> Result<CellKind, FemError> {
     let cells = mesh.cell_count();
     let known =
@@ -166,7 +171,7 @@ fn facet_nodes<const N: usize>(mesh: &Mesh, facet: Facet) -> [u32; N] {
     nodes
 }
 
-/// `dx/ds` and `dx/dt` of a facet; their cross product points outwards.
+/// Returns `dx/ds` and `dx/dt` of a facet; their cross product points outwards.
 fn facet_tangents(mesh: &Mesh, facet: Facet, s: [f64; 2]) -> [Vector3; 2] {
     with_face!(mesh.kind(facet.cell as usize).face_kind(), F, N => {
         let x = Nodes::gather(mesh, &facet_nodes::<N>(mesh, facet));

@@ -10,17 +10,23 @@ use crate::map::{Nodes, inverse, physical};
 use crate::{FemError, VolumeRule};
 use geometry::element::{Element, Hex8, Tet4, with_element};
 
-/// Shape values of all elements sum to one within a few last bits (20 terms of size 1: some 1e-15).
+/// Tolerance of the sum of shape values, which is one within a few last bits (20 terms of size 1: some
+/// 1e-15).
 pub(crate) const UNITY: Unity = Unity::Within(1e-12);
 
-/// Cells per task: fixed, so that the work is split the same way at any thread count.
+/// Cells per task: fixed, so that the work is divided in the same way at any thread count.
 const CHUNK: usize = 512;
 
-/// Values, gradients (1/m) and weights `w det J` (m^3) at the quadrature points of every cell.
+/// Returns shape values, gradients (1/m) and weights `w det J` (m^3) at the quadrature points of every cell.
 ///
-/// Rows hold the cell's nodes in the cell's order. Parallel over cells, each writing its own rows: the bits do
-/// not depend on the number of threads. The first cell with `det J <= 0` at one of its points is an error; a
-/// quadratic cell can fold at a corner, between these points: [`geometry::quality::check`] looks there too.
+/// Rows have the cell's nodes in the cell's order. The cells are processed in parallel and each writes its
+/// own rows, so the bits do not depend on the number of threads.
+///
+/// # Errors
+///
+/// [`FemError::InvertedElement`] with the first cell that has `det J <= 0` at one of its points. A quadratic
+/// cell can also fold at a corner, between these points: [`geometry::quality::check`] examines the corners
+/// too.
 pub fn volume_rows(mesh: &Mesh, rule: &VolumeRule) -> Result<VolumeRows, FemError> {
     let tables = tabulate(mesh, rule)?;
     let cells = mesh.cell_count();
@@ -59,7 +65,7 @@ pub fn volume_rows(mesh: &Mesh, rule: &VolumeRule) -> Result<VolumeRows, FemErro
     }
     let results: Vec<Result<(), FemError>> =
         chunks.into_par_iter().map(|chunk| chunk.fill(mesh, &tables)).collect();
-    // In chunk order, so that the cell named does not depend on which thread was first.
+    // Errors are taken in chunk order, so that the reported cell does not depend on which thread was first.
     results.into_iter().collect::<Result<(), FemError>>()?;
 
     let rows = Rows::new(mesh.points().len(), offsets, nodes, values, UNITY)?;
@@ -67,7 +73,7 @@ pub fn volume_rows(mesh: &Mesh, rule: &VolumeRule) -> Result<VolumeRows, FemErro
     Ok(rows.laid_out(layout(mesh, rule))?)
 }
 
-/// What is known of the rows of a mesh.
+/// Returns the known structure of the rows of a mesh.
 fn layout(mesh: &Mesh, rule: &VolumeRule) -> Layout {
     match mesh.uniform_kind() {
         Some(CellKind::Tet4) => Layout::LinearTetrahedra,
@@ -76,31 +82,33 @@ fn layout(mesh: &Mesh, rule: &VolumeRule) -> Layout {
     }
 }
 
-/// Cell of every quadrature point of [`volume_rows`] with the same rule.
+/// Returns the cell of every quadrature point of [`volume_rows`] with the same rule.
 pub fn cell_of_point(mesh: &Mesh, rule: &VolumeRule) -> Vec<u32> {
     (0..mesh.cell_count())
         .flat_map(|cell| std::iter::repeat_n(cell as u32, rule.points(mesh.kind(cell))))
         .collect()
 }
 
-/// Region index of every quadrature point of [`volume_rows`] with the same rule.
+/// Returns the region index of every quadrature point of [`volume_rows`] with the same rule.
 pub fn regions(mesh: &Mesh, rule: &VolumeRule) -> Vec<u16> {
     (0..mesh.cell_count())
         .flat_map(|cell| std::iter::repeat_n(mesh.region(cell), rule.points(mesh.kind(cell))))
         .collect()
 }
 
-/// One dilation group per cell, for [`volume_rows`] with the same rule: mean dilatation (B-bar with one constant
-/// volume change per element; Nagtegaal, Parks & Rice 1974, Hughes 1980).
+/// Returns one dilation group per cell, for [`volume_rows`] with the same rule: mean dilation (B-bar with one
+/// constant volume change per element; Nagtegaal, Parks & Rice 1974, Hughes 1980).
 pub fn element_dilation(mesh: &Mesh, rule: &VolumeRule) -> Result<DilationGroups, FemError> {
     let points = (0..mesh.cell_count()).map(|cell| rule.points(mesh.kind(cell)));
     Ok(DilationGroups::of_cells(points)?)
 }
 
-/// Linear (tet4, hex8) shape values of each cell's corners at the points of [`volume_rows`] with the same rule, over
-/// the corner nodes only, numbered in the order of the mesh: the continuous pressure of Taylor-Hood elements
-/// (tet10/P1; Taylor & Hood 1973). A corner between several materials has a pressure in each; `alike` names
-/// that of each region, and is empty where all are of one.
+/// Returns the rows of the continuous pressure of Taylor-Hood elements (tet10/P1; Taylor & Hood 1973).
+///
+/// These are the linear (tet4, hex8) shape values of each cell's corners at the points of [`volume_rows`]
+/// with the same rule. Their nodes are the corner nodes only, numbered in the order of the mesh. A corner
+/// between several materials has a pressure in each; `alike` gives the material of each region, and is empty
+/// if all regions have the same material.
 pub fn pressure_rows(mesh: &Mesh, rule: &VolumeRule, alike: &[u16]) -> Result<Rows, FemError> {
     let materials = alike.iter().max().map_or(1, |&material| usize::from(material) + 1);
     let place = |cell: usize, node: u32| {
@@ -135,7 +143,7 @@ pub fn pressure_rows(mesh: &Mesh, rule: &VolumeRule, alike: &[u16]) -> Result<Ro
     Ok(Rows::new(count as usize, offsets, nodes, values, UNITY)?)
 }
 
-/// Shape values and reference gradients at the points of one kind's rule, one point after another.
+/// Shape values and reference gradients at the points of the rule for one kind, one point after another.
 #[derive(Default)]
 struct Table {
     weights: Vec<f64>,
@@ -143,7 +151,8 @@ struct Table {
     grads: Vec<[f64; 3]>,
 }
 
-/// One table per kind, by `CellKind as usize`; those of kinds that the mesh does not use stay empty.
+/// Tabulates one table per kind, indexed by `CellKind as usize`; tables of kinds that the mesh does not use
+/// stay empty.
 fn tabulate(mesh: &Mesh, rule: &VolumeRule) -> Result<[Table; 4], FemError> {
     let mut tables: [Table; 4] = Default::default();
     for kind in CellKind::ALL {
@@ -162,7 +171,7 @@ fn tabulate(mesh: &Mesh, rule: &VolumeRule) -> Result<[Table; 4], FemError> {
     Ok(tables)
 }
 
-/// The part of the arrays that one run of cells owns.
+/// Part of the arrays that belongs to one run of cells.
 struct Slots<'a> {
     cells: Range<usize>,
     points: &'a mut [Point3],
@@ -200,7 +209,7 @@ impl<'a> Slots<'a> {
         Ok(())
     }
 
-    /// Rows of one cell: the trip count `N` is fixed, nothing is allocated.
+    /// Fills the rows of one cell: the trip count `N` is fixed, and nothing is allocated.
     fn fill_cell<const N: usize>(&mut self, mesh: &Mesh, table: &Table) -> Result<(), FemError> {
         let element = self.cells.start;
         let list = &mesh.cell(element).as_chunks::<N>().0[0];

@@ -1,4 +1,4 @@
-//! Rows at given points: the inverse map finds every point of every cell, and says what lies outside.
+//! Rows at given points: the inverse map finds every point of every cell, and reports points outside.
 
 mod common;
 
@@ -12,7 +12,7 @@ fn positions(mesh: &Mesh) -> Vec<Vector3> {
     mesh.points().iter().map(|p| p.coords).collect()
 }
 
-/// Quadrature points lie anywhere in a cell, close to its curved faces too.
+/// Returns the quadrature points, which lie anywhere in a cell, also close to its curved faces.
 fn points_inside(mesh: &Mesh) -> Vec<Point3> {
     volume_rows(mesh, &many_points()).unwrap().points().to_vec()
 }
@@ -70,9 +70,9 @@ fn a_node_has_the_value_of_its_node() {
     }
 }
 
-/// Single cells whose nodes are all shifted by up to `amplitude` of the edge, with `det J > 0` all the same. Among
-/// them are hex20 and tet10 with points that Newton from the middle misses, and a hex20 (the 130th) with one that
-/// is missed from every start without step halving.
+/// Tests single cells whose nodes are all shifted by up to `amplitude` of the edge, with `det J > 0`. Some
+/// hex20 and tet10 among them have points that Newton's method from the middle misses. One hex20 (the 130th)
+/// has a point that is missed from every start without step halving.
 #[test]
 fn strongly_distorted_cells_are_searched_from_every_side() {
     let one =
@@ -93,7 +93,8 @@ fn strongly_distorted_cells_are_searched_from_every_side() {
                 .map(|&n| regular.points()[n as usize] + Vector3::from_fn(|_, _| amplitude * random()))
                 .collect();
             let mesh = Mesh::new(points, &[(kind, (0..kind.node_count() as u32).collect())]).unwrap();
-            // Folded at a node or at one of these points: not a cell. The draw goes on until 300 are.
+            // Folded at a node or at one of these points: not a valid cell. Cells are drawn until 300 are
+            // valid.
             let (Ok(_), Ok(volume)) = (geometry::quality::check(&mesh), volume_rows(&mesh, &many_points()))
             else {
                 continue;
@@ -171,7 +172,7 @@ fn the_nearest_point_answers_for_one_outside() {
 
 #[test]
 fn the_nearest_point_of_a_curved_body_lies_on_its_surface() {
-    // Quadratic cells miss the sphere of 20 mm by less than 0.1 mm.
+    // Quadratic cells differ from the sphere of 20 mm by less than 0.1 mm.
     for kind in [CellKind::Tet10, CellKind::Hex20] {
         let mesh = ball(kind);
         let points: Vec<Point3> = (0..200)
@@ -214,7 +215,7 @@ proptest! {
             let mesh = jittered(kind, seed);
             let found = point_rows(&mesh, &[p]).unwrap().rows().apply(&positions(&mesh))[0];
             prop_assert!((found - p.coords).norm() < 1e-13, "{kind:?}: {found} for {p}");
-            // The same point carried by an affine map keeps its values.
+            // The same point, mapped by an affine map, keeps its values.
             let (a, b) = (affine(kind), positions(&affine(kind)));
             let q = Point3::new(3.0 + r[0] + 0.3 * r[1], -1.0 + 0.7 * r[1] - 0.2 * r[2], 2.0 * r[2] + 0.1 * r[0]);
             let found = point_rows(&a, &[q]).unwrap().rows().apply(&b)[0];

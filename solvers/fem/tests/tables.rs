@@ -28,7 +28,7 @@ fn field_gradient(p: &Point3) -> Matrix3 {
     Matrix3::new(2.0 * x, -2.0 * z, -2.0 * y + 1.0, z, y, x, -y + 2.0, -x, 2.0 * z)
 }
 
-/// Positions come back, and the gradient of the position is the unit matrix: linear completeness.
+/// Positions are reproduced, and the gradient of the position is the unit matrix: linear completeness.
 fn check_linear(name: &str, mesh: &Mesh, rule: &VolumeRule) {
     let volume = volume_rows(mesh, rule).unwrap();
     let x: Vec<Vector3> = mesh.points().iter().map(|p| p.coords).collect();
@@ -36,7 +36,8 @@ fn check_linear(name: &str, mesh: &Mesh, rule: &VolumeRule) {
     for (found, p) in volume.rows().apply(&x).iter().zip(volume.points()) {
         assert!((found - p.coords).norm() < 1e-14 * far, "{name}: {found} for {p}");
     }
-    // Gradients err by eps |x| / h: the meshes have cells of 1/30 and more of their distance from the origin.
+    // The error of gradients is eps |x| / h: the meshes have cells of 1/30 and more of their distance from
+    // the origin.
     for h in volume.at().displacement_gradients(&x) {
         assert!((h - Matrix3::identity()).norm() < 1e-12, "{name}: {h}");
     }
@@ -97,7 +98,7 @@ fn curved_cells_come_near_the_ball_and_straight_ones_do_not() {
         let tolerance = if kind.order() == 2 { 4e-3 } else { 0.15 };
         assert!(dv < tolerance && da < tolerance, "{kind:?}: {dv:e} {da:e}");
         assert!(kind.order() == 2 || dv > 0.02, "{kind:?}: {dv:e}");
-        // Normals near the radius vector.
+        // Normals are close to the radius vector.
         for (n, p) in surface.normals().iter().zip(surface.points()) {
             let cosine = n.dot(&p.coords.normalize());
             assert!(cosine > if kind.order() == 2 { 0.98 } else { 0.8 }, "{kind:?}: {cosine}");
@@ -105,8 +106,8 @@ fn curved_cells_come_near_the_ball_and_straight_ones_do_not() {
     }
 }
 
-/// `sum w grad N_I = sum w N_I n` over the boundary, node by node: what makes a patch test pass. Exact when both
-/// rules are, as the fine ones are for curved cells too.
+/// `sum w grad N_I = sum w N_I n` over the boundary, node by node, which is the condition for passing a patch
+/// test. The equality is exact if both rules are, as the fine rules are for curved cells too.
 #[test]
 fn gauss_theorem_holds_for_every_node() {
     for (name, mesh) in all() {
@@ -216,7 +217,8 @@ fn inverted_and_flat_cells_are_named() {
         let bad = mesh.cell_count() - 2;
         let mut cells: Vec<(CellKind, Vec<u32>)> =
             (0..mesh.cell_count()).map(|c| (mesh.kind(c), mesh.cell(c).to_vec())).collect();
-        // Mirror images: tets with corners 0 and 1 swapped, hexahedra with top and bottom, mid-edges with them.
+        // Mirror images: tets with corners 0 and 1 exchanged, hexahedra with top and bottom, mid-edge nodes
+        // along with them.
         let swaps: &[(usize, usize)] = match kind {
             CellKind::Tet4 => &[(0, 1)],
             CellKind::Tet10 => &[(0, 1), (5, 6), (7, 8)],
@@ -269,7 +271,7 @@ fn facets_the_mesh_does_not_have_are_refused() {
 
 #[test]
 fn bits_do_not_depend_on_the_number_of_threads() {
-    // More cells than one task takes, so that tasks are shared out.
+    // More cells than one task takes, so that several tasks are used.
     let mesh = geometry::generate::box_mesh(
         CellKind::Tet10,
         Point3::origin(),

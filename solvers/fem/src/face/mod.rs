@@ -1,5 +1,5 @@
-//! The faces of the elements: shape functions of two coordinates, on the triangle (0,0), (1,0), (0,1) or the
-//! square `[-1, 1]^2`. Restricted to a face, an element is its face element.
+//! Faces of the elements: shape functions of two coordinates, on the triangle (0,0), (1,0), (0,1) or the
+//! square `[-1, 1]^2`. The restriction of an element to a face is the face element.
 
 mod quad4;
 mod quad8;
@@ -15,19 +15,19 @@ use geometry::{CellKind, FaceKind};
 
 use geometry::element;
 
-/// A Lagrange element of `N` nodes on a reference face.
+/// Lagrange element of `N` nodes on a reference face.
 pub(crate) trait Face<const N: usize> {
     /// Reference coordinates of the nodes, corners first.
     const NODES: [[f64; 2]; N];
 
-    /// Shape functions at `s`.
+    /// Returns the shape functions at `s`.
     fn shape(s: [f64; 2]) -> [f64; N];
 
-    /// Their gradients by `s`.
+    /// Returns the gradients of the shape functions with respect to `s`.
     fn shape_grad(s: [f64; 2]) -> [[f64; 2]; N];
 }
 
-/// Runs `$body` with `$F` the face type of a face kind and `$N` its number of nodes.
+/// Runs `$body` with `$F` as the face type of a face kind and `$N` as its number of nodes.
 macro_rules! with_face {
     ($kind:expr, $F:ident, $N:ident => $body:expr) => {
         match $kind {
@@ -47,13 +47,13 @@ macro_rules! with_face {
 }
 pub(crate) use with_face;
 
-/// True for the two triangles.
+/// Whether the kind is a triangle.
 pub(crate) fn is_triangle(kind: FaceKind) -> bool {
     kind.corner_count() == 3
 }
 
-/// Reference coordinates in the cell of the point `s` of one of its faces. Reference faces are flat, so the
-/// corners' (bi)linear functions carry one into the other for every order.
+/// Returns the reference coordinates in the cell of the point `s` of one of its faces. Reference faces are
+/// flat, so the (bi)linear functions of the corners map a face into the cell for every order.
 pub(crate) fn into_cell(kind: CellKind, face: usize, s: [f64; 2]) -> [f64; 3] {
     let nodes = element::nodes(kind);
     let corners = kind.faces()[face].iter();

@@ -1,16 +1,16 @@
-//! Meshes that the table tests share: every kind, straight and curved, and a mixture of all.
+//! Meshes shared by the table tests: every kind, straight and curved, and a mixture of all.
 #![allow(dead_code)]
 
 use geometry::generate::{Jitter, ball_mesh, box_mesh};
 use geometry::{CellKind, Facet, Mesh, Point3};
 
-/// The box [0, 2] x [0, 1] x [0, 1] with its inner corner nodes shifted.
+/// Returns the box [0, 2] x [0, 1] x [0, 1] with its inner corner nodes shifted.
 pub fn jittered(kind: CellKind, seed: u64) -> Mesh {
     let jitter = Some(Jitter { fraction: 0.2, seed });
     box_mesh(kind, Point3::origin(), Point3::new(2.0, 1.0, 1.0), [4, 2, 2], [1.0; 3], jitter).unwrap()
 }
 
-/// A box of cells with affine maps: sheared and stretched, off the origin.
+/// Returns a box of cells with affine maps: sheared and stretched, off the origin.
 pub fn affine(kind: CellKind) -> Mesh {
     box_mesh(kind, Point3::origin(), Point3::new(1.0, 1.0, 1.0), [2, 2, 2], [1.0; 3], None)
         .unwrap()
@@ -18,12 +18,12 @@ pub fn affine(kind: CellKind) -> Mesh {
         .unwrap()
 }
 
-/// A ball of radius 2 cm, curved cells for the quadratic kinds.
+/// Returns a ball of radius 2 cm, with curved cells for the quadratic kinds.
 pub fn ball(kind: CellKind) -> Mesh {
     ball_mesh(kind, 0.02, 3).unwrap()
 }
 
-/// One body of each kind side by side in one mesh, regions 0 to 3, cells of all kinds interleaved.
+/// Returns one body of each kind side by side in one mesh, regions 0 to 3, cells of all kinds interleaved.
 pub fn mixed() -> Mesh {
     let parts = CellKind::ALL.map(ball);
     let mut points = Vec::new();
@@ -43,7 +43,7 @@ pub fn mixed() -> Mesh {
     Mesh::new(points, &cells).unwrap().with_regions(regions, names)
 }
 
-/// Every mesh of the list, with a name.
+/// Returns every mesh of the list, with its name.
 pub fn all() -> Vec<(String, Mesh)> {
     let mut list = Vec::new();
     for kind in CellKind::ALL {
@@ -55,7 +55,7 @@ pub fn all() -> Vec<(String, Mesh)> {
     list
 }
 
-/// Middle of a facet's corners and of its cell's corners.
+/// Returns the middle of a facet's corners and of its cell's corners.
 pub fn middles(mesh: &Mesh, facet: Facet) -> (Point3, Point3) {
     let mean = |nodes: Vec<u32>| {
         let sum = nodes.iter().fold(shape::Vector3::zeros(), |s, &n| s + mesh.points()[n as usize].coords);
