@@ -1,5 +1,5 @@
-//! Pure bending from its scene file through the harness: errors and orders of every kind of method against their stored
-//! form, and what must hold of them whatever is stored.
+//! Pure bending from its scene file through the harness: errors and orders of every kind of method against
+//! stored tables, and conditions that must hold independently of these tables.
 
 #[path = "common/one_percent.rs"]
 mod one_percent;
@@ -39,7 +39,7 @@ fn run(records: &[Record], method: &str, poisson: f64, level: u32) -> Vec<Record
     records.iter().filter(own).cloned().collect()
 }
 
-/// A number for a table. What is below 1e-9 is rounding, which differs between machines.
+/// Formats a number for a table. Numbers below 1e-9 are rounding, which differs between machines.
 fn number(value: f64) -> String {
     if value.abs() < 1e-9 { "exact".into() } else { format!("{value:.4e}") }
 }
@@ -64,7 +64,7 @@ fn order(records: &[Record], method: &str, poisson: f64, quantity: &str) -> f64 
     check::order(&format!("order-{quantity}"), &levels.each_ref().map(Vec::as_slice)).unwrap()
 }
 
-/// Methods whose field holds the quadratic solution have no order: their error is rounding.
+/// Whether a method reproduces the quadratic solution. Its error is then rounding and has no order.
 fn is_exact(method: &str) -> bool {
     ["tet10", "hex20"].contains(&method)
 }
@@ -93,7 +93,7 @@ fn errors_and_orders_of_pure_bending() {
             }
         }
     }
-    // Linear tetrahedra lock near 1/2; one dilation per node or per cell cures it.
+    // Linear tetrahedra lock near 1/2; one dilation per node or per cell prevents this.
     assert!(l2("tet4", 0.495, 2) > 3.0 * l2("tet4", 0.3, 2));
     assert!(l2("tet4", 0.495, 2) > 3.0 * l2("tet4-nodal", 0.495, 2));
     assert!(l2("hex8", 0.495, 2) > 3.0 * l2("hex8-mean", 0.495, 2));

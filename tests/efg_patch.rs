@@ -1,5 +1,6 @@
-//! Patch tests of element-free Galerkin: gradients smoothed over cells or around vertices, with Nitsche's supports, pass to
-//! rounding at every dilatation; plain quadrature stays in its known band, and must not pretend otherwise.
+//! Patch tests of element-free Galerkin. Gradients smoothed over cells or around vertices, with Nitsche's
+//! supports, pass to rounding at every support scale. Plain quadrature stays within its known error range,
+//! which must not vanish.
 
 mod common;
 
@@ -11,7 +12,8 @@ use shape::{DilationGroups, TraceRows, VolumeRows};
 use shape::{Matrix3, Point3, Vector3};
 use statics::{Body, LinearProblem, Load, SolveError, Weak, WeakSupport};
 
-/// A cube of 20 mm, 5 x 5 x 5 cells of six tetrahedra, inner nodes jittered by a quarter of the spacing.
+/// A cube of 20 mm with 5 x 5 x 5 cells of six tetrahedra and inner nodes jittered by a quarter of the
+/// spacing.
 fn cube() -> Mesh {
     let low = Point3::new(0.01, -0.02, 0.005);
     let jitter = Some(Jitter { fraction: 0.25, seed: 3 });
@@ -24,12 +26,12 @@ fn approximation(mesh: &Mesh, dilatation: f64, kernel: Kernel) -> Approximation 
     Approximation::new(cloud.points, radii, kernel, Basis::Linear).unwrap()
 }
 
-/// What a volume quadrature is made of.
+/// Kind of volume quadrature.
 #[derive(Clone, Copy, Debug)]
 enum Rule {
     Gauss(usize),
     Cells(Smoothing),
-    /// With this stabilisation.
+    /// Node smoothing with the given stabilisation.
     Vertices(f64),
 }
 
@@ -56,7 +58,7 @@ impl Rule {
     }
 }
 
-/// What a patch test prescribes.
+/// Conditions that a patch test prescribes.
 #[derive(Clone, Copy, Debug)]
 enum Held {
     /// Displacements on all sides.
@@ -65,7 +67,7 @@ enum Held {
     OneSide,
 }
 
-/// Relative L2 errors of displacement and stress over the integration points.
+/// Returns the relative L2 errors of displacement and stress over the integration points.
 fn errors(
     mesh: &Mesh,
     mls: &Approximation,
@@ -92,7 +94,8 @@ fn errors(
     let tractions = surface.normals().iter().map(|n| sigma * n).collect();
     let loads = [Load::Traction { surface: &surface, values: tractions }];
     let trace = rule.trace(mesh, &held, face_points);
-    // Definite for every factor above 1 where the traction is made of what the energy integrates.
+    // Any factor above 1 gives a definite form if the traction is computed from the quantities that the
+    // energy integrates.
     let gamma = if trace.is_some() { 4.0 } else { 100.0 };
     let weak = [WeakSupport {
         flux: &flux,
@@ -135,8 +138,9 @@ fn cell_smoothing_with_nitsche_passes_at_every_dilatation() {
                         "dilatation {dilatation}, {face_points} per face, {support:?}, nu = {poisson}, \
                          projected {projected}: {shown}"
                     );
-                    // Two steps of refinement with the residual of the forms hold 1e-12 up to 0.495 (worst 2e-13);
-                    // at 0.4999 the bulk modulus is 3300 times the shear modulus and displacements reach 4e-12.
+                    // Two steps of refinement with the residual of the forms give 1e-12 up to 0.495 (worst
+                    // 2e-13). At 0.4999 the bulk modulus is 3300 times the shear modulus, and displacements
+                    // have errors of up to 4e-12.
                     let u = if poisson < 0.499 { 1e-12 } else { 1e-11 };
                     let stress = 1e-12;
                     assert!(errors[0] < u && errors[1] < stress, "see the last line");
@@ -146,7 +150,7 @@ fn cell_smoothing_with_nitsche_passes_at_every_dilatation() {
     }
 }
 
-/// Consistent integration of second order and node smoothing, with the dilation projected and without.
+/// Consistent integration of second order, and node smoothing, with and without projected dilation.
 #[test]
 fn the_other_conforming_rules_pass_with_nitsche_too() {
     let mesh = cube();
@@ -167,9 +171,10 @@ fn the_other_conforming_rules_pass_with_nitsche_too() {
                 println!(
                     "dilatation {dilatation}, {rule:?}, {support:?}, nu = {poisson}, projected {projected}: {shown}"
                 );
-                // Means around vertices leave soft modes that carry rounding 30 times as far as the cells' own gradients do, a
-                // bulk modulus of 100 shear moduli 40 times again: up to 3e-12 in displacement at dilatation 2.5 and 0.495,
-                // held on one side; 3e-13 at 1.6.
+                // Means around vertices leave soft modes, which amplify rounding 30 times as much as the
+                // cells' own gradients do. A bulk modulus of 100 shear moduli amplifies it 40 times again: up
+                // to 3e-12 in displacement at support scale 2.5 and 0.495, constrained on one side; 3e-13 at
+                // 1.6.
                 let soft = matches!(rule, Rule::Vertices(_)) && dilatation > 2.0 && poisson > 0.4;
                 let u = if soft { 1e-11 } else { 1e-12 };
                 assert!(errors[0] < u && errors[1] < 1e-12, "see the last line");
@@ -213,7 +218,7 @@ fn the_patch_test_sees_one_halved_support_and_one_lost_cell() {
     let mesh = cube();
     let mls = approximation(&mesh, 1.6, Kernel::CubicSpline(CubicSpline));
     let volume = CONSTANT.volume(&mls, &mesh, 1);
-    // Volume rows of one cloud, boundary rows of the same cloud with one support halved.
+    // Volume rows of one cloud, and boundary rows of the same cloud with one support radius halved.
     let mut radii: Vec<f64> = (0..mls.nodes().len()).map(|n| mls.radius(n)).collect();
     radii[43] *= 0.5;
     let spoiled =

@@ -1,5 +1,5 @@
-//! Element-free Galerkin of second order: linearly smoothed gradients pass the quadratic patch test to rounding, which no
-//! Gauss rule does.
+//! Element-free Galerkin of second order: linearly smoothed gradients pass the quadratic patch test to
+//! rounding, as no Gauss rule does.
 
 mod common;
 
@@ -12,7 +12,7 @@ use shape::VolumeRows;
 use shape::{Point3, Vector3};
 use statics::{Body, LinearProblem, Load, Weak, WeakSupport};
 
-/// Relative errors of displacement and stress over the integration points.
+/// Returns the relative errors of displacement and stress over the integration points.
 fn errors(dilatation: f64, gauss: Option<usize>, face_points: usize, poisson: f64) -> [f64; 2] {
     let exact = exact_by_name("quadratic-patch", &Elastic::new(20e3, poisson).unwrap().into(), &[]).unwrap();
     let jitter = Some(Jitter { fraction: 0.2, seed: 1 });
@@ -66,7 +66,7 @@ fn linear_smoothing_passes_the_quadratic_patch_test() {
         println!("dilatation {dilatation}, {face_points} per face, nu = {poisson}: {u:.1e} / {stress:.1e}");
         assert!(u < 1e-12 && stress < 1e-11, "see the last line");
     }
-    // Three points per face are of degree 2 only, and Gauss points see rational functions.
+    // Three points per face have only degree 2, and Gauss points sample rational functions.
     for (gauss, face_points) in [(None, 3), (Some(4), 6), (Some(46), 6)] {
         let [u, _] = errors(2.0, gauss, face_points, 0.3);
         assert!(u > 1e-6, "{gauss:?}, {face_points} per face: {u:e}");

@@ -1,5 +1,5 @@
 //! Patch tests of finite elements: an affine field on irregular meshes, prescribed by displacement and by
-//! traction, comes out to rounding, in displacement, stress and energy.
+//! traction, is reproduced to rounding in displacement, stress and energy.
 
 mod common;
 
@@ -10,7 +10,7 @@ use shape::{DilationGroups, VolumeRows};
 use shape::{FixedDof, Vector3};
 use statics::{Body, LinearProblem, Load, SolveError, Weak, WeakSupport};
 
-/// Volumetric treatments that every element must pass with.
+/// Volumetric treatments with which every element must pass.
 const TREATMENTS: [&str; 3] = ["standard", "element-mean", "nodal-mean"];
 
 fn groups(treatment: &str, mesh: &Mesh, volume: &VolumeRows) -> Option<DilationGroups> {
@@ -21,7 +21,7 @@ fn groups(treatment: &str, mesh: &Mesh, volume: &VolumeRows) -> Option<DilationG
     }
 }
 
-/// Errors of displacement, stress and strain energy.
+/// Returns the errors of displacement, stress and strain energy.
 fn errors(mesh: &Mesh, treatment: &str, poisson: f64, support: &Support) -> Result<[f64; 3], SolveError> {
     let volume = fem::volume_rows(mesh, &VolumeRule::STANDARD).unwrap();
     let dilation = groups(treatment, mesh, &volume);
@@ -56,9 +56,9 @@ fn errors(mesh: &Mesh, treatment: &str, poisson: f64, support: &Support) -> Resu
         }
         Support::Nitsche => {
             let values = flux.points().iter().map(affine).collect();
-            // Nitsche's traction is that of the plain law. Where a projection takes the pointwise dilation
-            // out of the stiffness, only the stabilisation is left to bound it, at lambda / mu times the
-            // price.
+            // Nitsche's traction follows from the plain law. If a projection removes the pointwise dilation
+            // from the stiffness, only the stabilisation bounds this traction, and must be lambda / mu times
+            // as large.
             let law = &materials[0];
             let gamma = if dilation.is_some() { 40.0 * (1.0 + law.lambda() / law.mu()) } else { 40.0 };
             let method = Weak::Nitsche { gamma };
@@ -87,13 +87,13 @@ fn errors(mesh: &Mesh, treatment: &str, poisson: f64, support: &Support) -> Resu
 
 #[derive(Debug)]
 enum Support {
-    /// All boundary nodes held.
+    /// Displacements prescribed at all boundary nodes.
     Displacement,
-    /// Exact tractions on all sides, one of them held.
+    /// Exact tractions on all sides, one of which is constrained.
     Traction,
-    /// Exact tractions on all sides, and no more held than the rigid motions.
+    /// Exact tractions on all sides, with only the rigid motions constrained.
     SixHolds,
-    /// All sides held weakly.
+    /// Weak supports on all sides.
     Nitsche,
 }
 
@@ -102,7 +102,7 @@ fn affine_fields_are_exact() {
     for kind in CellKind::ALL {
         let mesh = jittered_box(kind, 2);
         for treatment in TREATMENTS {
-            // Shares are shape values, and those of quadratic cells are negative at their corners.
+            // Shares are shape values, and those of quadratic cells are negative at the corners.
             if treatment == "nodal-mean" && kind.order() == 2 {
                 continue;
             }
@@ -111,8 +111,8 @@ fn affine_fields_are_exact() {
                     let errors = errors(&mesh, treatment, poisson, &support).unwrap();
                     let shown = errors.map(|e| format!("{e:.1e}")).join(" / ");
                     println!("{} {treatment} {support:?} nu = {poisson}: {shown}", kind.name());
-                    // 1e-12 is the gate. On three points only, at 100 times the bulk stiffness, the condition
-                    // of the system times rounding is above it.
+                    // The limit is 1e-12. With supports at three points only and 100 times the bulk
+                    // stiffness, the condition of the system times rounding is above this limit.
                     let soft = matches!(support, Support::SixHolds) && poisson > 0.4;
                     let gate = if soft { 1e-11 } else { 1e-12 };
                     assert!(errors.iter().all(|e| *e < gate), "see the last line");
@@ -124,7 +124,7 @@ fn affine_fields_are_exact() {
 
 #[test]
 fn the_patch_tests_see_a_spoiled_table() {
-    // One weight of a hundred-odd off by a thousandth: far above the gate.
+    // One of more than a hundred weights is wrong by a thousandth, which gives an error far above the limit.
     let mesh = jittered_box(CellKind::Tet4, 2);
     let volume = fem::volume_rows(&mesh, &VolumeRule::STANDARD).unwrap();
     let mut weights = volume.weights().to_vec();

@@ -1,4 +1,4 @@
-//! A free body has six rigid modes and no more, whatever approximates it.
+//! A free body has exactly six rigid modes with any approximation.
 
 mod common;
 
@@ -11,7 +11,8 @@ use shape::Vector3;
 use shape::{DilationGroups, VolumeRows};
 use statics::{Body, LinearProblem};
 
-/// The stiffness of the free body; the six holds are what the assembly asks for, and no part of it.
+/// Returns the stiffness of the free body. The six constraints are only needed by the assembly and do not
+/// change it.
 fn stiffness(
     mesh: &Mesh,
     volume: &VolumeRows,
@@ -77,8 +78,8 @@ fn six_for_every_element() {
     }
 }
 
-/// The motion `2 (a . x) x - |x|^2 a` is conformal: its strain is the pure dilation `2 a . x`. One mean
-/// dilation for a quadratic cell does not see it in a single layer across `a`, and nothing else resists it.
+/// The motion `2 (a . x) x - |x|^2 a` is conformal: its strain is the pure dilation `2 a . x`. In a single
+/// layer across `a`, one mean dilation per quadratic cell does not resist this motion, and nothing else does.
 #[test]
 fn a_single_layer_of_quadratic_cells_with_mean_dilation_has_a_seventh() {
     let mesh = jittered_box(CellKind::Hex20, 1);

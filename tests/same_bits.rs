@@ -1,4 +1,4 @@
-//! The same bits at any number of threads: tables, solution and transfer of both families.
+//! Reproducible bits at any number of threads: tables, solution and transfer of both families.
 
 mod common;
 
@@ -11,7 +11,7 @@ use shape::Vector3;
 use shape::{DilationGroups, FluxRows, PointRows, SurfaceRows, VolumeRows};
 use statics::{Body, LinearProblem, Load, Weak, WeakSupport};
 
-/// Everything a run computes.
+/// All results of a run.
 #[derive(PartialEq)]
 struct Run {
     volume: VolumeRows,
@@ -45,7 +45,7 @@ fn run(mesh: &Mesh, tables: impl Fn(&Mesh) -> (VolumeRows, FluxRows, SurfaceRows
     Run { volume, flux, surface, u, transfers }
 }
 
-/// More nodes than the dense limit, more points than one parallel task.
+/// A mesh with more nodes than the dense limit and more points than a parallel task.
 fn mesh() -> Mesh {
     jittered_box(CellKind::Tet4, 4)
 }

@@ -1,4 +1,4 @@
-//! A body turned as a whole, with its mesh, its loads and what holds it, answers with the turned displacement: no axis is
+//! A body rotated as a whole, with its mesh, loads and supports, has the rotated displacement: no axis is
 //! special to any element or cloud.
 
 mod common;
@@ -11,7 +11,7 @@ use shape::{DilationGroups, FluxRows, SurfaceRows, TraceRows, VolumeRows};
 use shape::{Matrix3, Point3, Vector3};
 use statics::{Body, LinearProblem, Load, Weak, WeakSupport};
 
-/// A degree about an oblique axis, a third of a turn, and nearly half a turn.
+/// Rotations by one degree about an oblique axis, by a third of a turn, and by nearly half a turn.
 fn turns() -> impl Iterator<Item = Matrix3> {
     let axis = nalgebra::Unit::new_normalize(Vector3::new(0.3, -0.8, 0.5));
     [1f64, 120.0, 179.0]
@@ -19,7 +19,7 @@ fn turns() -> impl Iterator<Item = Matrix3> {
         .map(move |degrees| nalgebra::Rotation3::from_axis_angle(&axis, degrees.to_radians()).into_inner())
 }
 
-/// What a method makes of a mesh.
+/// Tables of a method on a mesh.
 struct Tables {
     volume: VolumeRows,
     held: FluxRows,
@@ -53,7 +53,8 @@ fn cloud(mesh: &Mesh, functions: &Approximation, smoothed: bool) -> Tables {
     }
 }
 
-/// Held on one side by a field without any symmetry and pulled on the other: both in the frame of the body, which `turn` turns.
+/// Solves a body with an asymmetric field prescribed on one side and a traction on the other. Both are given
+/// in the frame of the body, which `turn` rotates.
 fn solve(mesh: &Mesh, tables: &Tables, dilation: Option<&DilationGroups>, turn: &Matrix3) -> Vec<Vector3> {
     let materials = [tissue(0.45)];
     let body =
@@ -75,7 +76,7 @@ fn solve(mesh: &Mesh, tables: &Tables, dilation: Option<&DilationGroups>, turn: 
     statics::assemble(&problem).unwrap().factor().unwrap().solve(1.0).unwrap().u
 }
 
-/// Tables and groups of dilation are made anew on the turned mesh.
+/// Builds tables and dilation groups again on the rotated mesh and compares the solutions.
 fn check(name: &str, mesh: &Mesh, make: impl Fn(&Mesh) -> (Tables, Option<DilationGroups>)) {
     let (tables, groups) = make(mesh);
     let straight = solve(mesh, &tables, groups.as_ref(), &Matrix3::identity());

@@ -1,17 +1,17 @@
-//! What the cross-crate tests share: a jittered box, an affine field and measures of error.
+//! Helpers of the cross-crate tests: a jittered box, an affine field and measures of error.
 
-#![allow(dead_code)] // each test file uses its share
+#![allow(dead_code)] // each test file uses only a part
 
 use geometry::generate::{Jitter, box_mesh};
 use geometry::{CellKind, Mesh};
 use material::LinearElastic;
 use shape::{Matrix3, Point3, Vector3};
 
-/// Sides of every facet group of a box.
+/// Names of the facet groups of a box.
 pub const SIDES: [&str; 6] = ["x-min", "x-max", "y-min", "y-max", "z-min", "z-max"];
 
-/// A box of 40 x 30 x 20 mm off the origin, `n` cells along the shortest side, inner nodes jittered by a
-/// fifth of the spacing.
+/// A box of 40 x 30 x 20 mm away from the origin, with `n` cells along the shortest side and inner nodes
+/// jittered by a fifth of the spacing.
 pub fn jittered_box(kind: CellKind, n: usize) -> Mesh {
     let low = Point3::new(0.01, -0.02, 0.005);
     let jitter = Some(Jitter { fraction: 0.2, seed: 11 });
@@ -29,25 +29,25 @@ pub fn gradient() -> Matrix3 {
     Matrix3::new(0.03, -0.02, 0.01, 0.025, -0.04, 0.015, -0.005, 0.02, 0.035)
 }
 
-/// The affine field of [`gradient`] and a translation of a few tenths of a millimetre.
+/// The affine field of [`gradient`], with a translation of a few tenths of a millimetre, m.
 pub fn affine(x: &Point3) -> Vector3 {
     gradient() * x.coords + Vector3::new(3e-4, -2e-4, 1e-4)
 }
 
-/// Largest difference over the largest exact value.
+/// Returns the largest difference, relative to the largest exact value.
 pub fn relative_error(found: &[Vector3], exact: &[Vector3]) -> f64 {
     assert_eq!(found.len(), exact.len());
     let largest = exact.iter().map(|u| u.norm()).fold(0.0, f64::max);
     found.iter().zip(exact).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max) / largest
 }
 
-/// Largest difference of the stress from one constant stress, relative to it.
+/// Returns the largest difference of stresses from a constant stress, relative to this stress.
 pub fn stress_error(found: &[Matrix3], exact: &Matrix3) -> f64 {
     found.iter().map(|s| (s - exact).norm()).fold(0.0, f64::max) / exact.norm()
 }
 
-/// Six parameters that hold the rigid motions of a box and nothing else, at the values of a field: a corner
-/// along x, y, z, the next corner along x in y and z, and the next along y in z.
+/// Constrains six parameters of a box to the values of a field, which suppresses exactly the rigid motions: a
+/// corner along x, y, z, the next corner along x in y and z, and the next corner along y in z.
 pub fn six_holds(mesh: &Mesh, field: impl Fn(&Point3) -> Vector3) -> Vec<shape::FixedDof> {
     let corner = |sides: [&str; 3]| {
         let on = |side: &str| mesh.facet_group_nodes(mesh.group(side).unwrap());

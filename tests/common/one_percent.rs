@@ -1,11 +1,12 @@
-//! Tables against their stored form: words equal, numbers within one percent, never a NaN. That it can fail is shown in
-//! `reports/tests/snapshots.rs`, which shares it.
+//! Comparison of tables with stored tables: words must be equal, numbers must agree within one percent, and
+//! NaN never matches. `reports/tests/snapshots.rs`, which uses the same file, shows that the comparison can
+//! fail.
 
 use insta::comparator::Comparator;
 use insta::internals::SnapshotContents;
 use insta::{Settings, Snapshot};
 
-/// Words equal, numbers within one percent; a NaN matches nothing.
+/// Comparator with equal words and numbers within one percent; NaN matches nothing.
 #[derive(Clone)]
 struct OnePercent;
 
@@ -34,7 +35,7 @@ pub fn agree(reference: &str, test: &str) -> bool {
         })
 }
 
-/// Runs a test whose snapshots are compared so.
+/// Runs a test whose snapshots are compared within one percent.
 pub fn within_one_percent(test: impl FnOnce()) {
     let mut settings = Settings::clone_current();
     settings.set_comparator(Box::new(OnePercent));

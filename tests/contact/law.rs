@@ -1,4 +1,4 @@
-//! The pointwise law: a friction block of one point, consistent tangents, rigid motions, refusals.
+//! The pointwise law: friction of a single point, consistent tangents, rigid motions, refused parameters.
 
 use contact::{
     Capsule, ContactCounts, ContactError, ContactHistory, ContactLaw, ContactSurface, Cylinder, Plate,
@@ -22,7 +22,7 @@ fn tool(shape: ToolShape, law: ContactLaw) -> Tool {
     Tool::new(shape, Point3::origin(), Matrix3::identity(), Vector3::x(), law).unwrap()
 }
 
-/// A point 0.1 mm deep in a plate, dragged along x and back: stick slope, slip at mu p, dissipation.
+/// A point 0.1 mm deep in a plate, dragged along x and back: slope during stick, slip at mu p, dissipation.
 #[test]
 fn friction_block_of_one_point() {
     let plate = tool(ToolShape::Plate(Plate), coulomb());
@@ -33,7 +33,7 @@ fn friction_block_of_one_point() {
     let at = |x: f64| Point3::new(x, 0.0, -depth);
     let mut history = plate.contact(0.0, &at(0.0), &Slip::NONE, 0.0).slip;
     let mut dissipated = 0.0;
-    // Out to 4 gives in 40 steps, back to -4 in 80, and to 0 again in 40.
+    // To 4 times the elastic slip in 40 steps, to -4 times in 80, and to 0 in 40.
     let path: Vec<f64> = (1..=160)
         .map(|k| {
             f64::from(if k <= 40 {
@@ -61,7 +61,7 @@ fn friction_block_of_one_point() {
         dissipated += c.dissipated;
         history = c.slip;
     }
-    // Slip: 3 gives out, 6 back, 2 on the last leg.
+    // Slip, as multiples of the elastic slip: 3 outwards, 6 back, 2 in the last part.
     let exact = limit * give * (3.0 + 6.0 + 2.0);
     assert!((dissipated - exact).abs() < 1e-9 * exact, "{dissipated} {exact}");
 }
@@ -74,7 +74,7 @@ fn a_moving_tool_drags() {
     let history = plate.contact(0.0, &x, &Slip::NONE, 0.0).slip;
     let c = plate.contact(1e-5, &x, &history, 0.0);
     assert!((c.traction.x - STICK * 1e-5).abs() < 1e-9 * STICK * 1e-5, "{}", c.traction);
-    // Tool and point together: nothing slips.
+    // Tool and point move together, so nothing slips.
     let c = plate.contact(1e-5, &(x + Vector3::x() * 1e-5), &history, 0.0);
     assert!(c.traction.x.abs() < 1e-9 * STICK * 1e-5, "{}", c.traction);
 }
@@ -103,7 +103,7 @@ fn without_friction_nothing_is_remembered() {
     assert!(c.traction.cross(&Vector3::new(2.0, 1.0, 4.4)).norm() < 1e-12 * c.traction.norm());
 }
 
-/// A multiplier shifts the pressure; the point holds on until it is used up.
+/// A multiplier shifts the pressure; the point stays in contact until the multiplier is used up.
 #[test]
 fn multipliers_add_to_the_pressure() {
     let plate = tool(ToolShape::Plate(Plate), ContactLaw::frictionless(PENALTY).unwrap());
@@ -113,7 +113,8 @@ fn multipliers_add_to_the_pressure() {
     assert_eq!(pressure(2.1e-5), 0.0);
 }
 
-/// Two committed contacts near the surface of a tool, then a move by `along` times the slip limit.
+/// A tool with the slip history of two committed contacts near its surface, and the point after a further
+/// move.
 struct Dragged {
     tool: Tool,
     history: Slip,
@@ -121,7 +122,7 @@ struct Dragged {
 }
 
 impl Dragged {
-    /// `None` near a kink of the distance.
+    /// Builds the case with a move by `drag` times the slip limit; `None` near a kink of the distance.
     fn new(shape: ToolShape, turn: Matrix3, start: Vector3, depth: f64, drag: Vector3) -> Option<Dragged> {
         let at = Point3::new(1e-3, -2e-3, 3e-3);
         let along = turn * Vector3::new(2.0, -1.0, 2.0) / 3.0;
@@ -129,7 +130,7 @@ impl Dragged {
         let foot = shape.distance(&start);
         let p = start - foot.gradient * (foot.value + depth);
         let give = FRICTION * PENALTY * depth / STICK;
-        // Tangential, so that the depth stays about the same, and a little deeper.
+        // The move is tangential, so the depth changes little, and slightly deeper.
         let n = shape.distance(&p).gradient;
         let tangent = |v: Vector3| v - n * n.dot(&v);
         let end = p + tangent(drag) * give - n * (0.05 * depth);
@@ -143,7 +144,7 @@ impl Dragged {
         Some(Dragged { tool, history, x: world(end) })
     }
 
-    /// Relative size of the tangential traction: 1 in slip.
+    /// Returns the tangential traction relative to the friction limit: 1 in slip.
     fn reach(&self) -> f64 {
         let c = self.tool.contact(0.0, &self.x, &self.history, 0.0);
         c.slip.stretch().norm() * STICK / (FRICTION * c.pressure)
@@ -152,9 +153,10 @@ impl Dragged {
     fn check(&self, multiplier: f64) -> Result<(), TestCaseError> {
         let contact = |closure: f64, x: &Point3| self.tool.contact(closure, x, &self.history, multiplier);
         let c = contact(0.0, &self.x);
-        // Steps of 1e-8 m beside curvature radii of 5e-4 m and elastic slips of 1e-5 m: truncation 1e-6 relative.
+        // Steps of 1e-8 m are small against curvature radii of 5e-4 m and elastic slips of 1e-5 m: the
+        // truncation error is 1e-6 relative.
         let h = 1e-8;
-        // Between stick and slip there is no derivative: differences that straddle the limit say nothing.
+        // There is no derivative between stick and slip: differences across the limit are meaningless.
         let slips = |closure: f64, x: &Point3| {
             let c = contact(closure, x);
             c.slip.stretch().norm() * STICK > (1.0 - 1e-9) * FRICTION * c.pressure
@@ -188,11 +190,11 @@ proptest! {
             for far in [0.3, 4.0] {
                 let Some(dragged) = Dragged::new(shape, turn, start, 1e-4, drag.normalize() * far) else { continue };
                 let reach = dragged.reach();
-                // A drag along the normal does not pull; one at the limit has no derivative.
+                // A drag along the normal causes no traction, and a drag at the limit has no derivative.
                 if (0.02..0.99).contains(&reach) || (far > 1.0 && reach > 1.0 - 1e-12) {
                     dragged.check(0.0)?;
                 }
-                // Away from the limit with a multiplier too (it raises mu p by up to 40 %).
+                // Away from the limit also with a multiplier (which raises mu p by up to 40 %).
                 if (0.02..0.6).contains(&reach) {
                     dragged.check(multiplier)?;
                 }
@@ -200,14 +202,15 @@ proptest! {
         }
     }
 
-    /// Tool, point and history turned and moved together: traction and tangent turn with them.
+    /// If tool, point and history are rotated and moved together, traction and tangent rotate with them.
     #[test]
     fn rigid_motions_change_nothing(turn in rotation(), q in rotation(), start in vector(12e-3), drag in vector(3.0)) {
         for shape in SHAPES {
             let Some(a) = Dragged::new(shape, turn, start, 1e-4, drag) else { continue };
             let b = Dragged::new(shape, q * turn, start, 1e-4, drag).unwrap();
             let (ca, cb) = (a.tool.contact(0.0, &a.x, &a.history, 0.0), b.tool.contact(0.0, &b.x, &b.history, 0.0));
-            // Positions of 1e-2 m carry 1e-18 m of rounding, times the penalty: 1e-9 Pa of 5e4.
+            // Positions of 1e-2 m are rounded by 1e-18 m; times the penalty this is 1e-9 Pa, compared with
+            // 5e4 Pa.
             prop_assert!((q * ca.traction - cb.traction).norm() < 1e-11 * ca.traction.norm());
             let turned = q * ca.stiffness * q.transpose();
             prop_assert!((turned - cb.stiffness).norm() < 1e-9 * turned.norm());
@@ -215,7 +218,7 @@ proptest! {
         }
     }
 
-    /// Slip against the motion never gives work back, on any shape.
+    /// Slip never returns work, on any shape.
     #[test]
     fn friction_dissipates(turn in rotation(), start in vector(12e-3), drag in vector(3.0)) {
         for shape in SHAPES {
@@ -228,7 +231,7 @@ proptest! {
     }
 }
 
-/// Both branches of friction are met by the sampling above, on every shape.
+/// The sampling above covers both branches of friction on every shape.
 #[test]
 fn the_tangent_test_meets_stick_and_slip() {
     for shape in SHAPES {
@@ -301,8 +304,8 @@ fn a_tool_can_be_turned_to_any_axis() {
     }
 }
 
-/// A block 0.1 mm below a plate rises by 0.2 mm and goes 40 um along: it touches half way, and friction sees
-/// half of the 40 um.
+/// A block 0.1 mm below a plate rises by 0.2 mm and moves 40 um sideways. It touches half way, so friction
+/// acts over half of the 40 um.
 #[test]
 fn friction_begins_at_the_touch() {
     let block = Block::new(CellKind::Hex8, [1, 1, 1]);
@@ -324,7 +327,7 @@ fn friction_begins_at_the_touch() {
     for traction in contacts.tractions() {
         assert!((traction - expected).norm() < 1e-9 * expected.norm(), "{traction}");
     }
-    // The touch comes earlier on a way that goes deeper: the tangent has that, too.
+    // On a path that goes deeper, the touch comes earlier; the tangent includes this effect.
     let slopes = differences(1e-9, |step| found(u + step).tractions()[0]);
     let miss = (slopes - contacts.stiffness()[0]).norm() / slopes.norm();
     assert!(miss < 1e-5, "{miss:e} {slopes} {}", contacts.stiffness()[0]);

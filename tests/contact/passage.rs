@@ -1,4 +1,4 @@
-//! Steps that take a tool through the surface, and tools that stand in the body between its points.
+//! Steps that take a tool through the surface, and tools that overlap the body between its points.
 
 use contact::{ContactError, ContactLaw, ContactSurface, Cylinder, Outline, Sphere, Stand, Tool, ToolShape};
 use geometry::{CellKind, FaceKind};
@@ -6,7 +6,8 @@ use integration::block::{Block, SIDES};
 use integration::tools::SHAPES;
 use shape::{Matrix3, Point3, Vector3};
 
-/// A tool whose foremost point is `above` the middle of the block's top (z = 20 mm), off it by `aside` along x, closing downwards.
+/// A tool whose foremost point is `above` the middle of the block's top (z = 20 mm), shifted by `aside` along
+/// x, which moves downwards.
 fn over(shape: ToolShape, above: f64, aside: f64) -> Tool {
     let law = ContactLaw::frictionless(5e8).unwrap();
     let at = Point3::new(0.02 + aside, 0.015, 0.02 + shape.bounds().1.z + above);
@@ -26,7 +27,7 @@ fn jumps(surface: &ContactSurface, tool: &Tool, closures: [f64; 2], u: &[Vector3
     }
 }
 
-/// Every shape but the plate, however far it travels at once.
+/// Every shape except the plate, for any travel in a step.
 #[test]
 fn no_tool_gets_through_a_surface_unseen() {
     let block = Block::new(CellKind::Hex8, [16, 12, 8]);
@@ -36,16 +37,16 @@ fn no_tool_gets_through_a_surface_unseen() {
     for shape in SHAPES.into_iter().filter(|shape| !shape.is_endless()) {
         let tool = over(shape, 1e-3, 0.0);
         let height = 2.0 * shape.bounds().1.z;
-        // Off the body, at rest, and back again: nothing is passed.
+        // Away from the body, at rest, and back again: no surface is crossed.
         for (from, to) in [(-5e-3, 0.9e-3), (0.0, 0.0), (0.9e-3, -0.1)] {
             assert!(!jumps(&surface, &tool, [from, to], &u), "{shape:?}: {from} to {to}");
         }
-        // Right through: within the block, out of it, and a kilometre beyond.
+        // Through the surface: to a place within the block, out of the block, and a kilometre beyond.
         for beyond in [1.1e-3, 0.03, 1e3] {
             assert!(jumps(&surface, &tool, [0.0, height + beyond], &u), "{shape:?}: {beyond}");
             assert!(jumps(&surface, &tool, [height + beyond, 0.0], &u), "{shape:?}: back from {beyond}");
         }
-        // Beside the block.
+        // Past the side of the block.
         let aside = over(shape, 1e-3, 0.02 + shape.bounds().1.coords.max() + 1e-3);
         assert!(!jumps(&surface, &aside, [0.0, 1.0], &u), "{shape:?} beside");
         // The block may move as well: it jumps up by the tool's height and 2 mm.
@@ -55,14 +56,15 @@ fn no_tool_gets_through_a_surface_unseen() {
             surface.check_passage(&tool, from, to, false),
             Err(ContactError::JumpedOver { .. })
         ));
-        // With the block nothing is passed.
+        // A tool that moves with the block crosses nothing.
         let down = vec![-Vector3::z() * 0.05; u.len()];
         let to = Stand { closure: 0.05, u: &down };
         assert_eq!(surface.check_passage(&tool, from, to, false), Ok(()), "{shape:?}");
     }
 }
 
-/// A surface that slides along a tool cuts its corners, and one in contact may be as deep as contact allows.
+/// A surface that slides along a tool may cut the tool's corners, and a surface in contact may be as deep as
+/// contact allows.
 #[test]
 fn sliding_and_penetrating_is_no_jump() {
     let block = Block::new(CellKind::Hex8, [16, 12, 8]);
@@ -71,14 +73,15 @@ fn sliding_and_penetrating_is_no_jump() {
     let u = vec![Vector3::zeros(); block.mesh.points().len()];
     let radius = 5e-3;
     let ball = over(ToolShape::Sphere(Sphere { radius }), 0.0, 0.0);
-    // By 0.8 of the radius sideways at a depth of a tenth.
+    // Sideways by 0.8 of the radius at a depth of a tenth of the radius.
     let moved: Vec<Vector3> = u.iter().map(|u| u + Vector3::x() * 0.8 * radius).collect();
     let [from, to] = [&u, &moved].map(|u| Stand { closure: 0.1 * radius, u });
     assert_eq!(surface.check_passage(&ball, from, to, true), Ok(()));
-    // From a penetration of four tenths back out.
+    // From a penetration of four tenths of the radius back out.
     let [from, to] = [0.4 * radius, -1e-3].map(|closure| Stand { closure, u: &u });
     assert_eq!(surface.check_passage(&ball, from, to, false), Ok(()));
-    // A wheel's rim goes 0.3 of its inradius through the block's edge: seen where nothing touches afterwards.
+    // The rim of a wheel goes 0.3 of its inradius through the block's edge, which is detected if nothing
+    // touches afterwards.
     let wheel = ToolShape::Cylinder(Cylinder { radius: 8e-3, half_length: 5e-3 });
     let law = ContactLaw::frictionless(5e8).unwrap();
     let at = Point3::new(0.02, 0.03 + 8e-3 - 2.2e-3, 0.05);
@@ -88,7 +91,8 @@ fn sliding_and_penetrating_is_no_jump() {
     assert_eq!(surface.check_passage(&wheel, from, to, true), Ok(()));
 }
 
-/// A ball of 10 mm that dips into a face of 10 mm between its points, at its middle, over a vertex and over an edge.
+/// A ball of 10 mm that enters a face of 10 mm between its points: at its middle, over a vertex and over an
+/// edge.
 #[test]
 fn a_tool_between_the_points_is_found() {
     for kind in [CellKind::Tet4, CellKind::Hex8, CellKind::Tet10] {
@@ -125,10 +129,10 @@ fn a_tool_between_the_points_is_found() {
                 }
                 other => panic!("{kind:?} {aside}: {other:?}"),
             }
-            // On the way the points may be about to touch.
+            // Before the end of the loading the points may still be about to touch.
             assert_eq!(surface.check_overlap(&tool, Stand { closure, u: &u }), Ok(()), "{kind:?} {aside}");
         }
-        // A needle at a vertex, much deeper than the points can tell.
+        // A needle at a vertex, much deeper than the points can detect.
         let needle = over(ToolShape::Sphere(Sphere { radius: 1e-3 }), 0.0, 0.0);
         let vertex = block.nodes_of(&["z-max"]).into_iter().map(|node| block.mesh.points()[node as usize]);
         let off = |x: &Point3| (x - Point3::new(0.02, 0.015, 0.02)).norm();

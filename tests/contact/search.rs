@@ -1,4 +1,4 @@
-//! The search over many steps: the same contacts as of each state alone, and fewer distances.
+//! The search over many steps: the same contacts as in each state alone, with fewer distance evaluations.
 
 use contact::{
     ContactCounts, ContactError, ContactHistory, ContactLaw, ContactSearch, ContactSurface, Contacts, Plate,
@@ -14,7 +14,7 @@ fn law() -> ContactLaw {
     ContactLaw::coulomb(5e8, 0.15, 1e8).unwrap()
 }
 
-/// A plate that faces down on a block's top (z = 20 mm), `gap` above.
+/// A plate that faces down at a height of `gap` above a block's top (z = 20 mm).
 fn plate(gap: f64) -> Tool {
     let turn = Tool::turned_to(&-Vector3::z());
     let at = Point3::new(0.0, 0.0, 0.02 + gap);
@@ -25,15 +25,15 @@ fn spacing(rows: &SurfaceRows) -> f64 {
     (rows.weights().iter().sum::<f64>() / rows.points().len() as f64).sqrt()
 }
 
-/// No point near and none that touches are the same.
+/// Treats contacts without touching points as no contact.
 fn touching(found: Result<Option<Contacts>, ContactError>) -> Result<Option<Contacts>, ContactError> {
     found.map(|found| found.filter(|contacts| !contacts.points().is_empty()))
 }
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
-    /// Two tools and a body that moves, waves and jumps, by parts of the margin or by many; with friction, and multipliers that hold
-    /// points outside.
+    /// Two tools and a body that moves, oscillates and jumps by fractions or multiples of the margin, with
+    /// friction, and multipliers that keep points outside in contact.
     #[test]
     fn the_same_contacts_as_of_each_state_alone(
         turn in rotation(),
@@ -54,7 +54,7 @@ proptest! {
         let size = 10f64.powf(size);
         let (mut shift, mut wave, mut closures) = (Vector3::zeros(), 0.0, [0.0; 2]);
         for (way, waved, closed, kind) in steps {
-            // One state in twelve is the last one again, and one is far away.
+            // One state in twelve repeats the last state, and one is far away.
             let size = match kind { 0 => 0.0, 1 => 20.0 * size, _ => size };
             shift += way * size;
             wave += waved * size;
@@ -80,8 +80,8 @@ proptest! {
     }
 }
 
-/// Steps of a tenth of the margin, of the body, of the tool and of both; alone, and after another tool whose jumps have its list made
-/// anew in every state.
+/// Steps of a tenth of the margin, of the body, the tool and both. The tool is alone, or follows another tool
+/// whose jumps require a new list in every state.
 #[test]
 fn a_tool_that_comes_near_is_found_when_it_touches() {
     let block = Block::new(CellKind::Tet4, [16, 12, 3]);
@@ -131,7 +131,7 @@ fn small_steps_look_at_few_points_and_at_no_other() {
     }
     assert_eq!((counts.evaluations, counts.active), (50, all.active));
     assert!(counts.active > 0 && 2 * counts.distances < all.distances, "{counts:?} {all:?}");
-    // A tool that nothing can touch is left whole, before and after.
+    // A tool that nothing can touch is skipped entirely, before and after.
     let far = plate(0.1);
     let mut search = ContactSearch::new(&surface, 1);
     let mut counts = ContactCounts::default();

@@ -1,16 +1,17 @@
-//! Every tool shape: a distance with its derivatives, inside and out, and nothing broken on the medial axis.
+//! Every tool shape: a distance with its derivatives, inside and outside, with finite values on the medial
+//! axis.
 
 use contact::{Capsule, Cylinder, Distance, Plate, RoundedBox, Sphere, TOOL_SHAPES, ToolShape};
 use integration::tools::{SHAPES, differences, kink, vector};
 use proptest::prelude::*;
 use shape::Vector3;
 
-/// Is `p` inside, by the shape's own definition?
+/// Whether `p` is inside the shape, by the shape's own definition.
 fn inside(shape: &ToolShape, p: &Vector3) -> bool {
     let rho = p.x.hypot(p.y);
     match *shape {
         ToolShape::Plate(Plate) => p.z < 0.0,
-        // Within the rounding radius of the core box; without rounding within the box itself.
+        // Within the rounding radius of the core box, or without rounding within the box itself.
         ToolShape::RoundedBox(RoundedBox { half, radius }) => {
             let core = Vector3::from_fn(|a, _| p[a].clamp(radius - half[a], half[a] - radius));
             if radius > 0.0 { (p - core).norm() < radius } else { (0..3).all(|a| p[a].abs() < half[a]) }
@@ -32,7 +33,7 @@ proptest! {
             let Distance { value, gradient, hessian } = shape.distance(&p);
             prop_assert!((gradient.norm() - 1.0).abs() < 1e-14, "{shape:?}");
             prop_assert_eq!(value < 0.0, inside(&shape, &p), "{:?} {}", shape, value);
-            // The nearest surface point lies on the surface, within the bounds.
+            // The nearest surface point lies on the surface and within the bounds.
             let foot = p - gradient * value;
             prop_assert!(shape.distance(&foot).value.abs() < 1e-16, "{shape:?}");
             let (low, high) = shape.bounds();
@@ -40,7 +41,7 @@ proptest! {
                 prop_assert!(foot[a] >= low[a] - 1e-16 && foot[a] <= high[a] + 1e-16, "{shape:?}");
             }
             prop_assert!(value >= -shape.inradius());
-            // The gradient's length is constant, so the Hessian has no part along it.
+            // The gradient has constant length, so the Hessian has no component along it.
             prop_assert_eq!(hessian, hessian.transpose());
             prop_assert!((hessian * gradient).norm() < 1e-13 * hessian.norm().max(1.0), "{shape:?}");
         }
@@ -48,8 +49,9 @@ proptest! {
 
     #[test]
     fn gradient_and_hessian_are_the_derivatives(p in vector(13e-3)) {
-        // Steps of 1e-7 m at 3e-4 m from a kink or centre, where the Hessian is at most 1 / 3e-4: truncation is
-        // (1e-7 / 3e-4)^2 = 1e-7 relative, rounding 1e-2 * 1e-16 / 1e-7 = 1e-11.
+        // Steps of 1e-7 m at 3e-4 m from a kink or centre, where the Hessian is at most 1 / 3e-4. The
+        // truncation error is (1e-7 / 3e-4)^2 = 1e-7 relative, the rounding error 1e-2 * 1e-16 / 1e-7 =
+        // 1e-11.
         let h = 1e-7;
         for shape in SHAPES.iter().filter(|s| kink(s, &p) > 3e-4) {
             let Distance { gradient, hessian, .. } = shape.distance(&p);
@@ -72,7 +74,7 @@ fn every_shape_that_a_scene_can_name_is_in_the_list() {
     }
 }
 
-/// Centres, axes, faces, edges of the core, ties: a unit gradient and finite numbers everywhere.
+/// Centres, axes, faces, edges of the core and ties: a unit gradient and finite numbers everywhere.
 #[test]
 fn medial_points_have_a_defined_branch() {
     let values = [0.0, 1e-300, 1e-160, 1e-20, 1.5e-3, 2e-3, 2.5e-3, 3e-3, 4e-3, 5e-3, 6e-3, 8.5e-3];
@@ -98,7 +100,7 @@ fn medial_points_have_a_defined_branch() {
     assert_eq!(at(SHAPES[5], 0.0, 0.0, 1e-3), Vector3::x());
 }
 
-/// The bounds touch the tool on every side: they are no larger than needed.
+/// The bounds touch the tool on every side, i.e. they are as small as possible.
 #[test]
 fn bounds_are_tight() {
     for shape in &SHAPES[1..] {
@@ -115,7 +117,7 @@ fn bounds_are_tight() {
 
 #[test]
 fn the_jaw_of_the_kidney_case() {
-    // sd(p) = |max(q, 0)| + min(max(q), 0) - r by hand, half (5, 10, 4), r 1.5 mm.
+    // sd(p) = |max(q, 0)| + min(max(q), 0) - r computed by hand, half (5, 10, 4), r 1.5 mm.
     let jaw = SHAPES[1];
     let near = |x: f64, y: f64| (x - y).abs() < 1e-17;
     let mm = |x: f64, y: f64, z: f64| jaw.distance(&(Vector3::new(x, y, z) * 1e-3)).value;

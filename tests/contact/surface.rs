@@ -1,4 +1,5 @@
-//! Contact over a surface: against point-by-point evaluation, balance of force and moment, skips, threads, multipliers.
+//! Contact over a surface: point-by-point evaluation, balance of force and moment, skips, threads,
+//! multipliers.
 
 use contact::{
     ContactCounts, ContactError, ContactHistory, ContactLaw, ContactSurface, Contacts, Plate, PointContact,
@@ -15,20 +16,20 @@ fn coulomb() -> ContactLaw {
     ContactLaw::coulomb(5e8, 0.15, 1e8).unwrap()
 }
 
-/// A wavy displacement of some 0.1 mm.
+/// Returns an oscillating displacement of amplitude `size`, m.
 fn wave(block: &Block, size: f64) -> Vec<Vector3> {
     let wave =
         |p: &Point3| Vector3::new((300.0 * p.y).sin(), (200.0 * p.z).cos(), (250.0 * p.x).sin()) * size;
     block.mesh.points().iter().map(wave).collect()
 }
 
-/// A tool of any shape at the block's top (z = 20 mm), its face 0.5 mm in, moving along x.
+/// A tool of any shape at the block's top (z = 20 mm), with its face 0.5 mm inside, moving along x.
 fn on_top(shape: ToolShape, turn: Matrix3) -> Tool {
     let lift = shape.bounds().1.z;
     Tool::new(shape, Point3::new(0.02, 0.015, 0.0195 + lift), turn, Vector3::x(), coulomb()).unwrap()
 }
 
-/// Every point by [`Tool::contact`], no broad phase.
+/// Evaluates every point by [`Tool::contact`], without a broad phase.
 fn one_by_one(
     tool: &Tool,
     closure: f64,
@@ -69,7 +70,7 @@ fn the_same_as_point_by_point_and_in_balance() {
         let surface = ContactSurface::new(&rows);
         let u = wave(&block, 1e-4);
         for shape in SHAPES {
-            // The plate faces down; the others stand with their z axis up.
+            // The plate faces down; the z axes of the others point up.
             let turn = if shape == ToolShape::Plate(Plate) {
                 Tool::turned_to(&-Vector3::z())
             } else {
@@ -81,7 +82,7 @@ fn the_same_as_point_by_point_and_in_balance() {
             let first = surface.evaluate(&tool, 0.0, &u, &history, &mut counts).unwrap();
             agree(first.as_ref(), &one_by_one(&tool, 0.0, &rows, &u, &history));
             history.commit(first.as_ref());
-            // A second step with history: the tool has moved sideways.
+            // A second step with history, after the tool has moved sideways.
             let found = surface.evaluate(&tool, 2e-5, &u, &history, &mut counts).unwrap();
             let all = one_by_one(&tool, 2e-5, &rows, &u, &history);
             agree(found.as_ref(), &all);
@@ -106,7 +107,7 @@ fn the_same_as_point_by_point_and_in_balance() {
             assert_eq!((light.tractions(), light.force()), (found.tractions(), found.force()));
             assert!(light.stiffness().is_empty());
 
-            // The tissue's nodal loads balance the tool's force, and their moment its moment.
+            // The tissue's nodal loads balance the tool's force, and their moment balances its moment.
             let mut loads = vec![Vector3::zeros(); u.len()];
             found.add_force(&rows, &mut loads);
             let sum: Vector3 = loads.iter().sum();
@@ -122,7 +123,7 @@ fn the_same_as_point_by_point_and_in_balance() {
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(48))]
-    /// The broad phase loses no point, wherever the tool stands and whatever the basis (here one without partition of
+    /// The broad phase loses no point, for any position of the tool and any basis (here without partition of
     /// unity and with negative values).
     #[test]
     fn the_broad_phase_loses_nothing(turn in rotation(), at in vector(0.03), scale in 0.9..1.1f64, amplitude in 0.0..5e-3f64) {
@@ -173,7 +174,7 @@ fn a_far_tool_is_skipped_and_a_near_one_looks_at_few_points() {
     let found = surface.evaluate(&jaw, 0.0263, &u, &history, &mut counts).unwrap();
     assert_eq!((counts.evaluations, counts.skipped), (2, 1));
     assert!(counts.active > 0 && counts.distances < points as u64 / 4, "{counts:?} of {points}");
-    // A skipped step is a separated one: the history is dropped.
+    // In a skipped step there is no contact, so the history is dropped.
     history.commit(found.as_ref());
     let stuck = found.unwrap().points()[0] as usize;
     assert_ne!(history.slip(stuck), Slip::NONE);
@@ -197,7 +198,7 @@ fn the_same_bits_at_any_number_of_threads() {
                 |history: &ContactHistory, c| surface.evaluate(&tool, c, &u, history, &mut counts).unwrap();
             history.commit(evaluate(&history, 0.0).as_ref());
             let found = evaluate(&history, 1e-5).unwrap();
-            // More than two chunks of clusters, or no other thread has taken part.
+            // The points fill more than two chunks of clusters, so that other threads take part.
             assert!(found.points().len() > 1024, "{}", found.points().len());
             found
         })
@@ -208,8 +209,8 @@ fn the_same_bits_at_any_number_of_threads() {
     assert_eq!(one.moment().map(f64::to_bits), two.moment().map(f64::to_bits));
 }
 
-/// One node on a spring `s` under a closing plate: `s u = w p` with `p = l - k g`, `g = face - u`... In closed form the
-/// penetration shrinks by `s / (s + w k)` with every augmentation.
+/// One node on a spring `s` under a closing plate: `s u = w p` with `p = l - k g`, `g = face - u`. In closed
+/// form the penetration is multiplied by `s / (s + w k)` in every augmentation.
 #[test]
 fn augmentation_closes_the_gap_geometrically() {
     let rows = Rows::new(1, vec![0, 1], vec![0], vec![1.0], shape::Unity::Within(0.0)).unwrap();
@@ -228,7 +229,7 @@ fn augmentation_closes_the_gap_geometrically() {
     let ratio = spring / (spring + w * k);
     for round in 0..8 {
         for _ in 0..2 {
-            // Newton; linear while in contact.
+            // A Newton step; the problem is linear while in contact.
             let c = surface.evaluate(&plate, closure, &u, &history, &mut counts).unwrap().unwrap();
             let residual = w * c.tractions()[0].z - spring * u[0].z;
             u[0].z += residual / (spring - w * c.stiffness()[0].m33);
@@ -239,13 +240,14 @@ fn augmentation_closes_the_gap_geometrically() {
         history.augment(Some(&c));
         assert_eq!(history.multiplier(0), c.pressures()[0]);
     }
-    // Lifted by 1 um, outside the tool: the multiplier (some 1.5 GPa m^2 / m^2) still holds the point.
+    // Lifted by 1 um, outside the tool: the multiplier (about 1.5 GPa m^2 / m^2) still keeps the point in
+    // contact.
     u[0].z = -closure - 1e-6;
     let c = surface.evaluate(&plate, closure, &u, &history, &mut counts).unwrap().expect("within reach");
     assert_eq!(c.max_penetration(), 0.0);
     assert!((c.pressures()[0] - (history.multiplier(0) - k * 1e-6)).abs() < 1e-6 * c.pressures()[0]);
     assert_eq!(counts.skipped, 0);
-    // Lifted by all of it: the point is free, and the multiplier goes with the next augmentation.
+    // Lifted by the whole distance: the point is free, and the next augmentation removes the multiplier.
     u[0].z = -closure - 1.1 * history.multiplier(0) / k;
     let c = surface.evaluate(&plate, closure, &u, &history, &mut counts).unwrap();
     assert!(c.as_ref().is_none_or(|c| c.points().is_empty()));
@@ -328,10 +330,10 @@ fn a_surface_without_points_is_skipped() {
     assert_eq!(counts.skipped, 1);
 }
 
-/// Bases that overshoot: a point that goes farther than any of its nodes is still found.
+/// Bases that overshoot: a point that moves farther than all of its nodes is still found.
 #[test]
 fn boxes_hold_points_that_outrun_their_nodes() {
-    // Values, displacements of the two nodes along z, and where the point goes: 1.5 * 1 + 0.5 * 1 and 2 * 1 mm.
+    // Values, displacements of the two nodes along z; the point moves by 1.5 * 1 + 0.5 * 1 and by 2 * 1 mm.
     for (values, u) in [([1.5, -0.5], [1e-3, -1e-3]), ([1.0, 1.0], [1e-3, 1e-3])] {
         let rows = Rows::new(2, vec![0, 2], vec![0, 1], values.to_vec(), shape::Unity::NotPromised).unwrap();
         let at = PointRows::new(vec![Point3::origin()], rows).unwrap();

@@ -1,5 +1,5 @@
-//! Runs one kernel a number of times on one thread, for `cargo xtask instructions`: `kernels NAME TIMES`. Without arguments it
-//! prints the names, after the instructions of the processor that they take.
+//! Runs one kernel a number of times on one thread, for `cargo xtask instructions`: `kernels NAME TIMES`.
+//! Without arguments it prints the processor's instruction set that the kernels use, then their names.
 
 use std::hint::black_box;
 use std::process::ExitCode;
@@ -74,7 +74,7 @@ fn rows(kind: CellKind, times: usize) {
     }
 }
 
-/// On a cloud of the kidney, with supports of 1.6 spacings.
+/// Builds moving least squares on a cloud of the kidney, with a support scale of 1.6.
 fn moving_least_squares(nodes: usize) -> Approximation {
     let Cloud { points, spacing, .. } = cloud(&Kidney, nodes, 1, &[]).unwrap();
     let radii = spacing.iter().map(|h| 1.6 * h).collect();
@@ -98,7 +98,7 @@ fn maximum_entropy(times: usize) {
     }
 }
 
-/// A cube held at the bottom and drawn at the top.
+/// A cube constrained at the bottom and pulled at the top.
 struct Held {
     mesh: Mesh,
     volume: VolumeRows,
@@ -161,7 +161,7 @@ fn assembled_cloud(times: usize) {
     let background = kidney_mesh(CellKind::Tet4, 4).unwrap();
     let volume = efg::gauss_rows(&mls, &background, 1).unwrap().0;
     let material = [LinearElastic::new(20e3, 0.495).unwrap()];
-    // Parameters alone are held, as only assembly counts.
+    // All parameters are constrained, because only assembly counts.
     let fixed: Vec<_> =
         (0..3 * 83).map(|k| FixedDof { node: k / 3, axis: (k % 3) as u8, value: 0.0 }).collect();
     let body =
@@ -186,7 +186,7 @@ fn force(kind: CellKind, projected: bool, times: usize) {
     }
 }
 
-/// A jaw a tenth of a millimetre in the top of a block, with tangents.
+/// A jaw a tenth of a millimetre deep in the top of a block, with tangents.
 fn jaw(times: usize) {
     let max = Point3::new(0.04, 0.03, 0.02);
     let mesh = box_mesh(CellKind::Tet4, Point3::origin(), max, [20, 16, 10], [1.0; 3], None).unwrap();

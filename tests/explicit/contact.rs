@@ -1,4 +1,4 @@
-//! Tools in explicit dynamics: momentum, energy, forces carried, steps that change, and what cannot go on.
+//! Tools in explicit dynamics: momentum, energy, transferred forces, changing steps, and errors.
 
 use contact::{ContactError, ContactLaw, ContactSurface, Drive, RoundedBox, Sphere, Tool, ToolShape};
 use explicit::{
@@ -15,7 +15,7 @@ use shape::{Matrix3, Point3, Vector3};
 const RHO: f64 = 1060.0;
 const LANCZOS: LanczosParams = LanczosParams { steps: 15, safety: 0.95 };
 
-/// A block of 40 x 30 x 20 mm with all that explicit dynamics needs.
+/// A block of 40 x 30 x 20 mm with all inputs of explicit dynamics.
 struct Pressed {
     block: Block,
     surface: SurfaceRows,
@@ -40,7 +40,7 @@ impl Pressed {
         vec![Vector3::zeros(); self.mass.len()]
     }
 
-    /// Part of the critical step with the penalty on all of the surface.
+    /// Returns a fraction of the critical step, with the penalty on the whole surface.
     fn step(&self, part: f64) -> f64 {
         let springs = Springs { surface: &self.surface, modulus: 1e8 };
         let mut force = self.force();
@@ -59,7 +59,7 @@ impl Pressed {
     }
 }
 
-/// A jaw 5 mm above the middle of the block's top that closes along `along`.
+/// A jaw 5 mm above the middle of the block's top that moves along `along`.
 fn jaw(along: Vector3, friction: f64) -> Tool {
     let law = if friction > 0.0 {
         ContactLaw::coulomb(1e8, friction, 2e7).unwrap()
@@ -99,7 +99,7 @@ fn the_body_gains_the_momentum_that_the_tool_gives() {
         largest = largest.max(impulse.norm());
         assert!((momentum - impulse).norm() <= 1e-12 * largest, "step {step}: {momentum} {impulse}");
     }
-    // Down by pressure, and along by friction.
+    // The impulse points down because of pressure, and sideways because of friction.
     assert!(impulse.z < -1e-3 && impulse.x > 1e-5 && impulse.y > 1e-6, "{impulse}");
     assert!(motion.tools().unwrap().energies().friction > 0.0);
 }
@@ -134,7 +134,7 @@ fn energy_balances_with_tools_that_slide_and_swing() {
         motion.run(2001, 50, &mut no_load, &mut |b, _| all.push(*b)).unwrap();
         let last = all.last().unwrap();
         let worst = all[5..].iter().map(|b| b.drift.abs()).fold(0.0, f64::max);
-        // Found: 4e-6 without friction, 9e-4 with it, of which a tenth of the friction would be 3e-3.
+        // Observed: 4e-6 without friction, 9e-4 with friction; a tenth of the friction would be 3e-3.
         let bound = if friction > 0.0 { 1.5e-3 } else { 1e-5 };
         assert!(worst < bound, "{what}: {worst:e} {last:?}");
         let t = last.tools;
@@ -164,7 +164,7 @@ fn a_force_comes_to_rest_where_the_tissue_carries_it() {
                 .unwrap()
                 .with_tools(tools)
                 .unwrap();
-        // Starts at its touch, 5 mm on.
+        // The tool starts at first touch, after 5 mm.
         let at = motion.tools().unwrap().motions().next().unwrap().state.closure;
         assert!((at - 5e-3).abs() < 2e-9, "{at}");
         motion.run((0.3 / dt) as usize, 0, &mut no_load, &mut |_, _| ()).unwrap();
@@ -172,11 +172,11 @@ fn a_force_comes_to_rest_where_the_tissue_carries_it() {
         assert!((end.force.z / 0.5 - 1.0).abs() < 1e-3, "{}", end.force.z);
         ends.push(end.closure);
     }
-    // Where it rests has nothing to do with its mass.
+    // The rest position does not depend on the mass.
     assert!(ends[0] > 5.5e-3 && (ends[0] / ends[1] - 1.0).abs() < 1e-3, "{ends:?}");
 }
 
-/// Half of the way with one step, half with another: the same motion as with a small one.
+/// Half of the travel with one step and half with another gives the same motion as a small step.
 #[test]
 fn a_step_may_change_on_the_way() {
     let pressed = Pressed::new();
@@ -273,7 +273,7 @@ fn what_cannot_go_on_is_named() {
         matches!(error, ExplicitError::LightTool { tool: 0, critical, .. } if critical < 2.0 * dt),
         "{error}"
     );
-    // The tool's own critical step has to be twice the step or more; here it is one and a half.
+    // The tool's own critical step must be at least twice the step; here it is 1.5 times the step.
     let ExplicitError::LightTool { critical, .. } = error else { panic!("{error}") };
     let mass = moving.mass * (1.5 * dt / critical).powi(2);
     let error = ends(MovingTool { mass, ..moving }, dt).unwrap_err();
@@ -285,14 +285,14 @@ fn what_cannot_go_on_is_named() {
     assert!(matches!(error, ExplicitError::BadParameter { what: "mass of a tool driven by force", .. }));
     let error = ends(MovingTool { over: f64::NAN, ..moving }, dt).unwrap_err();
     assert!(matches!(error, ExplicitError::BadParameter { what: "ramp of a tool", .. }));
-    // Stable for the body alone, not with the penalty on its surface.
+    // A step that is stable for the body alone, but not with the penalty on its surface.
     let zero = pressed.zero();
     let mut alone = pressed.force();
     let free = critical_step(&mut alone, &pressed.mass, &zero, |_| true, LANCZOS).unwrap().dt;
     assert!(free > 1.05 * dt / 0.9);
     let error = ends(MovingTool { mass: 1e-2, ..moving }, 0.99 * free).unwrap_err();
     assert!(matches!(error, ExplicitError::StepTooLarge { step: 0, .. }), "{error}");
-    // Deep in the block at once.
+    // The tool reaches deep into the block at once.
     let led = MovingTool { drive: Drive::Closure(15e-3), over: 2.0 * dt, ..moving };
     let error = ends(led, dt).unwrap_err();
     assert!(

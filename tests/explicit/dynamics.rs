@@ -45,7 +45,8 @@ fn mass_is_positive_and_complete() {
     assert!(matches!(error, ExplicitError::NodalMass { mass, .. } if mass <= 0.0));
 }
 
-/// `M^-1/2 K M^-1/2` column by column from unit displacements, its largest eigenvalue by nalgebra's dense solver.
+/// The dense matrix `M^-1/2 K M^-1/2` is built column by column from unit displacements; nalgebra's dense
+/// solver gives its largest eigenvalue.
 #[test]
 fn critical_step_agrees_with_a_dense_eigenvalue() {
     let block = Block::new(CellKind::Tet4, [3, 2, 2]);
@@ -75,7 +76,8 @@ fn critical_step_agrees_with_a_dense_eigenvalue() {
             critical_step(&mut force, &mass, &u, |_| true, LanczosParams { steps: 60, safety: 1.0 }).unwrap();
         assert!((exact.omega_max / omega - 1.0).abs() < 1e-6, "{} {omega}", exact.omega_max);
         let quick = critical_step(&mut force, &mass, &u, |_| true, LANCZOS).unwrap();
-        // From below, and with the factor on the safe side of 2 / omega.
+        // The estimate is below the eigenvalue, but with the safety factor the step is on the safe side of 2
+        // / omega.
         assert!(
             quick.omega_max <= omega * (1.0 + 1e-6) && quick.dt < 2.0 / omega,
             "{} {omega}",
@@ -85,7 +87,8 @@ fn critical_step_agrees_with_a_dense_eigenvalue() {
     }
 }
 
-/// With springs so stiff that the body hardly counts: the largest eigenvalue of `M^-1 sum_q w k N N^T`, dense.
+/// Springs so stiff that the body hardly matters: the largest eigenvalue of `M^-1 sum_q w k N N^T`, from a
+/// dense matrix.
 #[test]
 fn springs_on_a_surface_shorten_the_critical_step() {
     let block = Block::new(CellKind::Tet4, [3, 2, 2]);
@@ -123,7 +126,7 @@ impl Free {
         Free { block, mass }
     }
 
-    /// Stretched by some 10 %, spinning and flying.
+    /// Returns a state stretched by about 10 %, rotating and flying.
     fn start(&self) -> (Vec<Vector3>, Vec<Vector3>) {
         let x = self.block.mesh.points();
         let u = x.iter().map(|x| affine(x) * 4.0).collect();
@@ -160,7 +163,8 @@ fn a_free_body_keeps_momentum_and_energy() {
             swing = (swing.0.min(b.strain), swing.1.max(b.strain));
         };
         motion.run(1, 10, &mut no_load, &mut record).unwrap();
-        // Angular momentum of x_(n+1) and v_(n+1/2): the same as with x_n, as x_(n+1) - x_n is along v.
+        // Angular momentum of x_(n+1) and v_(n+1/2) equals that with x_n, because x_(n+1) - x_n is parallel
+        // to v.
         let (p0, l0) = free.momenta(motion.displacements(), motion.velocities());
         motion.run(steps, 5, &mut no_load, &mut record).unwrap();
         let (p, l) = free.momenta(motion.displacements(), motion.velocities());
@@ -169,13 +173,13 @@ fn a_free_body_keeps_momentum_and_energy() {
         assert!(swing.0 < 0.5 * swing.1, "the body vibrates: {swing:?}");
         worst
     };
-    // The energy that central differences keep is the true one but for the square of the step.
+    // The energy conserved by central differences differs from the true energy by the square of the step.
     let (whole, half) = (drift(0.25), drift(0.125));
     assert!(whole < 2.5e-3 && half < 0.3 * whole, "{whole:e} {half:e}");
 }
 
-/// Central differences are exact for a constant acceleration, `u = g t^2 / 2`, and with velocities moved on by the mean of
-/// the steps before and after they stay so where the step changes.
+/// Central differences are exact for a constant acceleration, `u = g t^2 / 2`. Velocities are advanced by the
+/// mean of the steps before and after, so this remains true for changing steps.
 #[test]
 fn a_fall_is_exact_whatever_the_steps() {
     let free = Free::new([2, 2, 2]);
@@ -227,14 +231,14 @@ fn energy_balance_with_loads_supports_and_damping() {
         assert!(last.external.abs() > 1e-6 && last.support.abs() > 1e-6, "{last:?}");
         assert!((damping > 0.0) == (last.damping > 1e-6), "{last:?}");
         let worst = all.iter().map(|b| b.drift.abs()).fold(0.0, f64::max);
-        // Found: 1.7e-3, and 1.4e-5 with damping, which takes the highest modes first.
+        // Observed: 1.7e-3, and 1.4e-5 with damping, which damps the highest modes first.
         let bound = if damping > 0.0 { 1e-4 } else { 3e-3 };
         assert!(worst < bound, "damping {damping}: {worst:e} {last:?}");
     }
 }
 
-/// A bar with no lateral motion (P wave, `c^2 = (lambda + 2 mu) / rho`) in its first longitudinal mode; linear
-/// elements with lumped mass have `omega = 2 c / h sin(pi h / (2 L))`, central differences
+/// A bar without lateral motion (P wave, `c^2 = (lambda + 2 mu) / rho`) in its first longitudinal mode.
+/// Linear elements with lumped mass have `omega = 2 c / h sin(pi h / (2 L))`, central differences have
 /// `sin(omega' dt / 2) = omega dt / 2`.
 #[test]
 fn a_bar_vibrates_at_the_frequency_of_its_dispersion() {
@@ -256,7 +260,7 @@ fn a_bar_vibrates_at_the_frequency_of_its_dispersion() {
     }
     let k = std::f64::consts::PI / length;
     let shape = |x: &Point3| (k * x.x).sin();
-    // Amplitude of 1e-7 of the length: linear.
+    // The amplitude is 1e-7 of the length, hence linear.
     let u: Vec<Vector3> = mesh.points().iter().map(|x| Vector3::new(1e-8 * shape(x), 0.0, 0.0)).collect();
     let c = ((laws[0].lambda() + 2.0 * laws[0].mu()) / RHO).sqrt();
     let h = length / cells as f64;
@@ -265,14 +269,14 @@ fn a_bar_vibrates_at_the_frequency_of_its_dispersion() {
     let omega = 2.0 / dt * (discrete * dt / 2.0).asin();
     let mut motion =
         Dynamics::new(&mut force, &mass, &prescribed, undamped(dt), u, vec![Vector3::zeros(); n]).unwrap();
-    // Not a multiple of the period, where the cosine would hide a wrong frequency.
+    // The time is no multiple of the period, at which the cosine would hide a wrong frequency.
     let steps = 207;
     motion.run(steps, 0, &mut no_load, &mut |_, _| ()).unwrap();
     let expected = (omega * dt * steps as f64).cos();
     for (x, u) in mesh.points().iter().zip(motion.displacements()) {
         assert!((u.x / 1e-8 - expected * shape(x)).abs() < 1e-5, "{} {}", u.x / 1e-8, expected * shape(x));
     }
-    // The continuum's own frequency is another one: the test would see it.
+    // The frequency of the continuum differs enough for the test to notice it.
     assert!(((c * k * dt * steps as f64).cos() - expected).abs() > 1e-3);
 }
 
@@ -294,7 +298,8 @@ fn bits_of_a_motion_do_not_depend_on_threads() {
     assert_eq!(run(1), run(2));
 }
 
-/// A motion with its own estimate at every state keeps the last one while no point has changed its shape by 2 %.
+/// A motion that could update its estimate at every state keeps the last estimate until a point has changed
+/// its shape by 2 %.
 #[test]
 fn the_critical_step_follows_the_shape() {
     let free = Free::new([3, 2, 2]);
@@ -306,7 +311,7 @@ fn the_critical_step_follows_the_shape() {
             free.block.mesh.points().iter().map(|x| Vector3::new(stretch * x.x, 0.0, 0.0)).collect();
         let at = critical_step(&mut force, &free.mass, &u, |_| true, LANCZOS).unwrap();
         let start = critical_step(&mut force, &free.mass, &zero, |_| true, LANCZOS).unwrap();
-        // As if the estimate at rest had been made before.
+        // The estimate at rest is passed in as known.
         let params = DynamicsParams { known: Some(start), ..undamped(0.5 * start.dt) };
         let velocity: Vec<Vector3> = u.iter().map(|u| u / (0.5 * start.dt)).collect();
         let mut motion = Dynamics::new(&mut force, &free.mass, &[], params, zero.clone(), velocity).unwrap();
@@ -338,7 +343,7 @@ fn what_cannot_go_on_is_named() {
         matches!(error, Some(ExplicitError::StepTooLarge { step: 0, critical, .. }) if critical == limit)
     );
 
-    // Pressed together until a point turns inside out; squeezed elements shorten the critical step first.
+    // Compressed until a point is inverted; compressed elements shorten the critical step before that.
     let mut squeeze = |_: f64, _: &[Vector3], _: &[Vector3], f: &mut [Vector3]| {
         for (x, f) in free.block.mesh.points().iter().zip(f) {
             f.x += 1.0 * (0.02 - x.x).signum();

@@ -1,4 +1,5 @@
-//! Internal forces: every lane path against the plain loop, the plain loop against its energy, bits against threads.
+//! Internal forces: every lane path against the plain loop, the plain loop against its energy, and
+//! independence of the number of threads.
 
 use explicit::{ExplicitBody, InternalForce};
 use geometry::CellKind;
@@ -8,13 +9,13 @@ use material::{Law, Material as _, NeoHookean};
 use shape::DilationGroups;
 use shape::Vector3;
 
-/// Two regions of different stiffness, mixed point by point.
+/// Laws of two regions of different stiffness, mixed point by point.
 fn laws() -> [Law; 2] {
     [(20e3, 0.495), (35e3, 0.3)]
         .map(|(young, poisson)| Law::NeoHookean(NeoHookean::new(young, poisson).unwrap()))
 }
 
-/// Every other law, twice each, as [`laws`].
+/// Returns all other laws, in pairs as in [`laws`].
 fn other_laws() -> Vec<[Law; 2]> {
     let [soft, stiff] =
         [(20e3, 0.495), (35e3, 0.3)].map(|(young, poisson)| Law::all(young, poisson).unwrap());
@@ -26,7 +27,7 @@ fn regions(block: &Block) -> Vec<u16> {
     (0..block.volume.weights().len()).map(|q| u16::from(q % 5 > 2)).collect()
 }
 
-/// A bent, twisted and stretched state with strains around 0.2, times `amount`.
+/// Returns a bent, twisted and stretched state with strains of about 0.2, times `amount`.
 fn deformed(block: &Block, amount: f64) -> Vec<Vector3> {
     let field = |x: &shape::Point3| {
         let wave = Vector3::new((150.0 * x.y).sin(), (120.0 * x.z).cos(), (180.0 * x.x).sin()) * 1e-3;
@@ -65,7 +66,7 @@ fn paths_agree_by(
         let kernel = if groups.is_some() && whole { "plain" } else { kernel };
         paths_agree_of(&laws, block, groups, kernel, region);
         if kernel != "plain" {
-            // Beside a neo-Hookean region, at whose border groups have parts of both.
+            // Paired with a neo-Hookean region, at whose border groups contain points of both laws.
             let [first, _] = laws;
             let [_, second] = self::laws();
             paths_agree_of(&[first, second], block, groups, kernel, region);
@@ -73,7 +74,7 @@ fn paths_agree_by(
     }
 }
 
-/// All paths on one table against the plain loop, at large strain and at 1e-6 of it.
+/// Compares all paths on a table with the plain loop, at large strain and at 1e-6 of it.
 fn paths_agree_of(
     laws: &[Law],
     block: &Block,
@@ -90,7 +91,7 @@ fn paths_agree_of(
         for path in LanePath::available() {
             let mut force = InternalForce::new(body, path).unwrap();
             assert_eq!(force.info().kernel.name(), kernel);
-            // Sums of some 20 terms of mixed sign; the volumetric part is 50 times the rest at nu = 0.495.
+            // Sums of about 20 terms of mixed sign; the volumetric part is 50 times the rest at nu = 0.495.
             let tolerance = 1e-13;
             let error = difference(&forces(&mut force, &u), &expected);
             let law = laws[0].name();
@@ -112,7 +113,7 @@ fn hexahedra_agree_with_the_plain_loop() {
     paths_agree_by(&block, None, "hex8", &|q| u16::from(element(q) % 5 > 2));
     let groups = fem::element_dilation(&block.mesh, &fem::VolumeRule::STANDARD).unwrap();
     paths_agree_by(&block, Some(&groups), "hex8 mean dilation", &|q| u16::from(element(q) % 5 > 2));
-    // Laws that change within an element: point by point.
+    // Laws that change within an element are evaluated point by point.
     paths_agree(&block, None, "rows");
 }
 
@@ -124,8 +125,8 @@ fn rows_of_other_lengths_agree_with_the_plain_loop() {
     paths_agree(&ragged(), None, "rows");
 }
 
-/// Rows of many lengths, as a meshless cloud has them: the points of a tet4 mesh see the nodes of two elements more,
-/// averaged so that linear fields stay exact.
+/// Rows of various lengths, as in a meshless cloud: the points of a tet4 mesh have averaged rows of up to
+/// seven points, so linear fields stay exact.
 fn ragged() -> Block {
     let mut block = Block::new(CellKind::Tet4, [5, 4, 3]);
     let (volume, n) = (&block.volume, block.volume.weights().len());
@@ -138,7 +139,7 @@ fn ragged() -> Block {
             values.extend(volume.rows().row(other).1.iter().map(|v| v / seen as f64));
             grads.extend(volume.row(other).1.iter().map(|g| g / seen as f64));
         }
-        // Every other row of an odd length: its last node comes twice.
+        // Every second row has an odd length: its last node occurs twice.
         if q % 2 == 0 {
             let (value, grad) = (values.pop().unwrap(), grads.pop().unwrap());
             nodes.push(*nodes.last().unwrap());
@@ -160,7 +161,7 @@ fn nodal_dilation_lanes_agree_with_the_plain_loop() {
     let block = Block::new(CellKind::Tet4, [5, 4, 3]);
     let groups = DilationGroups::nodal(&block.volume).unwrap();
     paths_agree(&block, Some(&groups), "tet4 nodal dilation");
-    // Groups that end at the border of two parts, and chunks of points of one part each.
+    // Groups that end at the border of two parts, and chunks of points with a single part.
     let cut = groups.by_part(&regions(&block), block.volume.weights()).unwrap();
     assert!(cut.len() > groups.len());
     paths_agree(&block, Some(&cut), "tet4 nodal dilation");
@@ -185,7 +186,8 @@ fn plain_forces_are_the_gradient_of_the_energy() {
                     force.energy(&moved).unwrap()
                 };
                 let slope = (at(1.0) - at(-1.0)) / (2.0 * step);
-                // Central difference: step^2 of curvature and 1e-16 E / step of rounding, both near 1e-8 of f.
+                // Central difference: the errors step^2 times curvature and 1e-16 E / step from rounding are
+                // both about 1e-8 of f.
                 assert!((slope - f[node][axis]).abs() < 1e-6 * largest(&f), "{node} {axis}");
             }
         }

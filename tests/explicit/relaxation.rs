@@ -1,4 +1,4 @@
-//! Dynamic relaxation against closed forms and zero residual.
+//! Dynamic relaxation compared with closed forms, and zero residual.
 
 use explicit::{
     ExplicitBody, ExplicitError, InternalForce, LanczosParams, Lumping, RelaxationParams, lumped_mass, relax,
@@ -18,7 +18,7 @@ fn params(tolerance: f64) -> RelaxationParams {
     }
 }
 
-/// Rollers on three sides and a dead load on x-max: the stretches solve `P_11 = t`, `P_22 = P_33 = 0`.
+/// With rollers on three sides and a dead load on x-max, the stretches solve `P_11 = t`, `P_22 = P_33 = 0`.
 #[test]
 fn uniaxial_tension_ends_at_its_closed_form() {
     let block = Block::new(CellKind::Hex8, [3, 2, 2]);
@@ -39,7 +39,8 @@ fn uniaxial_tension_ends_at_its_closed_form() {
             block.nodes_of(&[side]).into_iter().map(move |node| FixedDof { node, axis, value: 0.0 })
         })
         .collect();
-    // Bisection along, with bisection across inside it; P_11 grows with one, P_22 with the other.
+    // Nested bisection: the outer one for the axial stretch, the inner one for the lateral stretch. P_11
+    // increases with the first, P_22 with the second.
     let stress = |a: f64, b: f64| laws[0].stress(&Matrix3::from_diagonal(&Vector3::new(a, b, b)));
     let root = |low: f64, high: f64, below: &dyn Fn(f64) -> bool| {
         (0..60).fold((low, high), |(a, b), _| {
@@ -57,7 +58,7 @@ fn uniaxial_tension_ends_at_its_closed_form() {
         let (u, info) = relax(&mut force, &mass, &fixed, &mut load, zero.clone(), params(tolerance)).unwrap();
         let exact = |x: &Point3| Vector3::new(along * x.x, across(along) * x.y, across(along) * x.z);
         let error = block.error(&u, exact);
-        // The stopping rule estimates the error; ten times its estimate is allowed.
+        // The stopping rule estimates the error; ten times this estimate is allowed.
         assert!(error < within, "{error:e} {info:?}");
         assert!(info.residual < 20.0 * tolerance && info.error < tolerance, "{info:?}");
         assert!(info.slow_mode > 0.1 && info.slow_mode < 10.0, "{info:?}");
@@ -71,7 +72,7 @@ fn a_bent_box_comes_to_rest_and_too_few_steps_are_an_error() {
     let mass = lumped_mass(&block.volume, &[1060.0], &[], Lumping::RowSum).unwrap();
     let body = ExplicitBody { volume: &block.volume, laws: &laws, region: &[], groups: None };
     let mut fixed = block.fix(&["x-min"], |_| Vector3::zeros());
-    // One side led down by 6 mm.
+    // One side is moved down by 6 mm.
     fixed.extend(block.nodes_of(&["x-max"]).into_iter().map(|node| FixedDof { node, axis: 2, value: -6e-3 }));
     let ramp: Vec<Vector3> =
         block.mesh.points().iter().map(|x| Vector3::new(0.0, 0.0, -6e-3 * x.x / 0.04)).collect();

@@ -1,4 +1,4 @@
-//! Implicit dynamics: what is conserved, what is exact, and contact.
+//! Implicit dynamics: conserved quantities, exact solutions, and contact.
 
 use contact::{ContactLaw, ContactSurface, Drive, DrivenTool, Sphere, Tool, ToolShape};
 use fem::SurfaceRule;
@@ -21,12 +21,12 @@ fn linear() -> Law {
     Law::LinearElastic(LinearElastic::new(20e3, 0.3).unwrap())
 }
 
-/// 4 x 3 x 2 cm.
+/// A block of 4 x 3 x 2 cm.
 fn block(kind: CellKind, cells: [usize; 3]) -> Cuboid {
     Cuboid::new(kind, [0.04, 0.03, 0.02], cells)
 }
 
-/// A velocity that stretches, bends and turns, about 0.1 m/s.
+/// Returns a velocity field of stretching, bending and rotation, about 0.1 m/s.
 fn stirred(block: &Cuboid) -> Vec<Vector3> {
     block.field(|x| Vector3::new(3.0 * x.x - 2.0 * x.z, 80.0 * x.x * x.x, 2.0 * x.x - 90.0 * x.y * x.z))
 }
@@ -75,7 +75,7 @@ fn the_trapezoidal_rule_keeps_the_energy_of_a_linear_body() {
         let velocity = stirred(&block);
         let problem = moving(&body, &mass, &[], &velocity);
         let mut moved = 0.0f64;
-        // Half of the energy changes between the forms: 1e-10 is of a number of its size.
+        // Half of the energy is exchanged between the forms, so 1e-10 is relative to an energy of this size.
         solve_in_time(&problem, &params(0.1, 50, 1.0), |done, _, _| {
             let lost = done.energy.lost() / done.energy.start;
             moved = moved.max(done.energy.internal / done.energy.start);
@@ -84,7 +84,7 @@ fn the_trapezoidal_rule_keeps_the_energy_of_a_linear_body() {
         .unwrap();
         assert!(moved > 0.3, "{moved}");
 
-        // With damping and loads all that goes in and out is accounted for.
+        // With damping and loads, all energy supplied and removed is accounted for.
         let traction = vec![Vector3::new(40.0, -30.0, 20.0); block.volume.weights().len()];
         let loads = [Load::Body { values: traction.iter().map(|t| t / 0.01).collect() }];
         let body = StaticProblem { loads: &loads, ..body.clone() };
@@ -139,7 +139,7 @@ fn a_neo_hookean_body_keeps_energy_within_bounds_and_momentum_exactly() {
         assert!(smallest < 0.95, "{smallest}: the body hardly deforms");
         worst
     };
-    // Not conserved, but of second order and without drift over a dozen periods.
+    // The energy is not conserved, but the error is of second order and does not drift over a dozen periods.
     let (coarse, fine) = (worst(200), worst(400));
     assert!(coarse < 0.02 && fine < 0.35 * coarse, "{coarse:e} {fine:e}");
 }
@@ -166,7 +166,7 @@ fn the_same_bits_with_one_thread_and_two() {
     assert!(largest(&one.motion.u) > 1e-4);
 }
 
-/// A ball pressed into a block: the quasi-static problem and the same one with mass.
+/// A ball pressed into a block: the quasi-static problem, and the same problem with mass.
 #[test]
 fn a_slow_tool_with_inertia_presses_as_a_static_one() {
     let block = block(CellKind::Hex8, [4, 4, 3]);
@@ -189,7 +189,7 @@ fn a_slow_tool_with_inertia_presses_as_a_static_one() {
     assert_eq!(still.failure, None);
 
     let mass = block.lumped(DENSITY);
-    // The lowest period is about 20 ms: a hundred of them.
+    // The lowest period is about 20 ms, so the loading takes a hundred periods.
     let ramps = Ramps::all(Ramp::Smooth { over: 2.0 });
     let inertia = Inertia { mass: &mass, damping: 0.0, displacement: &[], velocity: &[] };
     let problem = TimeProblem { body: &body, ramps, inertia: Some(inertia), relaxation: &[] };
@@ -202,17 +202,16 @@ fn a_slow_tool_with_inertia_presses_as_a_static_one() {
     let error = distance(&path.motion.u, &still.u) / largest(&still.u);
     assert!(error < 1e-2, "{error:e}");
     assert!(moving.energy.kinetic < 1e-5 * moving.energy.internal, "{:?}", moving.energy);
-    // The tool's work is the block's energy, but for friction and the trapezoidal rule.
+    // The tool's work equals the block's energy, except for friction and the error of the trapezoidal rule.
     let ratio = moving.energy.internal / moving.energy.external;
     assert!(ratio > 0.9 && ratio < 1.02, "{ratio}");
-    // The supports bear what the tool presses with.
-    // The supports bear what the tool presses with (its force is the one on the tool, up).
+    // The supports carry the force of the tool (the force on the tool points up).
     let error = path.motion.reaction.iter().map(|r| r.z).sum::<f64>() / found - 1.0;
     assert!(error.abs() < 1e-2, "{error:e}");
 }
 
-/// A base that moves smoothly and stops: the body ends where it would by statics, and the work of the supports is
-/// what kinetic and strain energy became.
+/// A base that moves smoothly and stops: the body ends in its static state, and the work of the supports
+/// equals the kinetic and strain energy.
 #[test]
 fn a_moved_base_carries_the_body() {
     let block = block(CellKind::Hex8, [3, 2, 2]);
@@ -237,7 +236,7 @@ fn a_moved_base_carries_the_body() {
     let (coarse, fine) = (lost(60), lost(120));
     assert!(fine < 1e-3 && fine < 0.3 * coarse, "{coarse:e} {fine:e}");
 
-    // Everything moves with it once the ramp is slow and damped.
+    // With a slow ramp and damping, the whole body moves with the base.
     let inertia = Inertia { damping: 200.0, ..inertia };
     let ramps = Ramps::all(Ramp::Linear { over: 0.5 });
     let problem = TimeProblem { ramps, inertia: Some(inertia), ..problem };
@@ -248,7 +247,7 @@ fn a_moved_base_carries_the_body() {
     assert!(error < 1e-6, "{error:e}");
 }
 
-/// A surface constrained by a penalty moves as one constrained node by node does.
+/// A surface constrained by a penalty moves like a surface constrained node by node.
 #[test]
 fn a_surface_held_by_penalty_is_driven_too() {
     let block = block(CellKind::Hex8, [3, 2, 2]);
@@ -362,7 +361,7 @@ fn unusable_problems_are_refused() {
         solve_in_time(&bad, &good, |_, _, _| ()).unwrap_err(),
         TimeError::Parameter { what: "a support put on at once", .. }
     ));
-    // Row sums of a tet10 are negative in its corners; four points leave its mass matrix singular.
+    // Row sums of a tet10 are negative at its corners; four points give a singular mass matrix.
     assert!(matches!(
         Mass::lumped(&[1.0, -1.0]).unwrap_err(),
         TimeError::NodalMass { node: 1, mass } if mass == -1.0

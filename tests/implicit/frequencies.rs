@@ -1,4 +1,4 @@
-//! Implicit dynamics against closed forms: one degree of freedom, a bar.
+//! Implicit dynamics compared with closed forms: a single degree of freedom, and a bar.
 
 use geometry::CellKind;
 use integration::cuboid::{Cuboid, distance, moving, params};
@@ -13,8 +13,8 @@ fn linear(young: f64, poisson: f64) -> [Law; 1] {
     [Law::LinearElastic(LinearElastic::new(young, poisson).unwrap())]
 }
 
-/// One hex8 of side 1 cm on a rigid floor, moved along z only: `omega^2 = E A / L / (rho A L / 2)`. Displacements of
-/// its top at every step, from `u = 1 mm`, `v = 2 cm/s`, and its `omega`.
+/// A hex8 of side 1 cm on a rigid floor, moved along z only: `omega^2 = E A / L / (rho A L / 2)`. Returns the
+/// displacements of its top at every step, from `u = 1 mm`, `v = 2 cm/s`, and its `omega`.
 fn oscillator(rho_inf: f64, damping: f64, omega_dt: f64, steps: usize) -> (Vec<f64>, f64) {
     let block = Cuboid::new(CellKind::Hex8, [0.01; 3], [1; 3]);
     let laws = linear(20e3, 0.0);
@@ -35,7 +35,7 @@ fn oscillator(rho_inf: f64, damping: f64, omega_dt: f64, steps: usize) -> (Vec<f
     (path, omega)
 }
 
-/// Amplification of (u, dt v, dt^2 a), from the three equations of Chung and Hulbert as they stand, with
+/// Returns the amplification matrix of (u, dt v, dt^2 a) from the three equations of Chung and Hulbert, with
 /// `w = omega dt` and `c = damping dt`.
 fn amplification(rho: f64, w: f64, c: f64) -> State<f64> {
     let (am, af) = ((2.0 * rho - 1.0) / (rho + 1.0), rho / (rho + 1.0));
@@ -63,7 +63,8 @@ fn one_degree_of_freedom_is_amplified_as_published() {
                 assert!((u - state[0]).abs() < 1e-11 * size, "{rho} {w}: {u} {}", state[0]);
             }
         }
-        // All three roots go to -rho at infinite frequency; their product is better conditioned than they are.
+        // All three roots tend to -rho at infinite frequency; their product is better conditioned than the
+        // roots.
         let product = amplification(rho, 1e5, 0.0).determinant();
         assert!((product + rho.powi(3)).abs() < 1e-8, "{rho}: {product}");
     }
@@ -86,8 +87,9 @@ fn one_degree_of_freedom_converges_with_order_two() {
     }
 }
 
-/// A bar without lateral motion, fixed at x = 0: the mode `sin k x` of `n` hex8 with consistent mass has
-/// `omega^2 = 6 c^2 / h^2 (1 - cos kh) / (2 + cos kh)`, and the trapezoidal rule turns it by `2 atan(omega dt / 2)` a step.
+/// A bar without lateral motion, fixed at x = 0. The mode `sin k x` of `n` hex8 with consistent mass has
+/// `omega^2 = 6 c^2 / h^2 (1 - cos kh) / (2 + cos kh)`, and the trapezoidal rule advances its phase by
+/// `2 atan(omega dt / 2)` per step.
 #[test]
 fn a_bar_vibrates_in_its_discrete_mode() {
     let (n, length) = (8, 0.1);

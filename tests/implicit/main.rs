@@ -1,4 +1,4 @@
-//! Motion in real time and vibrations, against exact solutions.
+//! Implicit dynamics and vibrations compared with exact solutions.
 
 mod dynamics;
 mod frequencies;

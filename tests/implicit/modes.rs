@@ -1,4 +1,4 @@
-//! Free vibrations against closed forms: one element, a bar, a free block.
+//! Free vibrations compared with closed forms: an element, a bar, a free block.
 
 use fem::VolumeRule;
 use geometry::CellKind;
@@ -20,14 +20,15 @@ fn problem<'a>(block: &'a Cuboid, laws: &'a [LinearElastic], fixed: &'a [FixedDo
     LinearProblem { body, loads: &[], fixed, constraints: &[], weak: &[] }
 }
 
-/// Distance of a frequency from the nearest one computed, relative.
+/// Returns the relative difference between a squared frequency and the nearest computed one.
 fn missed(modes: &Modes, squared: f64) -> f64 {
     modes.squared.iter().map(|s| (s / squared - 1.0).abs()).fold(f64::INFINITY, f64::min)
 }
 
 #[test]
 fn one_element_on_the_floor() {
-    // Its top moves along z: `omega^2 = E A / L / (rho A L / 2)` lumped; a linear field has a third of the mass.
+    // The top moves along z: `omega^2 = E A / L / (rho A L / 2)` with lumped mass; a linear field has a third
+    // of the mass.
     let block = Cuboid::new(CellKind::Hex8, [0.01; 3], [1; 3]);
     let laws = law(20e3, 0.0);
     let fixed = block.constrained(|x, axis| (axis < 2 || x.z == 0.0).then_some(0.0));
@@ -41,16 +42,16 @@ fn one_element_on_the_floor() {
     }
 }
 
-/// A bar of `n` hex8 without lateral motion, fixed at x = 0: the modes `sin k x` have
-/// `omega^2 = 6 c^2 / h^2 (1 - cos kh) / (2 + cos kh)` with consistent mass and `2 c^2 / h^2 (1 - cos kh)` with lumped,
-/// above and below `c k`.
+/// A bar of `n` hex8 without lateral motion, fixed at x = 0. The modes `sin k x` have
+/// `omega^2 = 6 c^2 / h^2 (1 - cos kh) / (2 + cos kh)` with consistent mass and `2 c^2 / h^2 (1 - cos kh)`
+/// with lumped mass, above and below `c k`.
 #[test]
 fn a_bar_vibrates_in_its_discrete_modes() {
     let (n, length) = (8, 0.1);
     let bar = Cuboid::new(CellKind::Hex8, [length, 0.01, 0.01], [n, 1, 1]);
     let laws = law(20e3, 0.3);
     let wave = (laws[0].lambda() + 2.0 * laws[0].mu()) / DENSITY;
-    // What supports prescribe has no part in vibrations.
+    // Prescribed values of supports do not affect vibrations.
     let fixed = bar.constrained(|x, axis| (axis > 0 || x.x == 0.0).then_some(1e-3));
     let problem = problem(&bar, &laws, &fixed);
     let consistent = modes(&problem, &bar.consistent(DENSITY)).unwrap();
@@ -65,7 +66,7 @@ fn a_bar_vibrates_in_its_discrete_modes() {
         assert!(below < wave * k * k && wave * k * k < above);
         assert!(missed(&consistent, above) < 1e-11 && missed(&lumped, below) < 1e-11, "{number}");
     }
-    // The first is `sin k x` itself, with unit mass and zero where it is constrained.
+    // The first mode is `sin k x` itself, with unit mass and zero at constrained degrees of freedom.
     let k = 0.5 * std::f64::consts::PI / length;
     let sine = bar.field(|x| Vector3::new((k * x.x).sin(), 0.0, 0.0));
     let mass = bar.consistent(DENSITY);
@@ -98,14 +99,15 @@ fn units_scale() {
         modes(&problem(&block, &laws, &fixed), &block.consistent(density)).unwrap().squared
     };
     let metres = squared(0.01, 20e3, DENSITY);
-    // N, mm, t: Pa are 1e-6 MPa, kg/m^3 1e-12 t/mm^3, and a second is a second.
+    // N, mm, t: Pa are 1e-6 MPa, kg/m^3 are 1e-12 t/mm^3, and the second does not change.
     let millimetres = squared(10.0, 20e-3, DENSITY * 1e-12);
     for (a, b) in metres.iter().zip(&millimetres) {
         assert!((a / b - 1.0).abs() < 1e-11, "{a} {b}");
     }
 }
 
-/// Masses at points between the nodes: `M = Lambda^T diag(m) Lambda`, and `Lambda = 1` is the lumped mass, to the bit.
+/// For masses at points between the nodes, `M = Lambda^T diag(m) Lambda`; `Lambda = 1` gives the lumped mass,
+/// bit for bit.
 #[test]
 fn a_transformed_mass_moves_with_displacements() {
     let rows = |values: [f64; 4]| {
@@ -127,7 +129,7 @@ fn a_transformed_mass_moves_with_displacements() {
     assert!(wrong.to_string().contains("rows at the nodes: 2 given, 1 needed"), "{wrong}");
 }
 
-/// One point per element weighs no hourglass and stiffens none.
+/// One integration point per element gives hourglass motions neither mass nor stiffness.
 #[test]
 fn motions_without_mass_are_counted_and_without_frequency_refused() {
     let block = Cuboid::new(CellKind::Hex8, [0.04; 3], [2; 3]);
@@ -136,7 +138,7 @@ fn motions_without_mass_are_counted_and_without_frequency_refused() {
     let points = fem::volume_rows(&block.mesh, &coarse).unwrap();
     let mass = Mass::consistent(&points, &[DENSITY], &[]).unwrap();
     let found = modes(&problem(&block, &laws, &[]), &mass).unwrap();
-    // Eight points of three axes have a rank of 24.
+    // Eight points with three axes have a rank of 24.
     assert_eq!((found.squared.len(), found.massless), (24, 81 - 24));
 
     let mut poor = problem(&block, &laws, &[]);

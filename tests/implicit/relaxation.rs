@@ -1,4 +1,4 @@
-//! Relaxing bodies in time: relaxation, creep, and their place in dynamics.
+//! Relaxing bodies: relaxation, creep, and their role in dynamics.
 
 use fem::VolumeRule;
 use geometry::CellKind;
@@ -26,7 +26,7 @@ fn end(x: &shape::Point3) -> bool {
     x.x > SIDE - 1e-9
 }
 
-/// Time, pull on the face x = 10 mm and step, of a quasi-static motion.
+/// Returns time, force on the face x = 10 mm, and step, for a quasi-static motion.
 fn pulls(
     block: &Cuboid,
     body: &StaticProblem,
@@ -45,7 +45,7 @@ fn pulls(
     pulls
 }
 
-/// All faces moved by these elongations.
+/// Prescribes these elongations on all faces.
 fn stretched(block: &Cuboid, by: [f64; 3]) -> Vec<FixedDof> {
     block.constrained(|x, axis| {
         let face = x.iter().any(|c| *c < 1e-9 || *c > SIDE - 1e-9);
@@ -53,7 +53,8 @@ fn stretched(block: &Cuboid, by: [f64; 3]) -> Vec<FixedDof> {
     })
 }
 
-/// Sliding on the three planes through the origin.
+/// Constrains the three planes through the origin in their normal directions; `pulled` prescribes the
+/// elongation along x.
 fn symmetric(block: &Cuboid, pulled: Option<f64>) -> Vec<FixedDof> {
     block.constrained(|x, axis| match pulled {
         Some(by) if axis == 0 && end(x) => Some(by),
@@ -64,7 +65,7 @@ fn symmetric(block: &Cuboid, pulled: Option<f64>) -> Vec<FixedDof> {
 #[test]
 fn a_stretched_and_held_bar_relaxes_by_the_series() {
     let prony = [Some(series())];
-    // Both keep the volume of their strain measure: the stress is a deviator.
+    // Both cases preserve the volume of their strain measure, so the stress is a deviator.
     let small = [0.02, -0.01, -0.01];
     let thin = 1.2f64.powf(-0.5) - 1.0;
     let cases = [
@@ -92,16 +93,16 @@ fn a_stretched_and_held_bar_relaxes_by_the_series() {
                 for (t, force, done) in &found {
                     let exact = whole * series().relaxation(*t);
                     let error = (force - exact).abs() / whole;
-                    // Newton's 1e-11.
+                    // Tolerance of Newton's method: 1e-11.
                     assert!(error < 1e-10, "{} {kind:?} {t}: {error:e}", laws[0].name());
-                    // What is constrained does no work.
+                    // Constrained degrees of freedom do no work.
                     let work = done.energy.external / found[0].2.energy.external;
                     assert!((work - 1.0).abs() < 1e-10, "{t}: {work}");
                 }
                 if !laws[0].is_small_strain() {
                     continue;
                 }
-                // At constant rate, then constant, the integral of the series is exact too.
+                // At a constant rate followed by a constant value, the integral of the series is also exact.
                 for (t, force, _) in
                     pulls(&block, &body, Ramp::Linear { over: 0.5 }, &prony, &params(2.0, 16, 1.0))
                 {
@@ -117,8 +118,9 @@ fn a_stretched_and_held_bar_relaxes_by_the_series() {
     }
 }
 
-/// `eps(t) = sigma (J(t) / 3 + 1 / (9 kappa))`, `J(t) = (1 / g_inf - (1 / g_inf - 1) exp(-g_inf t / tau)) / mu` for a
-/// single term (Tschoegl, The Phenomenological Theory of Linear Viscoelastic Behavior, 1989, standard solid).
+/// For a single term, `eps(t) = sigma (J(t) / 3 + 1 / (9 kappa))` with
+/// `J(t) = (1 / g_inf - (1 / g_inf - 1) exp(-g_inf t / tau)) / mu` (Tschoegl, The Phenomenological Theory of
+/// Linear Viscoelastic Behavior, 1989, standard solid).
 #[test]
 fn a_loaded_bar_creeps_with_order_two() {
     let prony = [Some(Prony::new(&[(0.6, 0.4)]).unwrap())];
@@ -156,7 +158,8 @@ fn a_loaded_bar_creeps_with_order_two() {
     assert!(errors[2] < 1e-4, "{errors:?}");
 }
 
-/// After a long time a bar pulled by 30 % is one of a shear modulus `g_inf mu` and the same bulk modulus.
+/// After a long time, a bar stretched by 30 % behaves like a bar with the shear modulus `g_inf mu` and the
+/// same bulk modulus.
 #[test]
 fn at_the_end_a_bar_is_a_softer_one() {
     let prony = [Some(series())];
@@ -174,7 +177,7 @@ fn at_the_end_a_bar_is_a_softer_one() {
             body.solid.dilation = dilation;
             let found =
                 pulls(&block, &body, Ramp::Linear { over: 10.0 }, relaxation, &params(100.0, 100, 1.0));
-            // Quadratic convergence: the tangent is the derivative of what relaxes.
+            // Convergence is quadratic because the tangent is the derivative of the relaxed stress.
             let most = found.iter().map(|f| f.2.step.iterations.len()).max().unwrap();
             assert!(most <= 8, "{most} iterations");
             found.last().unwrap().1
@@ -184,7 +187,8 @@ fn at_the_end_a_bar_is_a_softer_one() {
     }
 }
 
-/// Laws whose deviator follows the volume have no exact symmetric tangent; theirs still converges fast.
+/// For laws whose deviator depends on the volume, the tangent is symmetrised and not exact; iterations still
+/// converge fast.
 #[test]
 fn laws_without_a_split_converge() {
     let prony = [Some(series())];
@@ -204,14 +208,15 @@ fn laws_without_a_split_converge() {
             assert!(most <= 14, "{} iterations", most);
             found.last().unwrap().1
         };
-        // The strain is homogeneous: every projection gives the same.
+        // The strain is homogeneous, so every projection gives the same result.
         let (standard, groups) = (last(Dilation::Standard), last(Dilation::Groups(&groups)));
         assert!((standard / groups - 1.0).abs() < 1e-9 && standard > 0.0, "{standard} {groups}");
     }
 }
 
-/// One element vibrating along z against `u'' = -omega^2 ((1 - s) u + s (g_inf u + h))`, `h' = g u' - h / tau`, where
-/// `s` is the share of `4 mu / 3` in the modulus; integrated by Runge and Kutta's rule of fourth order.
+/// An element vibrating along z is compared with `u'' = -omega^2 ((1 - s) u + s (g_inf u + h))`,
+/// `h' = g u' - h / tau`, where `s` is the share of `4 mu / 3` in the modulus. The reference is integrated by
+/// the fourth-order Runge-Kutta method.
 #[test]
 fn a_relaxing_oscillator_is_damped_with_order_two() {
     let (g, tau) = (0.5, 0.01);

@@ -1,4 +1,4 @@
-//! How many digits a solution has: expected, and true.
+//! Number of accurate digits of a solution: estimated and true.
 
 use algebra::{AlgebraError, DENSE_LIMIT, Factorization, Symmetric, factor};
 use fem::VolumeRule;
@@ -8,7 +8,7 @@ use material::LinearElastic;
 use shape::{DilationGroups, FixedDof, Point3, Vector3};
 use statics::{Body, LinearProblem, Load, SolveError, assemble};
 
-/// A factored stiffness without its supports' degrees of freedom, and a load.
+/// A factored stiffness over the unconstrained degrees of freedom, and a load.
 struct System {
     factored: Factorization,
     load: Vec<f64>,
@@ -48,7 +48,7 @@ fn system(
     System { factored: factor(matrix, DENSE_LIMIT).unwrap(), load }
 }
 
-/// A sum kept in two numbers (Knuth's and Dekker's exact sum and product).
+/// A sum stored in two numbers (exact sum and product of Knuth and Dekker).
 #[derive(Clone, Copy, Default)]
 struct Twice(f64, f64);
 
@@ -68,7 +68,7 @@ impl Twice {
 }
 
 impl System {
-    /// The solution to all digits: refined with residuals of twice the precision.
+    /// Returns the solution to all digits, refined with residuals of twice the precision.
     fn exact(&self) -> Vec<f64> {
         let matrix = &self.factored.matrix;
         let mut x: Vec<Twice> = vec![Twice::default(); matrix.dim()];
@@ -94,7 +94,7 @@ impl System {
         x.iter().map(|x| x.0 + x.1).collect()
     }
 
-    /// Residual, expected digits and true digits of a solution.
+    /// Returns the residual, the estimated digits and the true digits of a solution.
     fn digits(&self) -> (f64, f64, f64) {
         let mut x = self.load.clone();
         let solved = self.factored.solve_judged(&mut x).unwrap();
@@ -106,7 +106,8 @@ impl System {
     }
 }
 
-/// Rounding leaves 1e-7 of the load of a beam 100 times as long as high, and 1e-8 of its displacement at least.
+/// For a beam 100 times as long as high, rounding leaves a residual of 1e-7 of the load, and an error of at
+/// least 1e-8 of the displacement.
 #[test]
 fn slender_beams_are_solved_with_the_digits_that_are_expected() {
     for (kind, mean) in [(CellKind::Tet10, false), (CellKind::Hex20, false), (CellKind::Hex8, true)] {
@@ -117,7 +118,7 @@ fn slender_beams_are_solved_with_the_digits_that_are_expected() {
             let (residual, expected, digits) = system.digits();
             println!("{kind:?} {slender}: {residual:e} {expected} {digits}");
             assert!(residual > 1e-9, "{kind:?} {slender}: {residual:e} would pass for the load");
-            // A bound that holds for any matrix and rounding as near as this.
+            // The estimate is a bound that holds for any matrix and any rounding of this size.
             assert!(
                 (expected..expected + 4.0).contains(&digits),
                 "{kind:?} {slender}: {digits} for {expected}"
@@ -148,7 +149,8 @@ fn a_membrane_of_1024_cells_is_solved_nearly_incompressible() {
     assert!(expected > 6.0, "{expected}");
 }
 
-/// A force that no support takes, a thousandth of a rounding short of equilibrium: no digit is left of the motion.
+/// A force that no support carries, a thousandth of a rounding error away from equilibrium: the motion has no
+/// accurate digit.
 #[test]
 fn a_free_body_is_refused_however_small_what_moves_it() {
     let block = Cuboid::new(CellKind::Hex8, [0.04, 0.03, 0.02], [6, 5, 5]);
@@ -180,9 +182,9 @@ fn a_free_body_is_refused_however_small_what_moves_it() {
     }
 }
 
-/// `A^-1 = diag(2, 1, 1, 1, 1) + c v v^T` with `v` across the vector of ones and the first axis. The rounds
-/// of the estimate look along these two alone, and find 2. The norm of the inverse is that of a later column,
-/// `1 + 4 c`.
+/// `A^-1 = diag(2, 1, 1, 1, 1) + c v v^T` with `v` orthogonal to the vector of ones and to the first axis.
+/// The rounds of the estimate search along these two only, and find 2. The norm of the inverse is that of a
+/// later column, `1 + 4 c`.
 #[test]
 fn what_the_rounds_of_the_estimate_do_not_see_its_last_vector_does() {
     let (c, v) = (1e6, [0.0, 1.0, -1.0, 1.0, -1.0]);

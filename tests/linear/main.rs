@@ -1,4 +1,4 @@
-//! Linear statics: patch tests, stiffness, solutions, and problems that are refused.
+//! Linear statics: patch tests, stiffness, solutions, and refused problems.
 
 mod digits;
 mod multigrid;

@@ -1,4 +1,5 @@
-//! Iterations with multigrid: against a factor, in the iterations that theory gives, and with the same bits.
+//! Iterative solution with multigrid: agreement with a direct solution, number of iterations as in theory,
+//! and reproducible bits.
 
 use algebra::SolverPath;
 use fem::VolumeRule;
@@ -11,7 +12,7 @@ use statics::{Body, ConstraintRow, Factored, LinearProblem, Load, SolveError, as
 
 const KINDS: [CellKind; 4] = [CellKind::Tet4, CellKind::Tet10, CellKind::Hex8, CellKind::Hex20];
 
-/// A block held at one side, moved at another along one axis, under its weight.
+/// Solves a block constrained on one side, moved along one axis on the opposite side, under its weight.
 fn solved<T>(block: &Block, poisson: f64, solve: impl FnOnce(&LinearProblem) -> T) -> T {
     let material = [LinearElastic::new(20e3, poisson).unwrap()];
     let weight = vec![Vector3::new(2000.0, 0.0, -9810.0); block.volume.weights().len()];
@@ -34,7 +35,7 @@ fn iterated<'a>(problem: &LinearProblem<'a>, block: &Block) -> Result<Factored<'
     assembled.iterated(levels, 1e-8)
 }
 
-/// Largest difference over the largest displacement.
+/// Returns the largest difference, relative to the largest displacement.
 fn gap(a: &[Vector3], b: &[Vector3]) -> f64 {
     let largest = b.iter().map(Vector3::norm).fold(0.0, f64::max);
     a.iter().zip(b).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max) / largest
@@ -55,7 +56,7 @@ fn iterations_come_to_what_a_factor_gives_for_every_element() {
                 assert!((2..=most).contains(&count), "{kind:?} nu {poisson}: {count} iterations");
                 assert_eq!(solution.info.path, SolverPath::Multigrid);
                 assert_eq!(solution.info.dofs, direct.info.dofs);
-                // Half the load is half the solution, from the same hierarchy.
+                // Half of the load gives half of the solution, with the same hierarchy.
                 let half = factored.solve(0.5).unwrap();
                 let doubled: Vec<Vector3> = half.u.iter().map(|u| u * 2.0).collect();
                 assert!(gap(&doubled, &solution.u) < 1e-12, "{kind:?}");
@@ -82,7 +83,7 @@ fn iterations_hardly_grow_with_the_size() {
 
 #[test]
 fn the_same_bits_at_any_number_of_threads() {
-    // More nodes than two chunks of the sweeps have.
+    // The mesh has more nodes than two chunks of the sweeps.
     let block = Block::new(CellKind::Hex8, [30, 25, 24]);
     let on = |threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
@@ -94,7 +95,7 @@ fn the_same_bits_at_any_number_of_threads() {
     }
 }
 
-/// The dilations of a block's points that are shared: per cell, or per node of tet4.
+/// Returns the groups of a block's points that share dilations: per cell, or per node of tet4.
 fn shared(block: &Block) -> DilationGroups {
     match block.mesh.uniform_kind() {
         Some(CellKind::Tet4) => DilationGroups::nodal(&block.volume).unwrap(),
@@ -102,7 +103,7 @@ fn shared(block: &Block) -> DilationGroups {
     }
 }
 
-/// As [`solved`] with shared dilations.
+/// Solves as [`solved`] does, with shared dilations.
 fn nearly_incompressible<T>(block: &Block, poisson: f64, solve: impl FnOnce(&LinearProblem) -> T) -> T {
     let groups = shared(block);
     solved(block, poisson, |problem| {
@@ -141,7 +142,8 @@ fn pressures_come_to_what_a_factor_gives_in_iterations_that_hardly_grow() {
     }
 }
 
-/// Without pressures: tet10 takes more than twice the iterations at nu = 0.495, and does not converge at 0.4999.
+/// Without pressures, tet10 takes more than twice the iterations at nu = 0.495, and does not converge at
+/// 0.4999.
 #[test]
 fn pressures_take_fewer_iterations_than_displacements_alone() {
     let block = Block::new(CellKind::Tet10, [6, 5, 4]);
@@ -169,7 +171,7 @@ fn compressible_bodies_have_no_pressures() {
 
 #[test]
 fn pressures_have_the_same_bits_at_any_number_of_threads() {
-    // More nodes than two chunks of the sweeps have.
+    // The mesh has more nodes than two chunks of the sweeps.
     let block = Block::new(CellKind::Tet10, [14, 13, 12]);
     let on = |threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
@@ -185,7 +187,8 @@ fn pressures_have_the_same_bits_at_any_number_of_threads() {
     }
 }
 
-/// Its matrix has a condition of 1e9: residuals of 1e-8 |b| are below rounding, and no flaw of the solution.
+/// The matrix has a condition number of 1e9: residuals of 1e-8 |b| are below rounding and indicate no error
+/// of the solution.
 #[test]
 fn a_slender_beam_is_solved_to_rounding() {
     let max = Point3::new(0.1, 0.002, 0.002);

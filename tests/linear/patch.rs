@@ -1,4 +1,4 @@
-//! Patch tests: an affine displacement comes back to rounding, whichever way it is prescribed.
+//! Patch tests: an affine displacement is reproduced to rounding, however it is prescribed.
 
 use fem::VolumeRule;
 use geometry::CellKind;
@@ -51,7 +51,7 @@ fn by_traction() {
     let surface = block.surface(&SIDES);
     let values = surface.normals().iter().map(|n| stress * n).collect();
     let loads = [Load::Traction { surface: &surface, values }];
-    // Six degrees of freedom at three corners hold the rigid motions and no more.
+    // Six degrees of freedom at three corners suppress exactly the rigid motions.
     let corners = [(0, 0), (0, 1), (0, 2), (4, 1), (4, 2), (4 + 5 * 3, 2)];
     let fixed = corners.map(|(node, axis)| FixedDof {
         node,
@@ -95,7 +95,8 @@ fn by_nitsche_on_all_sides_and_axis_by_axis() {
     }
 }
 
-/// Held normally on three sides by Nitsche, pulled by the exact traction on the others and, tangentially, on these.
+/// Three sides are constrained in the normal direction by Nitsche's method. The exact traction acts on the
+/// other sides, and tangentially on these three.
 #[test]
 fn by_nitsche_rollers_and_tractions() {
     let block = Block::new(CellKind::Tet4, [3, 3, 2]);
@@ -109,7 +110,7 @@ fn by_nitsche_rollers_and_tractions() {
         .map(|(flux, _, axis)| WeakSupport {
             flux,
             axes: [0, 1, 2].map(|a| a == *axis),
-            // NaN along axes that are not constrained is ignored.
+            // NaN along unconstrained axes is ignored.
             values: flux
                 .points()
                 .iter()
@@ -136,7 +137,8 @@ fn by_nitsche_rollers_and_tractions() {
     check(&block, &body, &solution);
 }
 
-/// Beside sides held by Nitsche an eliminated side reacts with the traction of the exact stress, also in the cells they share.
+/// Next to sides constrained by Nitsche's method, the reaction of an eliminated side is the traction of the
+/// exact stress, also in cells at both sides.
 #[test]
 fn by_nitsche_beside_an_eliminated_side() {
     let block = Block::new(CellKind::Tet4, [3, 3, 2]);
@@ -192,7 +194,7 @@ fn penalty_error_falls_with_the_factor() {
         block.error(&solution.u, affine)
     };
     let (rough, fine) = (error(1e3), error(1e5));
-    // First order in 1 / factor, and consistent only in the limit.
+    // The error is of first order in 1 / factor and vanishes only in the limit.
     assert!((60.0..150.0).contains(&(rough / fine)), "{rough:e} -> {fine:e}");
     assert!((1e-7..1e-4).contains(&fine), "{fine:e}");
 }
@@ -204,7 +206,7 @@ fn by_multipliers_on_all_sides() {
     let body = block.body(&material);
     let surface = block.surface(&SIDES);
     let values: Vec<Vector3> = surface.points().iter().map(affine).collect();
-    // The trace of the displacement basis is its own multiplier basis.
+    // The trace of the displacement basis serves as its own multiplier basis.
     let rows = multiplier_rows(&surface, surface.rows(), [true; 3], &values).unwrap();
     assert_eq!(rows.len(), 3 * block.nodes_of(&SIDES).len());
     let problem = LinearProblem { body, loads: &[], fixed: &[], constraints: &rows, weak: &[] };

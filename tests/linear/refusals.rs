@@ -32,7 +32,7 @@ fn free_modes(result: Result<Solution, SolveError>) -> Vec<String> {
     }
 }
 
-/// One axis of all nodes on a side.
+/// Constrains one axis of all nodes on a side.
 fn roller(block: &Block, side: &str, axis: u8) -> Vec<FixedDof> {
     block.nodes_of(&[side]).into_iter().map(|node| FixedDof { node, axis, value: 0.0 }).collect()
 }
@@ -45,10 +45,10 @@ fn each_rigid_motion_is_named() {
     let all = ["translation along x", "translation along y", "translation along z"];
     let turns = ["rotation about x", "rotation about y", "rotation about z"];
     assert_eq!(free_modes(attempt(body, &[], &[], &[], &[])), [&all[..], &turns].concat());
-    // Rollers below and at the back: free along x alone.
+    // Rollers at the bottom and at the back leave only the motion along x free.
     let two = [roller(&block, "z-min", 2), roller(&block, "y-min", 1)].concat();
     assert_eq!(free_modes(attempt(body, &[], &two, &[], &[])), ["translation along x"]);
-    // A plate on rollers slides and spins.
+    // A plate on rollers can slide and rotate.
     let one = roller(&block, "z-min", 2);
     let expected = ["translation along x", "translation along y", "rotation about z"];
     assert_eq!(free_modes(attempt(body, &[], &one, &[], &[])), expected);
@@ -85,7 +85,7 @@ fn weak_supports_and_rows_count_as_holds() {
     attempt(body, &[], &[], &[], &weak([true; 3])).unwrap();
     let sliding = attempt(body, &[], &[], &[], &weak([false, true, true]));
     assert_eq!(free_modes(sliding), ["translation along x"]);
-    // One row over the mean x displacement of a side is enough for the rest.
+    // A single row for the mean x displacement of a side suppresses the remaining motion.
     let nodes = block.nodes_of(&["x-max"]);
     let mean = [ConstraintRow {
         terms: nodes.iter().map(|&n| (n, 0, 1.0 / nodes.len() as f64)).collect(),
@@ -94,7 +94,7 @@ fn weak_supports_and_rows_count_as_holds() {
     attempt(body, &[], &[], &mean, &weak([false, true, true])).unwrap();
 }
 
-/// Two tetrahedra a metre apart: `tie` rows may join them.
+/// Two tetrahedra a metre apart, which constraint rows may join.
 fn two_pieces() -> (Vec<Point3>, VolumeRows) {
     let corner = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
     let nodes: Vec<Point3> =
@@ -121,7 +121,8 @@ fn each_piece_is_checked() {
         other => panic!("{other:?}"),
     }
     attempt(body, &[], &hold(0..7), &[], &[]).unwrap();
-    // Tied at three nodes the second piece stays put; tied at two it turns about their line.
+    // Tied at three nodes, the second piece is constrained; tied at two nodes, it can rotate about their
+    // line.
     let tie = |pairs: &[(u32, u32)]| -> Vec<ConstraintRow> {
         let row = |a, b, axis| ConstraintRow { terms: vec![(a, axis, 1.0), (b, axis, -1.0)], value: 0.0 };
         pairs.iter().flat_map(|&(a, b)| (0..3).map(move |axis| row(a, b, axis))).collect()
@@ -147,7 +148,7 @@ fn nodes_at_one_place_are_refused_and_not_divided_by() {
 
 #[test]
 fn zero_energy_modes_are_not_solved_through() {
-    // One point per hexahedron: hourglass modes, though no rigid motion is free.
+    // One point per hexahedron leaves hourglass modes, although no rigid motion is free.
     let mesh = Block::new(CellKind::Hex8, [2, 2, 2]).mesh;
     let rule = fem::VolumeRule::STANDARD.with(CellKind::Hex8, 1).unwrap();
     let poor = Block { volume: fem::volume_rows(&mesh, &rule).unwrap(), mesh };
@@ -294,7 +295,7 @@ fn bad_input_is_named() {
 fn a_group_without_volume_is_refused() {
     let (nodes, volume) = two_pieces();
     let material = [soft()];
-    // Shares of each point sum to one, yet the second group's volume is negative.
+    // The shares of each point sum to one, but the volume of the second group is negative.
     let groups = DilationGroups::new(2, vec![0, 2, 4], vec![0, 1, 0, 1], vec![1.5, 1.5, -0.5, -0.5]).unwrap();
     let body =
         Body { nodes: &nodes, volume: &volume, materials: &material, region: &[], dilation: Some(&groups) };
@@ -331,8 +332,8 @@ fn a_node_that_no_point_sees_is_named() {
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
-    /// Whatever few parameters are constrained: solved with a small residual or refused for a free motion, never a panic
-    /// and never a NaN.
+    /// For any few constrained parameters, the problem is either solved with a small residual or refused
+    /// because of a free motion, without panic or NaN.
     #[test]
     fn any_few_holds_are_solved_or_refused(
         holds in prop::collection::vec((0..27u32, 0..3u8), 0..9),
@@ -344,8 +345,9 @@ proptest! {
         match attempt(block.body(&material), &loads, &fixed, &[], &[]) {
             Ok(s) => {
                 prop_assert!(s.u.iter().all(|u| u.iter().all(|c| c.is_finite())));
-                // A factor solves to rounding of |K| |u| (Higham 2002, theorem 10.3). Holds at long levers leave motions that are
-                // 10^6 times those of a sound support, and that is then more than rounding of the load.
+                // A factor solves to rounding of |K| |u| (Higham 2002, theorem 10.3). Supports with long
+                // levers allow displacements 10^6 times those of a sound support, and this rounding then
+                // exceeds that of the load.
                 let largest = s.u.iter().map(Vector3::norm).fold(0.0, f64::max);
                 let force = Vector3::new(1.0, 2.0, 3.0).norm() * block.volume.weights().iter().sum::<f64>();
                 let reactions = material[0].young() * 0.04 * largest / force;

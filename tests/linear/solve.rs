@@ -1,4 +1,4 @@
-//! Loads, supports of each kind against one another, and the paths of the linear solver.
+//! Loads, supports of each kind compared with one another, and the methods of the linear solver.
 
 use algebra::SolverPath;
 use geometry::CellKind;
@@ -68,7 +68,8 @@ fn constraint_rows_equal_elimination() {
     };
     let (eliminated, reactions) = solve(&fixed, &[], 0);
     assert_eq!(eliminated.info.path.name(), "sparse-llt");
-    // Every second one by a row, the others eliminated; and each row twice: dependent but consistent.
+    // Every second support is a row and the others are eliminated; or each row occurs twice, dependent but
+    // consistent.
     let (some_fixed, some_rows): (Vec<_>, Vec<_>) =
         fixed.iter().zip(&constraints).enumerate().partition(|(k, _)| k % 2 == 0);
     let some_fixed: Vec<_> = some_fixed.into_iter().map(|(_, (f, _))| *f).collect();
@@ -93,8 +94,8 @@ fn constraint_rows_equal_elimination() {
     assert!(none.iter().all(|r| r.norm() == 0.0));
 }
 
-/// Rows that share parameters, given away by pivots: the same equilibrium as by multipliers, with the same forces, without
-/// a saddle; repeated rows are dropped, and told.
+/// Rows that share parameters are eliminated by pivots. The equilibrium and its forces equal those with
+/// multipliers, without a saddle point; repeated rows are dropped and reported.
 #[test]
 fn eliminated_rows_equal_multipliers() {
     let block = Block::new(CellKind::Tet4, [4, 3, 3]);
@@ -107,7 +108,7 @@ fn eliminated_rows_equal_multipliers() {
     let values: Vec<Vector3> =
         constrained.points().iter().map(|x| Vector3::new(0.0, 1e-3, x.y * 0.1)).collect();
     let rows = multiplier_rows(&constrained, constrained.rows(), [true; 3], &values).unwrap();
-    // A parameter of the rows constrained besides.
+    // One of the parameters in the rows is also prescribed.
     let fixed = [FixedDof { node: rows[0].terms[0].0, axis: 1, value: 1e-3 }];
     let problem = |constraints| LinearProblem { body, loads: &loads, fixed: &fixed, constraints, weak: &[] };
     let with_multipliers = assemble(&problem(&rows)).unwrap().factor().unwrap();
@@ -127,7 +128,8 @@ fn eliminated_rows_equal_multipliers() {
             for (row, lambda) in rows.iter().zip(multipliers) {
                 row.terms.iter().for_each(|&(n, axis, c)| forces[n as usize][axis as usize] += lambda * c);
             }
-            // With its support there are many ways to share that one.
+            // The force on the prescribed parameter can be divided between its support and the rows in many
+            // ways.
             forces[fixed[0].node as usize][fixed[0].axis as usize] = 0.0;
             forces
         };
@@ -138,17 +140,17 @@ fn eliminated_rows_equal_multipliers() {
     let once = eliminated.solve(1.0).unwrap();
     assert_eq!(solution.info.dropped, once.info.dropped + rows.len());
     assert!(gap(&solution.u, &once.u) < 1e-12);
-    // One lost row is felt.
+    // The effect of a missing row is visible.
     let lost = assemble(&problem(&rows[1..])).unwrap().factor_eliminated().unwrap().solve(1.0).unwrap();
     assert!(gap(&lost.u, &once.u) > 1e-3, "{:e}", gap(&lost.u, &once.u));
-    // Twice with two values: no displacement does both.
+    // Two equal rows with different values: no displacement satisfies both.
     let mut torn = twice.clone();
     torn.last_mut().unwrap().value += 1e-9;
     let refused = assemble(&problem(&torn)).unwrap().factor_eliminated().err();
     assert!(matches!(refused, Some(SolveError::Dependent { .. })), "{refused:?}");
 }
 
-/// A tie between two free nodes, and one between a free and a constrained node.
+/// A tie between two free nodes, and a tie between a free and a constrained node.
 #[test]
 fn a_row_between_two_nodes_holds() {
     let block = Block::new(CellKind::Tet4, [3, 3, 2]);
@@ -178,7 +180,7 @@ fn all_held_needs_no_system() {
     let block = Block::new(CellKind::Hex8, [1, 1, 1]);
     let material = [soft()];
     let fixed = block.fix(&SIDES, affine);
-    // A row over constrained parameters only is checked and dropped.
+    // A row with constrained parameters only is checked and dropped.
     let first = fixed[0];
     let rows = [ConstraintRow { terms: vec![(first.node, first.axis, 2.0)], value: 2.0 * first.value }];
     let body = block.body(&material);
@@ -209,7 +211,7 @@ fn a_second_load_needs_no_second_factor() {
     assert!(gap(&factored.solve(1.0).unwrap().u, &fresh.u) > 1e-3);
 }
 
-/// Refinement and a tight residual keep near-incompressible solves at rounding.
+/// Refinement and a tight residual keep nearly incompressible solutions at rounding.
 #[test]
 fn residuals_stay_small_near_incompressibility() {
     for poisson in [0.3, 0.495, 0.49999] {
@@ -268,7 +270,7 @@ fn a_condensed_operator_gives_what_a_solve_gives() {
         shape::Unity::NotPromised,
     )
     .unwrap();
-    // By elimination, and by rows with multipliers.
+    // Supports by elimination, and by rows with multipliers.
     let rows: Vec<_> = (fixed.iter())
         .map(|f| ConstraintRow { terms: vec![(f.node, f.axis, 2.0)], value: 2.0 * f.value })
         .collect();

@@ -1,4 +1,4 @@
-//! The assembled matrix against its definition, its rigid modes, its energy, its bits.
+//! The assembled matrix: definition, rigid modes, energy, and reproducible bits.
 
 use algebra::Stiffness;
 use fem::VolumeRule;
@@ -33,7 +33,7 @@ fn dense(k: &Stiffness) -> DMatrix<f64> {
     out
 }
 
-/// `B^T C B` with 6-vectors of strain: nothing shared with the assembly.
+/// Computes `B^T C B` with 6-vectors of strain, independently of the assembly.
 fn voigt(body: &Body) -> DMatrix<f64> {
     let n = body.nodes.len();
     let mut k = DMatrix::zeros(3 * n, 3 * n);
@@ -94,7 +94,7 @@ fn assembly_is_the_weak_form_with_every_projection() {
     }
 }
 
-/// One group per point is no projection at all.
+/// Groups of a single point are equivalent to no projection.
 #[test]
 fn groups_of_single_points_change_nothing() {
     let block = Block::new(CellKind::Hex8, [2, 2, 1]);
@@ -113,8 +113,8 @@ fn groups_of_single_points_change_nothing() {
 #[test]
 fn six_rigid_modes_and_no_more() {
     for kind in CellKind::ALL {
-        // Fewer hexahedra do not do: one mean dilation each on a hex20 row lets conformal quadratic fields pass, whose
-        // strain is a dilation linear in x.
+        // With fewer hexahedra the test fails: one mean dilation per cell in a row of hex20 admits conformal
+        // quadratic fields, whose strain is a dilation linear in x.
         let block = Block::new(kind, [2, 2, 2]);
         let material = [soft()];
         let element = fem::element_dilation(&block.mesh, &VolumeRule::STANDARD).unwrap();
@@ -180,15 +180,15 @@ fn same_bits_with_one_and_two_threads() {
     };
     let one = run(1);
     for threads in [2, 2, 3] {
-        // PartialEq on f64: any differing bit (but for the sign of a zero) shows.
+        // PartialEq on f64 detects any differing bit (except the sign of a zero).
         assert!(run(threads) == one);
     }
 }
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(32))]
-    /// Any affine field in any material: the forces of an affine field vanish at inner nodes, sum to zero, have no
-    /// moment, and equal those of the boundary traction.
+    /// For any affine field in any material, the forces of the field vanish at inner nodes, sum to zero, have
+    /// no moment, and equal those of the boundary traction.
     #[test]
     fn affine_fields_are_in_equilibrium(
         h in prop::array::uniform9(-1.0..1.0f64),

@@ -3,9 +3,10 @@
 //! ```text
 //! Source      cases::exact::FiniteBending (Rivlin's flexure, compressible).
 //! Body        10 x 20 x 5 mm, neo-Hookean, nu = 0.3; strains up to a quarter.
-//! Conditions  Y = 0 and both Z slip; exact displacement at Y = 20 mm; X = -5, 5 mm free.
-//! Must hold   the largest nodal error, relative to the largest displacement, falls by the order of theory (2 for linear,
-//!             3 for quadratic elements, within 0.4 in the maximum norm) and is below 2 % (linear) and 0.02 % (quadratic).
+//! Conditions  Y = 0 and both Z: no normal displacement; exact displacement at Y = 20 mm; X = -5, 5 mm free.
+//! Must hold   the largest nodal error, relative to the largest displacement, converges with the theoretical
+//!             order (2 for linear, 3 for quadratic elements, within 0.4 in the maximum norm) and is below
+//!             2 % (linear) and 0.02 % (quadratic).
 //! ```
 
 use cases::exact::{Elastic, Exact as _, FiniteBending, Hyperelastic};

@@ -1,14 +1,15 @@
-//! Contact patch test: a block pressed flat by plates.
+//! Contact patch test: a block compressed between flat plates.
 //!
 //! ```text
 //! Source      Taylor & Papadopoulos (1991); Crisfield, Int. J. Numer. Meth. Engng 48 (2000).
 //! Body        jittered box of 3 x 2 x 2 cells, every method; neo-Hookean.
-//! Conditions  two plates close on it along z (not alike: their closures are 1 and 3 mm); x = 0 and y = 0 slip.
-//! Must hold   without friction (nu = 0.45) the pressure is uniform over both faces, 1e-9: penetration is p / k_n at every
-//!             point whatever the penalty, so the plates' two penetrations are equal too. With friction the same at nu = 0,
-//!             where nothing slides; at nu = 0.45 the sides bulge, friction turns inward and no pressure is uniform, but
-//!             always action = reaction: forces and moments of both plates and the walls' symmetry balance, and no
-//!             traction leaves Coulomb's cone.
+//! Conditions  two plates move towards each other along z, by 1 and 3 mm; x = 0 and y = 0: no normal
+//!             displacement.
+//! Must hold   Without friction (nu = 0.45) the pressure is uniform over both faces, 1e-9. The penetration is
+//!             p / k_n at every point for any penalty, so the penetrations of both plates are equal. With
+//!             friction the same holds at nu = 0, where nothing slides. At nu = 0.45 the sides bulge,
+//!             friction acts inwards and the pressure is not uniform. Forces and moments of both plates and
+//!             of the symmetry planes still balance, and no traction leaves Coulomb's cone.
 //! ```
 
 use contact::{
@@ -24,12 +25,12 @@ use statics::{StaticParams, StaticPath, StaticProblem};
 
 const PENALTY: f64 = 1e8;
 
-/// Two plates on z = 0 and z = h that close by 1 and 3 mm; gives the path and the contacts of its end.
+/// Presses two plates at z = 0 and z = h together, by 1 and 3 mm, and returns the path and the plates.
 fn press(model: &Model, law: &Law, touch: ContactLaw, name: &str) -> (StaticPath, Vec<Tool>) {
     press_by(model, law, touch, name, &steps(4))
 }
 
-/// The same by any steps.
+/// Does the same as [`press`] with any step parameters.
 pub fn press_by(
     model: &Model,
     law: &Law,
@@ -56,7 +57,7 @@ pub fn press_by(
     (solve(name, &problem, params), plates)
 }
 
-/// Normal pressures of both plates at the end, point by point.
+/// Returns the normal pressures of both plates at the end, point by point, Pa.
 fn pressures(model: &Model, path: &StaticPath, plates: &[Tool]) -> Vec<f64> {
     let surface = fem::surface_rows(&model.mesh, &model.mesh.boundary(), &SurfaceRule::STANDARD).unwrap();
     let contact = ContactSurface::new(&surface);
@@ -70,7 +71,7 @@ fn pressures(model: &Model, path: &StaticPath, plates: &[Tool]) -> Vec<f64> {
         .collect()
 }
 
-/// Relative range of the pressures.
+/// Returns the relative range of the pressures.
 fn spread(pressures: &[f64]) -> f64 {
     let (low, high) = pressures.iter().fold((f64::INFINITY, 0.0f64), |(l, h), p| (l.min(*p), h.max(*p)));
     (high - low) / high
@@ -98,7 +99,7 @@ fn pressure_between_flat_plates_is_uniform() {
     }
 }
 
-/// Full steps alone cycle between sticking and sliding points here and never leave the start.
+/// Full steps alone would cycle between sticking and sliding points here and never progress.
 #[test]
 fn the_mixed_method_starts_under_stiff_friction() {
     let model = Model::new(
@@ -112,13 +113,14 @@ fn the_mixed_method_starts_under_stiff_friction() {
         let [below, above] = path.steps.last().unwrap().tools[..] else { panic!("nu {poisson}") };
         let gap = (below.force.z + above.force.z).abs() / above.force.z;
         assert!(gap < 1e-9, "nu {poisson}: {} {}", below.force, above.force);
-        // A solve for every assembly and for every trial that was judged by it, an evaluation for every state.
+        // There is a solve for every assembly and for every trial judged by it, and a force evaluation for
+        // every state.
         let moved = path.steps.iter().flat_map(|s| &s.iterations).filter(|i| i.length > 0.0).count() as u64;
         let cut = path.steps.iter().flat_map(|s| &s.iterations).any(|i| i.length > 0.0 && i.length < 1.0);
         let work = path.work;
         assert!(cut && work.factorisations >= work.assemblies, "{work:?}");
         assert!(work.solves > work.assemblies && work.forces > work.assemblies, "{work:?}");
-        // Full steps were tried first and failed: that is work too.
+        // Full steps were tried first and failed; they are counted too.
         assert!(work.assemblies > moved, "{work:?} for {moved}");
     }
 }
@@ -133,15 +135,15 @@ fn friction_holds_the_sides_and_forces_balance() {
         let rough = press(&model, &law, ContactLaw::coulomb(PENALTY, 0.3, 0.1 * PENALTY).unwrap(), &name).0;
         let force = |path: &StaticPath, k: usize| path.steps.last().unwrap().tools[k].force;
         let (below, above) = (force(&rough, 0), force(&rough, 1));
-        // The walls take x and y, nothing else takes z.
+        // The symmetry planes carry forces along x and y; no other support carries z.
         assert!((below.z + above.z).abs() < 1e-9 * above.z, "{name}: {below} {above}");
-        // The tissue moves out along +x and +y and drags the plates with it, inside the cone.
+        // The tissue moves outwards along +x and +y and drags the plates along, inside the cone.
         for force in [below, above] {
             let sideways = force.x.hypot(force.y);
             assert!(force.x > 0.0 && force.y > 0.0, "{name}: {force}");
             assert!(sideways > 0.05 * above.z && sideways <= 0.3 * above.z, "{name}: {force}");
         }
-        // Held sides make the block stiffer, by less than sides that never slip.
+        // Friction makes the block stiffer, but less so than sides that never slip.
         let bonded =
             press(&model, &law, ContactLaw::coulomb(PENALTY, 100.0, 0.1 * PENALTY).unwrap(), &name).0;
         let [free, rough, bonded] = [&free, &rough, &bonded].map(|p| force(p, 1).z);

@@ -1,12 +1,14 @@
-//! A tool driven by force does what the tool driven by closure does.
+//! A force-driven tool gives the same result as a displacement-driven tool.
 //!
 //! ```text
 //! Body        jittered box of 4 x 3 x 2 cells, neo-Hookean, nu = 0.45; z = 0 clamped.
-//! Conditions  a sphere pressed into the top by a closure of 4 mm, without friction and with mu = 0.15 and 1.5; then the
-//!             same by the force found, from where it just touches, in the same number of steps.
-//! Must hold   the force is reached to 1e-8, in a single step too where balls come from 2 mm off; without friction (no
-//!             memory of the path) closure, moment and displacement agree to 1e-8. With friction the two paths differ
-//!             between their ends, so closures agree to 1 %, of the single step to 5 %.
+//! Conditions  A sphere is pressed into the top by a displacement of 4 mm, without friction and with mu =
+//!             0.15 and 1.5. Then the resulting force is prescribed, from first touch, in the same number of
+//!             steps.
+//! Must hold   The force is reached to 1e-8, also in a single step by balls that start at a distance of 2 mm.
+//!             Without friction (independent of the path) displacement of the tool, moment and displacement
+//!             of the body agree to 1e-8. With friction the two paths differ between their ends, so
+//!             displacements of the tool agree to 1 %, for the single step to 5 %.
 //! ```
 
 use contact::{ContactLaw, ContactSurface, Drive, DrivenTool, Sphere, Tool, ToolShape};
@@ -67,8 +69,9 @@ fn force_and_closure_agree() {
     }
 }
 
-/// Two balls 2 mm off the free end of a block, above and below it, with a force that presses each 3 mm into it, in a
-/// single step: Newton's method alone goes from no contact to deep contact and back.
+/// Two balls at a distance of 2 mm above and below the free end of a block, with a force that presses each 3
+/// mm into the block, in a single step. Newton's method alone would alternate between no contact and deep
+/// contact.
 #[test]
 fn first_contact_in_one_step() {
     for method in METHODS.into_iter().filter(|m| m.0 != CellKind::Hex20) {
@@ -111,14 +114,15 @@ fn first_contact_in_one_step() {
         for (tool, force) in last.tools.iter().zip(force) {
             let gap = (tool.force.z.abs() / force - 1.0).abs();
             assert!(gap < 1e-8, "{method:?}: force {} for {force}", tool.force.z);
-            // The two ways differ in what has slipped when.
+            // The two paths differ in the order of slip.
             let gap = (tool.closure / 5e-3 - 1.0).abs();
             assert!(gap < 0.05, "{method:?}: closure {}", tool.closure);
         }
     }
 }
 
-/// Frames of a simulator's loop, forwards and back, end where the path does; without friction they come back to nothing.
+/// Frames of a simulator's loop, forwards and back, end at the states of the path; without friction they
+/// return to the undeformed state.
 #[test]
 fn frames_follow_the_path_both_ways() {
     for method in [(CellKind::Hex8, Projection::Element), (CellKind::Tet10, Projection::Mixed)] {

@@ -3,10 +3,11 @@
 //! ```text
 //! Source      Irons' patch test; Belytschko, Liu & Moran, Nonlinear Finite Elements (2000), ch. 8.3.
 //! Body        jittered box of 2 x 2 x 2 cells, every law, every method.
-//! Conditions  u = (F - I) x on the whole boundary, F = R U: U of the stretches 2, 0.5 and 1.3 about oblique axes, R a
-//!             quarter turn. Between, u is linear in time, so every F on the way is affine too (det F >= 0.3).
-//! Must hold   u = (F - I) x inside, P = P(F) at every quadrature point and the energy V W(F): 1e-10; the pressure of the
-//!             mixed method is P : F / (3 J) everywhere.
+//! Conditions  u = (F - I) x on the whole boundary, F = R U, with U of the stretches 2, 0.5 and 1.3 about
+//!             oblique axes and R a quarter turn. u is linear in time, so every F on the way is affine too
+//!             (det F >= 0.3).
+//! Must hold   u = (F - I) x inside, P = P(F) at every quadrature point, and the energy V W(F): 1e-10; the
+//!             pressure of the mixed method is P : F / (3 J) everywhere.
 //! ```
 
 use integration::model::*;
@@ -14,7 +15,8 @@ use material::Material as _;
 use shape::{Matrix3, Point3, Vector3};
 use statics::StaticProblem;
 
-/// A quarter turn about z times a stretch with the principal values 2, 0.5, 1.3 turned by 0.3 about x.
+/// Returns a quarter turn about z times a stretch with the principal values 2, 0.5, 1.3, rotated by 0.3 about
+/// x.
 fn deformation() -> Matrix3 {
     let quarter = Matrix3::new(0.0, -1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0);
     let (s, c) = 0.3f64.sin_cos();

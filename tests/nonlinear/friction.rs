@@ -2,11 +2,13 @@
 //!
 //! ```text
 //! Source      Coulomb; Wriggers, Computational Contact Mechanics (2006), ch. 5.2.
-//! Body        box of 2 x 2 x 2 cells, E = 1e13 Pa (its compliance h / E is 1e-6 of the contact's 1 / k), top fixed.
-//! Conditions  a plate comes up from 0.02 mm below and sideways at once, in 10 steps, along (sin b, 0, cos b). From the
-//!             touch on the pressure is k_n d cos b and the elastic slip k_t d sin b, d the way since.
-//! Must hold   below the limit tan b = mu k_n / k_t by 0.1 %: stick, T / N = 0.999 mu to 1e-4 of it;
-//!             above by 0.1 %: slip, T / N = mu to 1e-9; far above: still mu, against the motion.
+//! Body        box of 2 x 2 x 2 cells, E = 1e13 Pa (its compliance h / E is 1e-6 of the contact's 1 / k), top
+//!             fixed.
+//! Conditions  A plate moves up from 0.02 mm below and sideways at the same time, in 10 steps, along (sin b,
+//!             0, cos b). After the touch, the pressure is k_n d cos b and the elastic slip k_t d sin b, with
+//!             the travel d since the touch.
+//! Must hold   Below the limit tan b = mu k_n / k_t by 0.1 %: stick, T / N = 0.999 mu to 1e-4 of it. Above by
+//!             0.1 %: slip, T / N = mu to 1e-9. Far above: still mu, against the motion.
 //! ```
 
 use contact::{ContactLaw, ContactSurface, Drive, DrivenTool, Plate, Tool, ToolShape};
@@ -21,7 +23,8 @@ const COEFFICIENT: f64 = 0.15;
 const NORMAL: f64 = 1e8;
 const STICK: f64 = 5e7;
 
-/// Force on the plate at the end, N, for `tan b` as a multiple of the limit; the sideways motion is `sideways` (unit).
+/// Returns the force on the plate at the end, N, for `tan b` as a multiple of the limit; the direction of the
+/// sideways motion is `sideways` (unit).
 fn drag(projection: (CellKind, Projection), factor: f64, sideways: Vector3) -> Vector3 {
     let model = Model::block(projection, [2, 2, 2]);
     let law = Law::NeoHookean(NeoHookean::new(1e13, 0.3).unwrap());
@@ -48,7 +51,7 @@ fn the_block_sticks_below_the_limit_and_slips_at_it() {
         for (factor, constrained, tolerance) in
             [(0.5, 0.5, 1e-4), (0.999, 0.999, 1e-4), (1.001, 1.0, 1e-9), (3.0, 1.0, 1e-9)]
         {
-            // The block pushes the plate down and holds it back.
+            // The block pushes the plate down and resists its sideways motion.
             let force = drag(method, factor, sideways);
             let tangential = Vector3::new(force.x, force.y, 0.0);
             let ratio = tangential.norm() / (COEFFICIENT * -force.z);

@@ -1,15 +1,17 @@
-//! Hertz contact of a sphere with a half space.
+//! Hertz contact of a sphere with a half-space.
 //!
 //! ```text
 //! Source      cases::exact::Hertz (Johnson, Contact Mechanics, 1985, ch. 4).
-//! Body        a quarter of the half space: a cube of side L = 10 a on the planes x = 0, y = 0 (slipping), graded towards
-//!             the contact; linear law, nu = 0.3.
-//! Conditions  sphere without friction, R = 10 mm, depth R / 1000 (slope a / R = 0.03); the point force's field on the
-//!             three far faces, which makes the cube a half space up to (a / L)^2 = 1 %. Dead until the end: the
-//!             far field goes with t, the force with t^1.5, and only the end counts (no friction, no memory).
-//! Must hold   the force converges to 4/3 E* sqrt(R) d^1.5 to 0.5 % (hex20) and 2.2 % (hex8), and at half the depth
-//!             falls by 2^1.5. The radius of the contact, from the area of the points in contact, is known to half a
-//!             cell: 0.22 of it at 10 hex8 (measured 0.222), 0.16 at 16 (0.118).
+//! Body        a quarter of the half-space: a cube of side L = 10 a on the symmetry planes x = 0, y = 0,
+//!             graded towards the contact; linear law, nu = 0.3.
+//! Conditions  Sphere without friction, R = 10 mm, depth R / 1000 (slope a / R = 0.03). The point force's
+//!             field is prescribed on the three far faces, which makes the cube a half-space up to (a / L)^2
+//!             = 1 %. Only the end is correct: the far field grows with t, the force with t^1.5. The path
+//!             does not matter because there is no friction.
+//! Must hold   The force converges to 4/3 E* sqrt(R) d^1.5 to 0.5 % (hex20) and 2.2 % (hex8), and at half the
+//!             depth it is smaller by a factor of 2^1.5. The radius of the contact, from the area of the
+//!             points in contact, is accurate to half a cell: 0.22 of it at 10 hex8 (measured 0.222), 0.16 at
+//!             16 (0.118).
 //! ```
 
 use cases::exact::{Elastic, Exact as _, Hertz};
@@ -25,11 +27,11 @@ use statics::StaticProblem;
 const RADIUS: f64 = 0.01;
 const POISSON: f64 = 0.3;
 
-/// Force on the sphere and radius of the contact, over those of Hertz.
+/// Returns the force on the sphere and the radius of the contact, relative to those of Hertz.
 fn ratios(kind: CellKind, cells: usize, depth: f64) -> [f64; 2] {
     let hertz = Hertz::new(Elastic::new(YOUNG, POISSON).unwrap(), RADIUS, depth).unwrap();
     let side = 10.0 * hertz.contact_radius();
-    // Spacing grows by 40 from the contact to the far faces.
+    // The spacing grows by a factor of 40 from the contact to the far faces.
     let (low, high) = (Point3::new(0.0, 0.0, -side), Point3::new(side, side, 0.0));
     let mesh = box_mesh(kind, low, high, [cells; 3], [40.0, 40.0, 1.0 / 40.0], None).unwrap();
     let model = Model::new(mesh, Projection::Standard);
@@ -42,7 +44,7 @@ fn ratios(kind: CellKind, cells: usize, depth: f64) -> [f64; 2] {
     let top = model.mesh.group("z-max").unwrap();
     let surface = fem::surface_rows(&model.mesh, top, &SurfaceRule::FINE).unwrap();
     let contact = ContactSurface::new(&surface);
-    // A hundredth of the depth under the peak pressure.
+    // The peak pressure causes a penetration of a 300th of the depth.
     let touch = ContactLaw::frictionless(300.0 * hertz.peak_pressure() / depth).unwrap();
     let at = Point3::new(0.0, 0.0, RADIUS);
     let shape = ToolShape::Sphere(Sphere { radius: RADIUS });
@@ -77,7 +79,7 @@ fn force_and_radius_converge_to_those_of_hertz() {
 
 #[test]
 fn force_goes_with_the_three_halves_power_of_the_depth() {
-    // Ratios to Hertz's force at a depth and at half of it: the same mesh scaled by the contact radius.
+    // Ratios to Hertz's force at a depth and at half of it, with the same mesh scaled by the contact radius.
     let (deep, shallow) =
         (ratios(CellKind::Hex20, 5, 1e-3 * RADIUS)[0], ratios(CellKind::Hex20, 5, 5e-4 * RADIUS)[0]);
     assert!((deep / shallow - 1.0).abs() < 5e-3, "{deep} {shallow}");

@@ -1,10 +1,12 @@
-//! Homogeneous states at finite strain: compression to one half between plates, confined compression, simple shear.
+//! Homogeneous states at finite strain: compression to one half between plates, confined compression, simple
+//! shear.
 //!
 //! ```text
 //! Source      cases::exact::Homogeneous, with the laws by principal stretches (cases::exact::Hyperelastic).
 //! Body        jittered box of 2 x 2 x 2 cells, every law, every method.
-//! Conditions  compression: planes x, y, z = 0 slip, a plate without friction comes down on the top. With the penalty
-//!             k_n its penetration is P / k_n everywhere, so a closure of (1 - l) h + P / k_n makes the stretch l.
+//! Conditions  compression: no normal displacement at the planes x, y, z = 0; a plate without friction moves
+//!             down on the top. With the penalty k_n its penetration is P / k_n everywhere, so a displacement
+//!             of (1 - l) h + P / k_n gives the stretch l.
 //!             shear: displacement on y = 0, dead tractions P N on all other faces.
 //! Must hold   u affine and the plate's force P_zz A (undeformed area), to 1e-9.
 //! ```
@@ -20,7 +22,7 @@ use statics::{Load, StaticProblem};
 const POISSON: f64 = 0.45;
 const PENALTY: f64 = 1e8;
 
-/// The laws of the solver whose energy the exact solutions have too, each with that.
+/// Returns the laws of the solver for which exact solutions exist, each with its exact counterpart.
 fn pairs() -> Vec<(Law, Hyperelastic)> {
     let elastic = Elastic::new(YOUNG, POISSON).unwrap();
     let (mu, bulk) = (elastic.mu(), elastic.bulk());
@@ -39,7 +41,7 @@ fn pairs() -> Vec<(Law, Hyperelastic)> {
     pairs
 }
 
-/// Presses the block to `state` by a plate and compares; `walls` besides x, y, z = 0.
+/// Presses the block to `state` by a plate and compares; `walls` are given in addition to x, y, z = 0.
 fn compress(walls: &[(&str, u8)], state: impl Fn(&Hyperelastic) -> Homogeneous) {
     for method in METHODS {
         let model = Model::block(method, [2, 2, 2]);

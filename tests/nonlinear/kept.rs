@@ -1,10 +1,11 @@
 //! Factors that Newton's method keeps from one tangent to the next.
 //!
 //! ```text
-//! Source      none: the same problem with factors of every tangent in double precision
-//! Body        jittered box, tet10 and hex8 of one dilation each; neo-Hookean, nu = 0.45
-//! Conditions  two rough plates close by 1 and 3 mm; x = 0 and y = 0 slip
-//! Must hold   forces, displacements and what is said of stability as with new factors (1e-8), from fewer factors than tangents.
+//! Source      none: the same problem with a factor of every tangent in double precision
+//! Body        jittered box, tet10 and hex8 with one dilation per element; neo-Hookean, nu = 0.45
+//! Conditions  two rough plates move by 1 and 3 mm; no normal displacement at x = 0 and y = 0
+//! Must hold   Forces, displacements and reported stability agree with those of new factors (1e-8), with
+//!             fewer factors than tangents.
 //! ```
 
 use contact::ContactLaw;
@@ -49,7 +50,7 @@ fn kept_factors_lead_to_the_same_end() {
         let far = anew.u.iter().zip(&kept.u).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
         assert!(far < 1e-8 * 3e-3, "{method:?}: {far}");
         assert!(anew.work.factorisations >= anew.work.assemblies, "{:?}", anew.work);
-        // One in double precision at the end of each step shows that it is stable.
+        // One factor in double precision at the end of each step shows that the step is stable.
         let work = kept.work;
         assert!(
             work.factorisations < work.assemblies && work.factorisations >= 4 && work.inner > 0,

@@ -1,14 +1,17 @@
 //! Volumetric locking: thick sphere and pure bending at nu = 0.4999, Cook's membrane at large displacements.
 //!
 //! ```text
-//! Source      cases::exact::{ThickSphere, PureBending}; Cook (1974), in the hyperelastic form of Simo & Armero (1992).
-//! Sphere      octant, radii 10 and 20 mm, pressure inside; radial displacement of the inner wall.
+//! Source      cases::exact::{ThickSphere, PureBending}; Cook (1974), in the hyperelastic form of Simo &
+//!             Armero (1992).
+//! Sphere      octant, radii 10 and 20 mm, internal pressure; radial displacement of the inner wall.
 //! Bending     bar of 40 x 10 x 10 mm, exact root, traction E k y on the end; deflection of the end.
-//! Cook        48 mm long, 44 mm high at the clamped side and 16 mm at the other, a slab one cell thick in plane strain;
-//!             dead shear of 0.02 E upwards; neo-Hookean, nu = 0.495 and 0.4999; mean deflection of the loaded side.
-//! Must hold   the locking-free methods come within 3 % of the exact values at the second level while the standard hex8 does
-//!             not; linear tetrahedra bend too stiffly at any nu, so theirs is compared with the standard tet4 at nu = 0.3.
-//!             Cook: hex8 with element mean and the mixed tet10 rise to one limit, within 0.2 % of each other.
+//! Cook        48 mm long, 44 mm high at the clamped side and 16 mm at the other, a slab one cell thick in
+//!             plane strain; dead shear of 0.02 E upwards; neo-Hookean, nu = 0.495 and 0.4999; mean
+//!             deflection of the loaded side.
+//! Must hold   The locking-free methods are within 3 % of the exact values at the second level, the standard
+//!             hex8 is not. Linear tetrahedra are too stiff in bending at any nu, so their locking-free
+//!             method is compared with the standard tet4 at nu = 0.3. Cook: hex8 with element mean and the
+//!             mixed tet10 increase towards the same limit, within 0.2 % of each other.
 //! ```
 
 use cases::exact::{Elastic, Exact, PureBending, ThickSphere};
@@ -22,7 +25,7 @@ use statics::{Load, NewtonParams, StaticParams, StaticProblem};
 
 const POISSON: f64 = 0.4999;
 
-/// Rounding of a residual grows with kappa / mu = 5000: 3e-11 at these meshes.
+/// Step parameters. The rounding of a residual grows with kappa / mu = 5000: 3e-11 for these meshes.
 fn params(count: usize) -> StaticParams {
     StaticParams {
         newton: NewtonParams { tolerance: 1e-9, iterations: 30, chords: true, keeps: f64::INFINITY },
@@ -30,7 +33,7 @@ fn params(count: usize) -> StaticParams {
     }
 }
 
-/// Mean radial displacement of the inner wall over the exact one.
+/// Returns the mean radial displacement of the inner wall, relative to the exact value.
 fn sphere((kind, projection): (CellKind, Projection), n: usize) -> f64 {
     let exact = ThickSphere::new(Elastic::new(YOUNG, POISSON).unwrap(), [0.01, 0.02], [1e3, 0.0]).unwrap();
     let mesh = sphere_shell_mesh(kind, 0.01, 0.02, [n, n], 2.0, ShellExtent::Octant).unwrap();
@@ -50,7 +53,7 @@ fn sphere((kind, projection): (CellKind, Projection), n: usize) -> f64 {
     mean(&|q, x| u[q].dot(&x.coords)) / mean(&|_, x| exact.displacement(x).dot(&x.coords))
 }
 
-/// Deflection of the end's middle over the exact one.
+/// Returns the deflection at the middle of the end, relative to the exact value.
 fn bending((kind, projection): (CellKind, Projection), n: usize, poisson: f64) -> f64 {
     let exact = PureBending::new(Elastic::new(YOUNG, poisson).unwrap(), 1.0);
     let (low, high) = (Point3::new(0.0, -0.005, -0.005), Point3::new(0.04, 0.005, 0.005));
@@ -69,7 +72,7 @@ fn bending((kind, projection): (CellKind, Projection), n: usize, poisson: f64) -
     mean(&|q, _| u[q].y) / mean(&|_, x| exact.displacement(x).y)
 }
 
-/// Cook's membrane: mean vertical displacement of the loaded end, mm.
+/// Returns the mean vertical displacement of the loaded end of Cook's membrane, mm.
 fn cook((kind, projection): (CellKind, Projection), n: usize, poisson: f64) -> f64 {
     let mesh =
         box_mesh(kind, Point3::origin(), Point3::new(1.0, 1.0, 1.0), [n, n, 1], [1.0; 3], None).unwrap();
@@ -119,7 +122,7 @@ fn pure_bending_does_not_lock() {
     assert!(found > 0.98 * at_03, "nodal tet4 at nu = 0.4999: {found}; at 0.3: {at_03}");
 }
 
-/// Limit of three values whose differences fall geometrically (Aitken).
+/// Returns the limit of three values whose differences form a geometric sequence (Aitken).
 fn limit([a, b, c]: [f64; 3]) -> f64 {
     c + (c - b).powi(2) / ((b - a) - (c - b))
 }

@@ -1,4 +1,4 @@
-//! Statics at large displacements and with contact, against exact solutions.
+//! Statics at large displacements and with contact, compared with exact solutions.
 
 mod bending;
 mod contact_patch;

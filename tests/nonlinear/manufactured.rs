@@ -1,14 +1,15 @@
-//! A manufactured solution at finite strain, with its orders.
+//! A manufactured solution at finite strain, with its convergence orders.
 //!
 //! ```text
 //! Source      Roache (2002); here b = -Div P(F(X)) and t = P N with P by principal stretches (cases::exact).
 //! Body        unit cube, not jittered; neo-Hookean, nu = 0.3; u of degree 3 with gradients up to 0.3.
-//! Conditions  u on all faces but z = 1 (with less constrained, dead loads of this size buckle the cube);
+//! Conditions  u on all faces except z = 1 (with fewer constraints, dead loads of this size buckle the cube);
 //!             dead tractions P N there, dead body force b, both at the quadrature points. Div P by
 //!             differences of fourth order (step 1e-3: exact to 1e-10).
-//! Must hold   order + 1 in L2 and order in energy norm (gradients), within 0.15 on the finest pair of meshes: 2 / 1 for tet4
-//!             and hex8, 3 / 2 for tet10 and hex20, and for the projected methods of the same elements; tet10 with one
-//!             dilation per cell falls to 2 / 1 (1.77 / 0.84 at five cells, rising: bounded by 0.25).
+//! Must hold   order + 1 in L2 and order in energy norm (gradients), within 0.15 on the finest pair of
+//!             meshes: 2 / 1 for tet4 and hex8, 3 / 2 for tet10 and hex20, and for the projected methods of
+//!             the same elements. tet10 with one dilation per cell has only 2 / 1 (1.77 / 0.84 at five cells,
+//!             increasing: bounded by 0.25).
 //! ```
 
 use cases::exact::{Elastic, Hyperelastic};
@@ -50,7 +51,7 @@ fn stress(law: &Hyperelastic, x: &Point3) -> Matrix3 {
     law.stress(&(Matrix3::identity() + gradient(x)))
 }
 
-/// `b = -Div P`, Pa/m.
+/// Returns `b = -Div P`, Pa/m.
 fn body_force(law: &Hyperelastic, x: &Point3) -> Vector3 {
     let h = 1e-3;
     -(0..3)
@@ -65,7 +66,7 @@ fn body_force(law: &Hyperelastic, x: &Point3) -> Vector3 {
         .sum::<Vector3>()
 }
 
-/// Errors of displacement (L2) and gradient (L2), relative.
+/// Returns the relative errors of displacement (L2) and gradient (L2).
 fn errors((kind, projection): (CellKind, Projection), cells: usize) -> [f64; 2] {
     let max = Point3::new(1.0, 1.0, 1.0);
     let mesh = box_mesh(kind, Point3::origin(), max, [cells; 3], [1.0; 3], None).unwrap();
@@ -97,14 +98,14 @@ fn errors_fall_at_the_orders_of_theory() {
     for method in METHODS {
         let (cells, order): ([usize; 2], f64) = match method {
             (CellKind::Tet4 | CellKind::Hex8, _) => ([6, 12], 1.0),
-            // One dilation per cell is what limits it.
+            // The single dilation per cell limits the order.
             (CellKind::Tet10, Projection::Element) => ([3, 5], 1.0),
             _ => ([3, 5], 2.0),
         };
         let [coarse, fine] = cells.map(|n| errors(method, n));
         let ratio = (cells[1] as f64 / cells[0] as f64).ln();
         let [l2, h1] = [0, 1].map(|i| (coarse[i] / fine[i]).ln() / ratio);
-        // Theory, or on its way to it from the mean of a coarse mesh.
+        // The theoretical order, or an order that still approaches it from below.
         let tolerance = if method == (CellKind::Tet10, Projection::Element) { 0.25 } else { 0.15 };
         assert!((l2 - order - 1.0).abs() < tolerance, "{method:?}: {l2} of {coarse:?}, {fine:?}");
         assert!((h1 - order).abs() < tolerance, "{method:?}: {h1} of {coarse:?}, {fine:?}");

@@ -1,14 +1,16 @@
 //! Newton's method converges quadratically.
 //!
 //! ```text
-//! Source      the theorem of Newton and Kantorovich; Wriggers, Nonlinear Finite Element Methods (2008), ch. 5.
+//! Source      the theorem of Newton and Kantorovich; Wriggers, Nonlinear Finite Element Methods (2008), ch.
+//!             5.
 //! Body        jittered box, every law, every method, nu = 0.45; z = 0 clamped.
-//! Conditions  dead tractions on the top that press and shear it by about a tenth in two steps; or a plate that presses
-//!             the whole top (sticking, or without friction), the middle of each step's iterations with all points
-//!             in contact.
-//! Must hold   each pair of relative residuals obeys r1 <= 100 r0^2 while r0 is between 0.1 and 1e-7 (a linear rate of 0.1
-//!             would give 1e5); over the pairs of all laws the exponent is at least 1.7 (the constant varies with the
-//!             direction of the error: three residuals of one solution would not do). A linear law ends after one iteration.
+//! Conditions  Dead tractions on the top that compress and shear it by about a tenth in two steps; or a plate
+//!             that presses the whole top (sticking, or without friction), the middle of each step's
+//!             iterations with all points in contact.
+//! Must hold   Each pair of relative residuals obeys r1 <= 100 r0^2 while r0 is between 0.1 and 1e-7 (a
+//!             linear rate of 0.1 would give 1e5). Over the pairs of all laws the exponent is at least 1.7.
+//!             (The constant varies with the direction of the error, so three residuals of one solution do
+//!             not suffice.) A linear law ends after one iteration.
 //! ```
 
 use contact::{ContactLaw, ContactSurface, Drive, DrivenTool, Plate, Tool, ToolShape};
@@ -18,13 +20,13 @@ use material::Material as _;
 use shape::{Point3, Vector3};
 use statics::{Load, NewtonParams, StaticParams, StaticPath, StaticProblem};
 
-/// Two steps, every iteration with its own tangent.
+/// Returns parameters for two steps, in which every iteration has its own tangent.
 fn newton_alone() -> StaticParams {
     let params = steps(2);
     StaticParams { newton: NewtonParams { chords: false, ..params.newton }, ..params }
 }
 
-/// Adds `(r0, r1)` of all steps with `r0` in range; refuses one above the parabola.
+/// Appends `(r0, r1)` of all steps with `r0` in range, and refuses pairs above the parabola.
 fn collect(name: &str, path: &StaticPath, pairs: &mut Vec<(f64, f64)>) {
     for step in &path.steps {
         let residuals: Vec<f64> = step.iterations.iter().map(|i| i.residual).collect();
@@ -35,7 +37,7 @@ fn collect(name: &str, path: &StaticPath, pairs: &mut Vec<(f64, f64)>) {
     }
 }
 
-/// Slope of `ln r1` over `ln r0` by least squares.
+/// Returns the slope of `ln r1` over `ln r0` by least squares.
 fn exponent(pairs: &[(f64, f64)]) -> f64 {
     let count = pairs.len() as f64;
     let mean = |f: &dyn Fn(&(f64, f64)) -> f64| pairs.iter().map(f).sum::<f64>() / count;
@@ -85,7 +87,7 @@ fn under_a_plate() {
                 ("sticks", ContactLaw::coulomb(3e7, 100.0, 3e7).unwrap()),
             ] {
                 let name = format!("{method:?} {} {kind}", law.name());
-                // Obliquely down, so that a sticking plate shears.
+                // The plate moves obliquely downwards, so a sticking plate shears the body.
                 let along = Vector3::new(0.6, 0.0, -0.8);
                 let turn = Tool::turned_to(&-Vector3::z());
                 let at = Point3::new(0.0, 0.0, SIZE.z);

@@ -1,15 +1,16 @@
-//! A strut that snaps through under a dead load.
+//! Snap-through of a strut under a dead load.
 //!
 //! ```text
-//! Source      the von Mises truss, one half: with the apex at height z, Green's strain (z^2 - h^2) / (2 L^2) and one
-//!             stress along the strut, P(z) = E A z (h^2 - z^2) / (2 L^3) down; its limit is E A h^3 / (3 sqrt(3) L^3)
-//!             at z = h / sqrt(3), and beyond it the next equilibrium is far below z = -h.
+//! Source      the von Mises truss, one half. With the apex at height z, Green's strain (z^2 - h^2) / (2 L^2)
+//!             and a uniaxial stress along the strut, P(z) = E A z (h^2 - z^2) / (2 L^3) downwards. Its limit
+//!             is E A h^3 / (3 sqrt(3) L^3) at z = h / sqrt(3); beyond it the next equilibrium is far below z
+//!             = -h.
 //! Body        a bar of 100 x 10 x 10 mm, rising by 10 mm; St. Venant-Kirchhoff, nu = 0; 10 x 2 x 1 hex20.
-//! Conditions  hinges in the middle of both ends: the foot constrained, the apex free along y; 0.5 and 1.5 times the limit load on
-//!             the apex, dead, in 4 steps.
-//! Must hold   below the limit the strut stays up, above it hangs at the other equilibrium, where its tangent is definite
-//!             again. A force on a line presses the hinges in: within 4 % of h. Sought, the limit is found: within 2 % of
-//!             the one that the height at half of it foretells.
+//! Conditions  hinges in the middle of both ends: the foot constrained, the apex free along y; 0.5 and 1.5
+//!             times the limit load on the apex, dead, in 4 steps.
+//! Must hold   Below the limit the strut stays up. Above, it hangs at the other equilibrium, where its
+//!             tangent is definite again. A force on a line indents the hinges: within 4 % of h. A search for
+//!             the limit finds it within 2 % of the value that follows from the height at half the limit.
 //! ```
 
 use fem::SurfaceRule;
@@ -24,7 +25,7 @@ const LENGTH: f64 = 0.1;
 const DEPTH: f64 = 0.01;
 const RISE: f64 = 0.01;
 
-/// The path under `factor` times the limit load, and the height of the apex at its end, m.
+/// Returns the path under `factor` times the limit load, and the height of the apex at its end, m.
 fn strut(factor: f64, params: &StaticParams) -> (StaticPath, f64) {
     let (low, high) = (Point3::new(0.0, -0.5 * DEPTH, 0.0), Point3::new(LENGTH, 0.5 * DEPTH, DEPTH));
     let flat = box_mesh(CellKind::Hex20, low, high, [10, 2, 1], [1.0; 3], None).unwrap();
@@ -59,8 +60,8 @@ fn strut(factor: f64, params: &StaticParams) -> (StaticPath, f64) {
 
 #[test]
 fn struts_snap_through_beyond_the_limit_load() {
-    // Heights over the rise, of c = z - z^3 with c = factor * 2 / (3 sqrt 3): the root above the limit's place, and the
-    // one below -1, by Newton's method.
+    // Heights relative to the rise solve c = z - z^3 with c = factor * 2 / (3 sqrt 3): the root above the
+    // height of the limit, and the root below -1, by Newton's method.
     for (factor, start, keeps) in [(0.5, 1.0, f64::INFINITY), (1.5, -1.5, f64::INFINITY), (1.5, -1.5, 0.0)] {
         let load = factor * 2.0 / (3.0 * 3f64.sqrt());
         let exact = (0..50).fold(start, |z: f64, _| z - (z - z.powi(3) - load) / (1.0 - 3.0 * z * z));
@@ -77,10 +78,11 @@ fn struts_snap_through_beyond_the_limit_load() {
 
 #[test]
 fn the_limit_load_is_found_where_it_is_sought() {
-    // The hinges make the strut softer than its theory by a factor that shows at half the limit.
+    // The hinges make the strut softer than in theory, by a factor that follows from the height at half the
+    // limit.
     let height = strut(0.5, &steps(4)).1 / RISE;
     let limit = 0.5 / (1.5 * 3f64.sqrt() * (height - height.powi(3)));
-    // The last is finer than the smallest step, a 64th of a quarter, halved once.
+    // The last value is below the smallest step, a 64th of a quarter, halved once.
     for within in [0.2, 0.01, 1e-4] {
         let (path, _) = strut(1.5, &StaticParams { limit_within: Some(within), ..steps(4) });
         let gave_way = path.steps.iter().position(|step| step.gave_way).expect("it gives way");

@@ -1,11 +1,13 @@
-//! Tools that travel farther in a load step than they are thick.
+//! Tools that travel farther in a load step than their own thickness.
 //!
 //! ```text
 //! Body        jittered box of 40 x 30 x 20 mm in 6 x 5 x 3 hex8, neo-Hookean, nu = 0.3; z = 0 clamped.
-//! Conditions  without friction, so that the end does not depend on the way there: a box 8 mm thick and a plate 0.2 mm thick
-//!             pressed 4 mm into the top from 0.5 and 5 mm off it; a ball of 3 mm on faces of one cell, divided in parts.
-//! Must hold   one step comes to where 5 and 20 come, in statics and in quasi-static time, by closure and in frames: to 1e-7
-//!             of the force. Tools that start beyond the body, pass beside it or stop short of it end without a force.
+//! Conditions  Without friction, so that the end does not depend on the path: a box 8 mm thick and a plate
+//!             0.2 mm thick pressed 4 mm into the top from distances of 0.5 and 5 mm; a ball of 3 mm on faces
+//!             of one cell, divided into parts.
+//! Must hold   One step gives the result of 5 and of 20 steps, in statics and in quasi-static time, by
+//!             prescribed displacement and in frames: to 1e-7 of the force. Tools that start beyond the body,
+//!             pass by its side or stop short of it end without a force.
 //! ```
 
 use contact::{
@@ -26,7 +28,7 @@ const METHOD: (CellKind, Projection) = (CellKind::Hex8, Projection::Standard);
 const JAW: ToolShape = ToolShape::RoundedBox(RoundedBox { half: [9e-3, 9e-3, 4e-3], radius: 1e-3 });
 const SHEET: ToolShape = ToolShape::RoundedBox(RoundedBox { half: [9e-3, 9e-3, 1e-4], radius: 1e-4 });
 
-/// A block with a tool over the middle of its top that closes downwards.
+/// A block with a tool over the middle of its top that moves downwards.
 struct Pressed {
     model: Model,
     law: Law,
@@ -48,7 +50,7 @@ impl Pressed {
         Pressed { model, law, fixed, rows, tool }
     }
 
-    /// Over the top, its face `off` the top.
+    /// Builds the case with a tool over the top, its face at a distance of `off` from the top.
     fn over(shape: ToolShape, off: f64) -> Pressed {
         let at = Point3::new(0.021, 0.014, SIZE.z + off + shape.bounds().1.z);
         Pressed::new(shape, at, [6, 5, 3], 1)
@@ -69,17 +71,17 @@ impl Pressed {
         self.with(closure, |problem| solve_static(problem, &cut(count), |_, _| {}).unwrap())
     }
 
-    /// Force on the tool at the end.
+    /// Returns the force on the tool at the end, N.
     fn force(&self, closure: f64, count: usize) -> f64 {
         let path = self.path(closure, count);
         assert!(path.failure.is_none(), "{count} steps: {:?}", path.failure);
-        // The steps reported are those that were asked for.
+        // The reported steps are those requested.
         assert_eq!(path.steps.iter().filter(|step| step.wanted).count(), count);
         path.steps.last().unwrap().tools[0].force.z
     }
 }
 
-/// To a residual of 1e-9: at first touch forces are small against what rounding leaves.
+/// Returns parameters with a residual of 1e-9: at first touch forces are small compared with rounding.
 fn cut(count: usize) -> StaticParams {
     let exact = steps(count);
     StaticParams { newton: NewtonParams { tolerance: 1e-9, ..exact.newton }, ..exact }
@@ -101,7 +103,7 @@ fn one_step_comes_to_where_many_do() {
     }
 }
 
-/// 12 mm in one step end the jaw beyond the surface, with nothing near it.
+/// A travel of 12 mm in one step moves the jaw beyond the surface, with nothing near it.
 #[test]
 fn deep_is_as_deep_in_one_step() {
     let pressed = Pressed::over(JAW, 5e-4);
@@ -133,8 +135,8 @@ fn frames_and_time_steps_are_cut_as_well() {
     });
 }
 
-/// Between points 8 mm apart a ball of 3 mm meets nothing; in parts of a fifth it does, and as the points come closer its force
-/// settles.
+/// A ball of 3 mm meets no point between points at a distance of 8 mm. If the faces are divided into fifths
+/// it does, and its force converges as the points become denser.
 #[test]
 fn a_ball_needs_points_closer_than_itself() {
     let ball = ToolShape::Sphere(Sphere { radius: 3e-3 });
@@ -151,7 +153,7 @@ fn a_ball_needs_points_closer_than_itself() {
 fn tools_that_pass_by_meet_nothing() {
     let ball = ToolShape::Sphere(Sphere { radius: 3e-3 });
     for (at, closure) in [
-        // Beyond the body from the start, beside it, and stopping 10 um before it.
+        // Beyond the body from the start, past its side, and stopping 10 um before the body.
         (Point3::new(0.02, 0.015, -4e-3), 0.02),
         (Point3::new(0.02, 0.0335, 0.03), 0.06),
         (Point3::new(0.02, 0.015, SIZE.z + 5e-3), 1.99e-3),
@@ -166,7 +168,7 @@ fn tools_that_pass_by_meet_nothing() {
     }
 }
 
-/// One that grazes a side by a fifth of its radius touches it in one step as in ten.
+/// A tool that grazes a side by a fifth of its radius touches it in one step as well as in ten.
 #[test]
 fn a_grazing_tool_touches() {
     let ball = ToolShape::Sphere(Sphere { radius: 3e-3 });
@@ -181,7 +183,8 @@ fn a_grazing_tool_touches() {
     assert!(ten > 0.0 && (one / ten - 1.0).abs() < 1e-6, "{one} {ten}");
 }
 
-/// A penalty too soft for the sheet: cut back to an eighth of what it may penetrate, and said.
+/// A penalty too soft for the sheet: steps are cut to an eighth of the allowed penetration, then an error is
+/// reported.
 #[test]
 fn a_step_that_no_cutting_saves_is_an_error() {
     let mut pressed = Pressed::over(SHEET, 5e-3);
@@ -199,7 +202,7 @@ fn a_step_that_no_cutting_saves_is_an_error() {
     );
 }
 
-/// A ball of 20 mm that ends 0.1 mm in a face, between its points.
+/// A ball of 20 mm that ends 0.1 mm deep in a face, between its points.
 #[test]
 fn an_overlap_without_a_force_is_an_error() {
     let ball = ToolShape::Sphere(Sphere { radius: 20e-3 });
@@ -226,14 +229,14 @@ fn an_overlap_without_a_force_is_an_error() {
         solve_static(&problem, &cut(2), |_, _| {})
     };
     let path = run(1e-4).unwrap();
-    // The half of it is reported: from there the points may still be about to touch.
+    // The half step is reported, because from there the points may still be about to touch.
     assert_eq!((path.time(), path.cut_back), (0.5, 1));
     let Some(StaticError::Stalled { cause, .. }) = path.failure else { panic!("{:?}", path.failure) };
     let StaticError::Contact { tool: 0, cause: ContactError::Overlap { depth, .. } } = *cause else {
         panic!("{cause}")
     };
     assert!((depth / 1e-4 - 1.0).abs() < 0.05, "{depth}");
-    // Deeper it touches, on the way over such a state.
+    // With a deeper end the ball touches, after it has passed such a state.
     let path = run(4e-3).unwrap();
     assert!(path.failure.is_none() && path.steps.last().unwrap().tools[0].active > 0);
 }

@@ -1,4 +1,4 @@
-//! A jittered box with its tables, and affine fields on it.
+//! A jittered box with its tables, and affine fields on the box.
 
 use fem::{SurfaceRule, VolumeRule};
 use geometry::generate::{Jitter, box_mesh};
@@ -8,19 +8,19 @@ use shape::{FixedDof, Matrix3, Point3, Vector3};
 use shape::{FluxRows, SurfaceRows, VolumeRows};
 use statics::Body;
 
-/// Sides of a box.
+/// Facet groups of a box.
 pub const SIDES: [&str; 6] = ["x-min", "x-max", "y-min", "y-max", "z-min", "z-max"];
 
 /// A jittered box with its tables.
 pub struct Block {
     /// The mesh.
     pub mesh: Mesh,
-    /// Its standard quadrature.
+    /// Standard quadrature of the mesh.
     pub volume: VolumeRows,
 }
 
 impl Block {
-    /// 40 x 30 x 20 mm, jittered.
+    /// Builds a jittered box of 40 x 30 x 20 mm.
     pub fn new(kind: CellKind, cells: [usize; 3]) -> Block {
         let jitter = Some(Jitter { fraction: 0.2, seed: 7 });
         let max = Point3::new(0.04, 0.03, 0.02);
@@ -29,32 +29,32 @@ impl Block {
         Block { mesh, volume }
     }
 
-    /// A body of these laws, without projection.
+    /// Returns a body with these laws, without projection.
     pub fn body<'a>(&'a self, materials: &'a [LinearElastic]) -> Body<'a> {
         Body { nodes: self.mesh.points(), volume: &self.volume, materials, region: &[], dilation: None }
     }
 
-    /// Facets of some sides.
+    /// Returns the facets of some sides.
     pub fn facets(&self, sides: &[&str]) -> Vec<Facet> {
         sides.iter().flat_map(|s| self.mesh.group(s).unwrap().to_vec()).collect()
     }
 
-    /// Surface quadrature of some sides.
+    /// Returns the surface quadrature of some sides.
     pub fn surface(&self, sides: &[&str]) -> SurfaceRows {
         fem::surface_rows(&self.mesh, &self.facets(sides), &SurfaceRule::STANDARD).unwrap()
     }
 
-    /// Values and gradients on some sides.
+    /// Returns shape values and gradients on some sides.
     pub fn flux(&self, sides: &[&str]) -> FluxRows {
         fem::flux_rows(&self.mesh, &self.facets(sides), &SurfaceRule::STANDARD).unwrap()
     }
 
-    /// Nodes on some sides.
+    /// Returns the nodes on some sides.
     pub fn nodes_of(&self, sides: &[&str]) -> Vec<u32> {
         self.mesh.facet_group_nodes(&self.facets(sides))
     }
 
-    /// All three axes of the nodes on `sides` prescribed by `field`.
+    /// Prescribes `field` (m) along all three axes at the nodes on `sides`.
     pub fn fix(&self, sides: &[&str], field: impl Fn(&Point3) -> Vector3) -> Vec<FixedDof> {
         self.nodes_of(sides)
             .into_iter()
@@ -65,7 +65,8 @@ impl Block {
             .collect()
     }
 
-    /// Largest distance between `u` and `field` over the nodes, relative to the field's largest value.
+    /// Returns the largest distance between `u` and `field` over the nodes, relative to the field's largest
+    /// value.
     pub fn error(&self, u: &[Vector3], field: impl Fn(&Point3) -> Vector3) -> f64 {
         let exact: Vec<Vector3> = self.mesh.points().iter().map(field).collect();
         let largest = exact.iter().map(Vector3::norm).fold(0.0, f64::max);
@@ -78,12 +79,12 @@ pub fn soft() -> LinearElastic {
     LinearElastic::new(20e3, 0.3).unwrap()
 }
 
-/// A displacement gradient with nothing special about it.
+/// Returns a displacement gradient without special properties.
 pub fn gradient() -> Matrix3 {
     Matrix3::new(0.02, -0.01, 0.004, 0.007, -0.015, 0.011, -0.003, 0.006, 0.01)
 }
 
-/// The affine field of [`gradient`] and a translation.
+/// The affine field of [`gradient`], with a translation, m.
 pub fn affine(x: &Point3) -> Vector3 {
     gradient() * x.coords + Vector3::new(1e-4, -2e-4, 3e-4)
 }

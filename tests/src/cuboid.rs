@@ -1,4 +1,4 @@
-//! Boxes that move, with their tables.
+//! Boxes for dynamics, with their tables.
 
 use fem::VolumeRule;
 use geometry::generate::box_mesh;
@@ -14,12 +14,12 @@ use statics::{
 pub struct Cuboid {
     /// The mesh.
     pub mesh: Mesh,
-    /// Its standard quadrature.
+    /// Standard quadrature of the mesh.
     pub volume: VolumeRows,
 }
 
 impl Cuboid {
-    /// From the origin to `max`, in metres.
+    /// Builds a box from the origin to `max`, in metres.
     pub fn new(kind: CellKind, max: [f64; 3], cells: [usize; 3]) -> Cuboid {
         let mesh = box_mesh(kind, Point3::origin(), Point3::from(max), cells, [1.0; 3], None).unwrap();
         let volume = fem::volume_rows(&mesh, &VolumeRule::STANDARD).unwrap();
@@ -31,13 +31,13 @@ impl Cuboid {
         self.mesh.points()
     }
 
-    /// Exactly integrated.
+    /// Returns the exactly integrated consistent mass; `density` in kg/m^3.
     pub fn consistent(&self, density: f64) -> Mass {
         let fine = fem::volume_rows(&self.mesh, &VolumeRule::FINE).unwrap();
         Mass::consistent(&fine, &[density], &[]).unwrap()
     }
 
-    /// Row sums.
+    /// Returns the row-sum lumped mass; `density` in kg/m^3.
     pub fn lumped(&self, density: f64) -> Mass {
         let mut nodal = vec![0.0; self.nodes().len()];
         for (q, w) in self.volume.weights().iter().enumerate() {
@@ -47,7 +47,7 @@ impl Cuboid {
         Mass::lumped(&nodal).unwrap()
     }
 
-    /// Degrees of freedom prescribed at the values that `value` names.
+    /// Prescribes the degrees of freedom for which `value` returns a displacement, m.
     pub fn constrained(&self, value: impl Fn(&Point3, usize) -> Option<f64>) -> Vec<FixedDof> {
         (0..self.nodes().len())
             .flat_map(|i| (0..3).map(move |axis| (i, axis)))
@@ -58,12 +58,12 @@ impl Cuboid {
             .collect()
     }
 
-    /// A field at the nodes.
+    /// Returns a field at the nodes.
     pub fn field(&self, value: impl Fn(&Point3) -> Vector3) -> Vec<Vector3> {
         self.nodes().iter().map(value).collect()
     }
 
-    /// A body of these laws without loads and tools.
+    /// Returns a problem with these laws, without loads and tools.
     pub fn body<'a>(&'a self, laws: &'a [Law], fixed: &'a [FixedDof]) -> StaticProblem<'a> {
         let solid = Solid { volume: &self.volume, laws, region: &[], dilation: Dilation::Standard };
         StaticProblem {
@@ -78,7 +78,7 @@ impl Cuboid {
     }
 }
 
-/// Without damping or relaxation, loads at once.
+/// Returns a dynamic problem without damping and relaxation, whose loads act at once.
 pub fn moving<'a>(
     body: &'a StaticProblem<'a>,
     mass: &'a Mass,
@@ -89,7 +89,7 @@ pub fn moving<'a>(
     TimeProblem { body, ramps: Ramps::all(Ramp::AtOnce), inertia, relaxation: &[] }
 }
 
-/// Equal steps without control of their error.
+/// Returns parameters for equal steps without error control.
 pub fn params(end: f64, steps: usize, rho_inf: f64) -> TimeParams {
     TimeParams {
         end,
@@ -102,12 +102,12 @@ pub fn params(end: f64, steps: usize, rho_inf: f64) -> TimeParams {
     }
 }
 
-/// Length of the longest vector.
+/// Returns the length of the longest vector.
 pub fn largest(v: &[Vector3]) -> f64 {
     v.iter().map(Vector3::norm).fold(0.0, f64::max)
 }
 
-/// Largest distance of two fields.
+/// Returns the largest distance between two fields.
 pub fn distance(a: &[Vector3], b: &[Vector3]) -> f64 {
     a.iter().zip(b).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max)
 }

@@ -1,4 +1,4 @@
-//! What the tests across crates share: bodies with their tables, tools, and measures of error.
+//! Helpers of the tests across crates: bodies with their tables, tools, and measures of error.
 
 pub mod block;
 pub mod cuboid;

@@ -1,4 +1,4 @@
-//! Meshes with all their projections, every law, and a static solution that must reach its end.
+//! Meshes with all their projections, every law, and static solutions that must reach the full load.
 
 use fem::VolumeRule;
 use geometry::generate::{Jitter, box_mesh};
@@ -8,16 +8,16 @@ use shape::{DilationGroups, Rows, VolumeRows};
 use shape::{FixedDof, Point3, Vector3};
 use statics::{Dilation, NewtonParams, Solid, StaticParams, StaticPath, StaticProblem, solve_static};
 
-/// How the volume change is carried.
+/// Treatment of the volume change.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Projection {
-    /// None.
+    /// No projection.
     Standard,
     /// One dilation for each element.
     Element,
     /// One dilation for each node.
     Nodal,
-    /// A pressure field.
+    /// A pressure field of its own.
     Mixed,
 }
 
@@ -25,13 +25,13 @@ pub enum Projection {
 pub struct Model {
     /// The mesh.
     pub mesh: Mesh,
-    /// Its standard quadrature.
+    /// Standard quadrature of the mesh.
     pub volume: VolumeRows,
     groups: Option<DilationGroups>,
     pressure: Option<Rows>,
 }
 
-/// Every method: standard elements, and the cures of volumetric locking with the elements they belong to.
+/// All methods: standard elements, and the remedies for volumetric locking with their elements.
 pub const METHODS: [(CellKind, Projection); 8] = [
     (CellKind::Tet4, Projection::Standard),
     (CellKind::Tet10, Projection::Standard),
@@ -44,7 +44,7 @@ pub const METHODS: [(CellKind, Projection); 8] = [
 ];
 
 impl Model {
-    /// The tables of a projection.
+    /// Builds the tables of a projection.
     pub fn new(mesh: Mesh, projection: Projection) -> Model {
         let rule = VolumeRule::STANDARD;
         let volume = fem::volume_rows(&mesh, &rule).unwrap();
@@ -58,13 +58,13 @@ impl Model {
         Model { mesh, volume, groups, pressure }
     }
 
-    /// A box of 40 x 30 x 20 mm, inner nodes shifted by up to 0.2 of their spacing.
+    /// Builds a box of 40 x 30 x 20 mm, with inner nodes shifted by up to 0.2 of their spacing.
     pub fn block((kind, projection): (CellKind, Projection), cells: [usize; 3]) -> Model {
         let jitter = Some(Jitter { fraction: 0.2, seed: 7 });
         Model::new(box_mesh(kind, Point3::origin(), SIZE, cells, [1.0; 3], jitter).unwrap(), projection)
     }
 
-    /// The projection as a solid takes it.
+    /// Returns the projection in the form of a solid.
     pub fn dilation(&self) -> Dilation<'_> {
         match (&self.groups, &self.pressure) {
             (Some(groups), _) => Dilation::Groups(groups),
@@ -73,7 +73,7 @@ impl Model {
         }
     }
 
-    /// A problem of one law without loads, supports and tools.
+    /// Returns a problem with one law, without loads, supports and tools.
     pub fn problem<'a>(&'a self, law: &'a Law) -> StaticProblem<'a> {
         StaticProblem {
             nodes: self.mesh.points(),
@@ -91,12 +91,12 @@ impl Model {
         }
     }
 
-    /// Facets of some sides.
+    /// Returns the facets of some sides.
     pub fn facets(&self, sides: &[&str]) -> Vec<Facet> {
         sides.iter().flat_map(|s| self.mesh.group(s).unwrap().to_vec()).collect()
     }
 
-    /// `axes` of the nodes on a side prescribed by a displacement field.
+    /// Prescribes the `axes` of the nodes on some sides by a displacement field, m.
     pub fn hold(&self, sides: &[&str], axes: &[u8], field: impl Fn(&Point3) -> Vector3) -> Vec<FixedDof> {
         (self.mesh.facet_group_nodes(&self.facets(sides)).into_iter())
             .flat_map(|node| {
@@ -106,7 +106,7 @@ impl Model {
             .collect()
     }
 
-    /// The three planes x, y, z = 0 as frictionless walls.
+    /// Constrains the normal displacement on the three planes x, y, z = 0.
     pub fn walls(&self) -> Vec<FixedDof> {
         ["x-min", "y-min", "z-min"]
             .iter()
@@ -115,7 +115,8 @@ impl Model {
             .collect()
     }
 
-    /// Largest distance (relative to the field's largest value) between `u` and a field over the nodes.
+    /// Returns the largest distance between `u` and a field over the nodes, relative to the field's largest
+    /// value.
     pub fn error(&self, u: &[Vector3], field: impl Fn(&Point3) -> Vector3) -> f64 {
         let exact: Vec<Vector3> = self.mesh.points().iter().map(field).collect();
         let largest = exact.iter().map(Vector3::norm).fold(0.0, f64::max);
@@ -125,17 +126,17 @@ impl Model {
 
 /// Far corner of [`Model::block`], m.
 pub const SIZE: Point3 = Point3::new(0.04, 0.03, 0.02);
-/// Sides of a box.
+/// Facet groups of a box.
 pub const ALL_SIDES: [&str; 6] = ["x-min", "x-max", "y-min", "y-max", "z-min", "z-max"];
 /// Young's modulus, Pa.
 pub const YOUNG: f64 = 20e3;
 
-/// Every law, of one small-strain limit.
+/// Returns every law, with the same small-strain limit.
 pub fn laws(young: f64, poisson: f64) -> Vec<Law> {
     Law::all(young, poisson).unwrap()
 }
 
-/// Equal steps to a relative residual of 1e-11.
+/// Returns parameters for equal steps with a relative residual of 1e-11.
 pub fn steps(steps: usize) -> StaticParams {
     StaticParams {
         steps,
@@ -146,7 +147,7 @@ pub fn steps(steps: usize) -> StaticParams {
     }
 }
 
-/// The whole way, or a panic with what ended it.
+/// Solves up to the full load, or panics with the failure.
 pub fn solve(name: &str, problem: &StaticProblem, params: &StaticParams) -> StaticPath {
     let path = solve_static(problem, params, |_, _| {}).unwrap_or_else(|e| panic!("{name}: {e}"));
     if let Some(failure) = &path.failure {

@@ -1,10 +1,10 @@
-//! Tools of every shape, and where their distances have kinks.
+//! Tools of every shape, and the distance to the kinks of their distance functions.
 
 use contact::{Capsule, Cylinder, Plate, RoundedBox, Sphere, ToolShape};
 use proptest::prelude::*;
 use shape::{Matrix3, Vector3};
 
-/// One tool of each shape, and a box without rounding; millimetres in size.
+/// One tool of each shape, and a box without rounding, with sizes of a few millimetres.
 pub const SHAPES: [ToolShape; 6] = [
     ToolShape::Plate(Plate),
     ToolShape::RoundedBox(RoundedBox { half: [5e-3, 10e-3, 4e-3], radius: 1.5e-3 }),
@@ -14,14 +14,16 @@ pub const SHAPES: [ToolShape; 6] = [
     ToolShape::Capsule(Capsule { radius: 3e-3, half_length: 5e-3 }),
 ];
 
-/// Distance (m) from `p` to where the gradient or the Hessian jumps, or less.
+/// Returns the distance (m), or a lower bound of it, from `p` to the nearest jump of the gradient or the
+/// Hessian.
 pub fn kink(shape: &ToolShape, p: &Vector3) -> f64 {
     let least = |values: &[f64]| values.iter().fold(f64::INFINITY, |m, v| m.min(v.abs()));
     let rho = p.x.hypot(p.y);
     match *shape {
         ToolShape::Plate(Plate) => f64::INFINITY,
         ToolShape::RoundedBox(RoundedBox { half, radius }) => {
-            // Deepest axis last: inside the core its face changes at a tie, beyond it the others count from q = 0 on.
+            // The deepest axis comes last: inside the core the nearest face changes at a tie; outside, the
+            // other axes contribute from q = 0.
             let mut q = [0, 1, 2].map(|a| (p[a].abs() - half[a] + radius, p[a]));
             q.sort_by(|a, b| a.0.total_cmp(&b.0));
             let [(low, _), (next, _), (top, along)] = q;
@@ -41,17 +43,17 @@ pub fn kink(shape: &ToolShape, p: &Vector3) -> f64 {
     }
 }
 
-/// Vectors with components up to `reach`.
+/// Returns vectors with components up to `reach`.
 pub fn vector(reach: f64) -> impl Strategy<Value = Vector3> {
     prop::array::uniform3(-reach..reach).prop_map(Vector3::from)
 }
 
-/// Any rotation.
+/// Returns arbitrary rotations.
 pub fn rotation() -> impl Strategy<Value = Matrix3> {
     vector(3.0).prop_map(|axis| nalgebra::Rotation3::new(axis).into_inner())
 }
 
-/// `df/dx` by central differences of step `h`.
+/// Returns `df/dx` by central differences with step `h`.
 pub fn differences(h: f64, f: impl Fn(&Vector3) -> Vector3) -> Matrix3 {
     let columns = [0, 1, 2].map(|a| {
         let mut step = Vector3::zeros();
