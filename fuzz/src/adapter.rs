@@ -1,9 +1,10 @@
-//! What people and other programs write around solvers outside this program: `adapter.toml`, `result.json`, `.npy`, and claims.
+//! Files that people and other programs write for external solvers: `adapter.toml`, `result.json`, `.npy`,
+//! and claims.
 
 use harness::try_readers;
 use reports::read_claims;
 
-/// Nodes and load steps of the question that is answered.
+/// Numbers of nodes and load steps of the problem to which the files belong.
 const NODES: usize = 4;
 const STEPS: usize = 3;
 

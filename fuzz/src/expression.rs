@@ -1,4 +1,4 @@
-//! Texts within a scene: expressions of position, quantities with units and regions, each in the key that takes it.
+//! Texts within a scene: expressions of position, quantities with units, and regions, each in its own key.
 
 use cases::scene;
 
@@ -25,7 +25,7 @@ pub(crate) fn run(data: &[u8]) {
     }
 }
 
-/// A value anywhere is a finite number or an error.
+/// Checks that every value of an expression is a finite number or an error.
 fn evaluate(scene: &scene::Scene) {
     for load in &scene.loads {
         let scene::LoadKind::Traction(scene::VectorField::Components(fields)) = &load.kind else { continue };

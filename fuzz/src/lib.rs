@@ -1,8 +1,9 @@
-//! What is fuzzed: every reader of files that people write or that a stopped program leaves. A target takes any bytes, and
-//! nothing of it may panic, take more than a second or more than a gigabyte.
+//! Fuzz targets: every reader of files that people write or that an interrupted program leaves. A target
+//! takes arbitrary bytes. It must not panic, take more than a second or use more than a gigabyte.
 //!
-//! `corpus/TARGET` holds inputs that once led somewhere new; `tests/corpus.rs` runs them all with every `cargo test`. The
-//! search for more is in `engine`, a workspace of its own, as it needs a nightly compiler:
+//! `corpus/TARGET` holds inputs that once reached new code; `tests/corpus.rs` runs all of them with every
+//! `cargo test`. The search for further inputs is in `engine`, a separate workspace because it needs a
+//! nightly compiler:
 //!
 //! ```sh
 //! cargo install cargo-fuzz
@@ -20,9 +21,9 @@ mod study;
 /// A reader under test.
 #[derive(Clone, Copy)]
 pub struct Target {
-    /// Its name, that of its folder in `corpus`.
+    /// Name of the target and of its folder in `corpus`.
     pub name: &'static str,
-    /// Reads the bytes, and does with what is read what the program does before it solves.
+    /// Reads the bytes, and processes the result as the program does before a solution.
     pub run: fn(&[u8]),
 }
 
@@ -37,15 +38,15 @@ pub const TARGETS: [Target; 7] = [
     Target { name: "adapter", run: adapter::run },
 ];
 
-/// Files that fuzzed scenes and studies name.
+/// Folder of files that fuzzed scenes and studies refer to.
 const INPUTS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/inputs");
 
-/// A file of that name beside these files; it need not exist.
+/// Returns the path of a file with this name in the folder of inputs; the file need not exist.
 fn beside(name: &str) -> String {
     format!("{INPUTS}/{name}")
 }
 
-/// Every message is one line about a place that the text has.
+/// Checks that every message is a single line and refers to an existing line of the text.
 fn sound(errors: &[cases::scene::SceneError], text: &str, file: &str) {
     let lines = text.split('\n').count();
     for error in errors {

@@ -18,7 +18,7 @@ pub(crate) fn run(data: &[u8]) {
     if let Ok(surface) = files::read_surface_bytes(data, Path::new("fuzz.stl"), 1e-3) {
         fill(&surface);
     }
-    // The folder of a deck's includes is an empty one.
+    // The folder for included files of an input deck is empty.
     match files::read_bytes(data, Path::new("/nonexistent/fuzz.msh"), 1e-3) {
         Err(bad) => assert!(!bad.to_string().is_empty()),
         Ok((mesh, rows)) => {
@@ -28,7 +28,7 @@ pub(crate) fn run(data: &[u8]) {
     }
 }
 
-/// Fills a surface with some cells.
+/// Fills a surface with a few cells.
 fn fill(surface: &Surface) {
     let [low, high] = surface.bounds();
     if surface.triangles().len() > 300 {

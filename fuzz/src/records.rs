@@ -1,13 +1,13 @@
-//! A folder of results, as a stopped run or an editor may leave it: any of its files replaced.
+//! A folder of results as left by an interrupted run or an editor, with any of its files replaced.
 
 use std::fs;
 use std::path::Path;
 
 use reports::baseline::Baseline;
 
-/// Begins a file in the input: `== records.csv`.
+/// Starts a file in the input: `== records.csv`.
 const MARK: &str = "== ";
-/// What a folder holds, with the least that each file takes.
+/// Files of a folder of results, each with its smallest valid content.
 const FILES: [(&str, &str); 8] = [
     ("records.csv", ""),
     ("provenance.json", include_str!("../inputs/provenance.json")),
@@ -26,7 +26,7 @@ pub(crate) fn run(data: &[u8]) {
     let Ok(run) = reports::read_run(folder.path()) else { return };
     let baseline = Baseline::of(&run.records, "fuzz");
     assert!(baseline.compare(&baseline, true).changes.is_empty());
-    // What is read and differs in its keys is written and read again as it was.
+    // A run that was read and has distinct keys can be written and read again without a change.
     let other = folder.path().join("again");
     if reports::write_run(&other, &run).is_ok() {
         let again = reports::read_run(&other).expect("what is written can be read");
@@ -34,7 +34,7 @@ pub(crate) fn run(data: &[u8]) {
     }
 }
 
-/// Writes the files that the input has, and the others as they are without any result.
+/// Writes the files given in the input; other files have the content of a run without results.
 fn fill(folder: &Path, text: &str) {
     fs::create_dir_all(folder.join("fields")).expect("a temporary folder can be written");
     let given = |name: &str| {

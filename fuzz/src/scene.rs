@@ -1,9 +1,10 @@
-//! A scene: read, checked, and planned where it is small; tables are made where that is all it asks for.
+//! A scene: read, checked, and planned if it is small; tables are built if the scene requests only tables.
 
 use cases::scene::{self, Procedure, Scene};
 use harness::run::{Group, Repeats, RunOptions};
 
-/// Most nodes of a method that is planned: a plan makes the mesh, and a large one takes its time by right.
+/// Largest number of nodes of a planned method. A plan generates the mesh, and a large mesh legitimately
+/// takes time.
 const NODES: f64 = 300.0;
 
 pub(crate) fn run(data: &[u8]) {

@@ -1,4 +1,4 @@
-//! A study: read, checked against its scenes, its runs listed.
+//! A study: read, checked against its scenes, and its runs listed.
 
 use std::path::Path;
 

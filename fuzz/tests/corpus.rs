@@ -1,4 +1,4 @@
-//! Every input found by fuzzing: no panic, less than a second, less than a gigabyte.
+//! Runs every stored fuzz input: no panic, less than a second, less than a gigabyte.
 
 use std::path::{Path, PathBuf};
 
@@ -6,9 +6,9 @@ use cpu_time::ProcessTime;
 use fuzz::{TARGETS, Target};
 use harness::run::MemoryBaseline;
 
-/// Most seconds of an input, of the processor: a busy machine is no slow reader.
+/// Largest CPU time of an input, s; wall time would depend on the load of the machine.
 const SECONDS: f64 = 1.0;
-/// Most bytes at once.
+/// Largest allocation, bytes.
 const BYTES: u64 = 1 << 30;
 
 fn inputs(target: &Target) -> Vec<PathBuf> {
@@ -19,7 +19,7 @@ fn inputs(target: &Target) -> Vec<PathBuf> {
     files
 }
 
-/// One test, as time and memory are those of the process.
+/// All inputs are in a single test, because time and memory are measured for the process.
 #[test]
 fn every_input_is_read_or_refused_in_time() {
     for target in TARGETS {

@@ -1,4 +1,4 @@
-//! Points and vectors between numpy and the engine.
+//! Conversion of points and vectors between numpy and the engine.
 
 use geometry::{Point3, Vector3};
 use numpy::ndarray::{ArrayView2, ArrayViewD};
@@ -7,12 +7,12 @@ use pyo3::prelude::*;
 
 use crate::error::input;
 
-/// An array of numbers of two dimensions, or what numpy makes one of.
+/// A two-dimensional array of numbers, or an object that numpy converts to such an array.
 pub(crate) type Floats2<'py> = PyArrayLike2<'py, f64, AllowTypeChange>;
-/// The same of any dimension.
+/// An array of numbers of any dimension, or an object that numpy converts to such an array.
 pub(crate) type Floats<'py> = PyArrayLikeDyn<'py, f64, AllowTypeChange>;
 
-/// Rows of three numbers as an (n, 3) array.
+/// Returns rows of three numbers as an (n, 3) array.
 pub(crate) fn rows_of<'py>(
     py: Python<'py>,
     rows: impl Iterator<Item = [f64; 3]>,
@@ -20,7 +20,7 @@ pub(crate) fn rows_of<'py>(
     matrix(py, rows.flatten().collect(), 3)
 }
 
-/// Numbers one row after another as an array of that many columns, which owns them.
+/// Returns a list of numbers, row by row, as an array with the given number of columns, which owns the data.
 pub(crate) fn matrix<T: Element>(
     py: Python<'_>,
     all: Vec<T>,
@@ -30,7 +30,7 @@ pub(crate) fn matrix<T: Element>(
     PyArray1::from_vec(py, all).reshape([rows, columns])
 }
 
-/// An (n, 3) array as vectors.
+/// Converts an (n, 3) array to vectors.
 pub(crate) fn vectors(py: Python<'_>, what: &str, array: ArrayView2<'_, f64>) -> PyResult<Vec<Vector3>> {
     if array.ncols() != 3 {
         let problem = format!("{what}: has the shape ({}, {}); give (n, 3)", array.nrows(), array.ncols());
@@ -39,7 +39,7 @@ pub(crate) fn vectors(py: Python<'_>, what: &str, array: ArrayView2<'_, f64>) ->
     Ok(array.rows().into_iter().map(|row| Vector3::new(row[0], row[1], row[2])).collect())
 }
 
-/// An (n, 3) array as points; all finite.
+/// Converts an (n, 3) array to points, and refuses numbers that are not finite.
 pub(crate) fn points(py: Python<'_>, what: &str, array: ArrayView2<'_, f64>) -> PyResult<Vec<Point3>> {
     let all = vectors(py, what, array)?;
     match all.iter().position(|x| !x.iter().all(|c| c.is_finite())) {
@@ -48,7 +48,7 @@ pub(crate) fn points(py: Python<'_>, what: &str, array: ArrayView2<'_, f64>) -> 
     }
 }
 
-/// An (m, k) array of whole numbers from 0 on: numbers of nodes.
+/// Converts an (m, k) array of non-negative integers to node numbers.
 pub(crate) fn numbers(py: Python<'_>, what: &str, array: ArrayView2<'_, f64>) -> PyResult<Vec<u32>> {
     let largest = f64::from(u32::MAX);
     match array.iter().position(|n| !(n.fract() == 0.0 && (0.0..=largest).contains(n))) {
@@ -60,7 +60,7 @@ pub(crate) fn numbers(py: Python<'_>, what: &str, array: ArrayView2<'_, f64>) ->
     }
 }
 
-/// The fields of an (n, 3) or (steps, n, 3) array.
+/// Returns the fields of an (n, 3) or (steps, n, 3) array.
 pub(crate) fn fields(py: Python<'_>, what: &str, array: ArrayViewD<'_, f64>) -> PyResult<Vec<Vec<Vector3>>> {
     let shape = array.shape().to_vec();
     let wrong = || input(py, &format!("{what}: has the shape {shape:?}; give (n, 3) or (steps, n, 3)"));

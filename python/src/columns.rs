@@ -1,4 +1,4 @@
-//! Records as columns of Arrow, in the order of `records.csv`.
+//! Records as Arrow columns, in the order of `records.csv`.
 
 use std::sync::Arc;
 
@@ -7,7 +7,7 @@ use arrow_schema::ArrowError;
 use reports::Record;
 use serde_json::Value;
 
-/// The word that a value has in files.
+/// Returns the word for a value in files.
 fn word(value: impl serde::Serialize) -> String {
     match serde_json::to_value(value) {
         Ok(Value::String(word)) => word,
@@ -15,7 +15,7 @@ fn word(value: impl serde::Serialize) -> String {
     }
 }
 
-/// A column of each kind: text, words of a list, text that may be absent, numbers.
+/// Builds a column of each kind: text, words of a list, optional text, numbers.
 macro_rules! column {
     ($records:ident, text $name:ident) => {
         Arc::new(StringViewArray::from_iter_values($records.iter().map(|r| r.$name.as_str()))) as ArrayRef
@@ -52,7 +52,7 @@ macro_rules! columns {
     };
 }
 
-/// All records as one batch. Texts are views, which is how polars keeps them: nothing is copied there.
+/// Returns all records as one batch. Texts are views, as in polars, so nothing is copied there.
 pub(crate) fn batch(records: &[Record]) -> Result<RecordBatch, ArrowError> {
     RecordBatch::try_from_iter(columns! { records:
         text run, text case, word purpose, text published, text method, text series, word family, text variant,

@@ -1,4 +1,4 @@
-//! What goes wrong, as exceptions with the place in the file.
+//! Errors as exceptions, with their location in the file.
 
 use cases::scene::{ErrorKind, SceneError};
 use harness::Failure;
@@ -6,7 +6,7 @@ use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::{PyDict, PyList, PyType};
 
-/// An exception of a class of `tissuebench._errors`, with what is known of its place.
+/// Builds an exception of a class in `tissuebench._errors`, with the known part of its location.
 fn exception(py: Python<'_>, class: &str, message: String, error: Option<&SceneError>) -> PyErr {
     static INPUT: PyOnceLock<Py<PyType>> = PyOnceLock::new();
     static RUN: PyOnceLock<Py<PyType>> = PyOnceLock::new();
@@ -28,18 +28,18 @@ fn exception(py: Python<'_>, class: &str, message: String, error: Option<&SceneE
     made().map_or_else(|bad| bad, PyErr::from_value)
 }
 
-/// Input that makes no sense.
+/// Builds an exception for invalid input.
 pub(crate) fn input(py: Python<'_>, problem: &str) -> PyErr {
     exception(py, "SceneError", problem.into(), None)
 }
 
-/// What could not be run, read or written.
+/// Builds an exception for a failure to run, read or write.
 pub(crate) fn not_run(py: Python<'_>, problem: impl ToString) -> PyErr {
     exception(py, "RunError", problem.to_string(), None)
 }
 
-/// All that is wrong with a file: the exception is of the first, with the text of all, and each is among its
-/// `errors`.
+/// Builds an exception for all errors of a file. It belongs to the first error and has the text of all; each
+/// error is in its `errors`.
 pub(crate) fn of_scene(py: Python<'_>, errors: &[SceneError]) -> PyErr {
     let class = |invalid: bool| if invalid { "SceneError" } else { "RunError" };
     let is_invalid = |error: &SceneError| error.kind == ErrorKind::Invalid;
@@ -53,7 +53,7 @@ pub(crate) fn of_scene(py: Python<'_>, errors: &[SceneError]) -> PyErr {
     }
 }
 
-/// What stopped a run.
+/// Builds an exception for a failed run.
 pub(crate) fn of_failure(py: Python<'_>, failure: &Failure) -> PyErr {
     let class = if failure.exit_code() == 2 { "SceneError" } else { "RunError" };
     let error = match failure {

@@ -1,6 +1,7 @@
-//! The engine as a Python module: scenes, studies, meshes, shape tables and comparisons, with numpy in and out.
+//! The engine as a Python module: scenes, studies, meshes, shape tables and comparisons, with numpy arrays.
 //!
-//! Each file is one idea, as everywhere; nothing is computed here. `tissuebench/_engine.pyi` has the types and the words for users.
+//! Nothing is computed in this crate. `tissuebench/_engine.pyi` has the types and the documentation for
+//! users.
 
 mod arrays;
 mod columns;

@@ -1,4 +1,4 @@
-//! Meshes in and out of numpy, and in and out of files.
+//! Conversion of meshes between numpy, files and the engine.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -11,22 +11,22 @@ use pyo3::prelude::*;
 use crate::arrays::{Floats2, matrix, numbers, points, rows_of};
 use crate::error::input;
 
-/// Tetrahedra or hexahedra. Positions in metres, nodes of a cell in VTK's order.
+/// A mesh of tetrahedra or hexahedra. Positions in metres, nodes of a cell in VTK's order.
 #[pyclass(frozen, module = "tissuebench")]
 pub(crate) struct Mesh {
     pub(crate) mesh: Arc<geometry::Mesh>,
-    /// The file that it was read from.
+    /// File from which the mesh was read.
     source: Option<disk::Identity>,
 }
 
-/// The length of a unit, m.
+/// Returns the length of a unit, m.
 fn metres(py: Python<'_>, unit: &str) -> PyResult<f64> {
     let known = [("m", 1.0), ("cm", 1e-2), ("mm", 1e-3), ("um", 1e-6)];
     let found = known.into_iter().find(|(name, _)| *name == unit);
     found.map(|(_, metres)| metres).ok_or_else(|| input(py, &format!("unit: '{unit}'; give m, cm, mm or um")))
 }
 
-/// The format to write by a file's name; a version is one of Gmsh's.
+/// Returns the output format for a file name; `version` is a version of Gmsh's format.
 fn format(py: Python<'_>, path: &Path, version: Option<&str>) -> PyResult<Format> {
     let format = Format::of(path).map_err(|bad| input(py, &bad.to_string()))?;
     let version = match version {
@@ -41,7 +41,7 @@ fn format(py: Python<'_>, path: &Path, version: Option<&str>) -> PyResult<Format
     }
 }
 
-/// Cells of one kind as an array of their nodes.
+/// Returns the cells of a mesh with a single kind as an array of their nodes.
 pub(crate) fn cells_of<'py>(py: Python<'py>, mesh: &geometry::Mesh) -> PyResult<Bound<'py, PyArray2<u32>>> {
     let kind = mesh.uniform_kind().ok_or_else(|| input(py, "cells: are of several kinds"))?;
     let all = (0..mesh.cell_count()).flat_map(|cell| mesh.cell(cell)).copied().collect();
@@ -56,7 +56,7 @@ impl From<geometry::Mesh> for Mesh {
 
 #[pymethods]
 impl Mesh {
-    /// From positions (n, 3) and the nodes of cells (m, 4), (m, 10), (m, 8) or (m, 20).
+    /// Builds a mesh from positions (n, 3) and the nodes of cells (m, 4), (m, 10), (m, 8) or (m, 20).
     #[new]
     fn new(py: Python<'_>, points: Floats2<'_>, cells: Floats2<'_>) -> PyResult<Mesh> {
         let (positions, cells) = (self::points(py, "points", points.as_array())?, cells.as_array());
@@ -70,7 +70,7 @@ impl Mesh {
         Ok(Mesh::from(mesh))
     }
 
-    /// From a file; `unit` is that of its numbers.
+    /// Reads a mesh from a file; `unit` is the unit of its numbers.
     #[staticmethod]
     #[pyo3(signature = (path, unit = "mm"))]
     fn read(py: Python<'_>, path: PathBuf, unit: &str) -> PyResult<Mesh> {
@@ -80,7 +80,8 @@ impl Mesh {
         Ok(Mesh { source: disk::Identity::of(&path), ..Mesh::from(mesh) })
     }
 
-    /// To a file: .msh, .inp, .vtu or the boundary as .stl by its name; `version` is that of Gmsh's format.
+    /// Writes the mesh to a file: .msh, .inp, .vtu, or the boundary as .stl, according to the file name.
+    /// `version` is that of Gmsh's format.
     #[pyo3(signature = (path, unit = "mm", version = None))]
     fn write(&self, py: Python<'_>, path: PathBuf, unit: &str, version: Option<&str>) -> PyResult<()> {
         let unit = metres(py, unit)?;

@@ -1,4 +1,4 @@
-//! A method's problem for a solver of one's own: its arrays, and a displacement judged in a line.
+//! The problem of a method for a solver written in Python: its arrays, and the comparison of a displacement.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -19,7 +19,7 @@ use crate::rows::ShapeTable;
 use crate::run::Run;
 use crate::worker::wait;
 
-/// A problem with its tables, not solved.
+/// A problem with its tables, without a solution.
 #[pyclass(frozen, module = "tissuebench")]
 pub(crate) struct Problem {
     scene: Arc<scene::Scene>,
@@ -28,8 +28,8 @@ pub(crate) struct Problem {
     reference: Arc<Referenced>,
 }
 
-/// Part of the largest displacement that a prescribed one may be missed by: what a penalty of one's own gives
-/// way.
+/// Largest allowed error of a prescribed displacement, relative to the largest displacement; it leaves room
+/// for a penalty method.
 const OFF_SUPPORTS: f64 = 0.01;
 
 impl Problem {
@@ -48,10 +48,10 @@ impl Problem {
         Ok(Problem { scene, method: id, posed, reference })
     }
 
-    /// Refuses a displacement that is not that of the supports where they prescribe it.
+    /// Refuses a displacement that differs from the prescribed values of the supports.
     fn on_supports(&self, py: Python<'_>, u: &[Vector3]) -> PyResult<()> {
         if u.len() != self.posed.nodes().len() {
-            return Ok(()); // The comparison says so.
+            return Ok(()); // The comparison reports this error.
         }
         let missed = |dof: &&FixedDof| (u[dof.node as usize][dof.axis as usize] - dof.value).abs();
         let Some(worst) = self.posed.fixed().iter().max_by(|a, b| missed(a).total_cmp(&missed(b))) else {
@@ -73,7 +73,8 @@ impl Problem {
         Ok(())
     }
 
-    /// Forces of the tools along their ways: numbers, or nodal forces (tools, nodes, 3) that they exert on the body.
+    /// Returns the forces of the tools along their directions, given as numbers or as nodal forces (tools,
+    /// nodes, 3) on the body.
     fn pushed(&self, py: Python<'_>, given: Floats<'_>) -> PyResult<Vec<f64>> {
         let given = given.as_array();
         match given.ndim() {
@@ -101,7 +102,7 @@ impl Problem {
         &self.method
     }
 
-    /// Positions that parameters belong to, m.
+    /// Positions of the nodes, to which the parameters belong, m.
     #[getter]
     fn nodes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         rows_of(py, self.posed.nodes().iter().map(|x| x.coords.into()))
@@ -132,7 +133,7 @@ impl Problem {
     /// Prescribed components by their number `3 node + axis`, and their values, m.
     #[getter]
     fn fixed<'py>(&self, py: Python<'py>) -> (Bound<'py, PyArray1<i64>>, Bound<'py, PyArray1<f64>>) {
-        // A corner of two supports is fixed twice, to the same value.
+        // A corner with two supports is fixed twice, to the same value.
         let fixed: BTreeMap<i64, f64> = self
             .posed
             .fixed()
@@ -161,7 +162,7 @@ impl Problem {
         self.posed.tools().into_iter().map(one).collect()
     }
 
-    /// The quadrature: values, gradients and weights.
+    /// Quadrature: shape values, gradients and weights.
     #[getter]
     fn quadrature(&self) -> ShapeTable {
         let volume = self.posed.volume();
@@ -174,7 +175,7 @@ impl Problem {
         }
     }
 
-    /// The shape functions at points (m, 3) of the body.
+    /// Computes the shape functions at points (m, 3) of the body.
     #[pyo3(signature = (points, *, gradients = false))]
     fn table(&self, py: Python<'_>, points: Floats2<'_>, gradients: bool) -> PyResult<ShapeTable> {
         let targets = self::points(py, "points", points.as_array())?;

@@ -1,4 +1,4 @@
-//! A scene's reference, solved when a run is first compared with it and kept for those that follow.
+//! Reference of a scene, solved at the first comparison and kept for later comparisons.
 
 use std::borrow::Cow;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -19,8 +19,8 @@ impl Referenced {
         Arc::new(Referenced { scene, group: Mutex::default() })
     }
 
-    /// Does work with the scene and its reference, one at a time. A reference that ended early is a failure,
-    /// and solved anew the next time; so is one whose work panicked.
+    /// Runs work with the scene and its reference, one call at a time. A reference that ended early is a
+    /// failure, and is solved again for the next call. The same applies after a panic of the work.
     pub(crate) fn with<T>(
         &self,
         repeats: Repeats,

@@ -1,4 +1,4 @@
-//! What several methods of a scene came to, and their folder of results.
+//! Results of several methods of a scene, and their folder of results.
 
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex};
@@ -49,7 +49,7 @@ impl Results {
         self.finished.lock().expect("no thread panicked").clone()
     }
 
-    /// A method's run, or its failure.
+    /// Returns a method's run, or its failure.
     pub(crate) fn run(&self, py: Python<'_>, method: &str) -> PyResult<Run> {
         if let Some(outcome) = self.finished().iter().find(|outcome| outcome.identity.method == method) {
             return Ok(Run { scene: self.scene.clone(), outcome: outcome.clone() });
@@ -60,14 +60,14 @@ impl Results {
         }
     }
 
-    /// All records, those of a stored reference among them.
+    /// Returns all records, including those of a stored reference.
     fn all_records(&self) -> Vec<Record> {
         let mut records: Vec<Record> = self.finished().iter().flat_map(|outcome| outcome.records()).collect();
         records.extend(reference_records(&self.scene));
         records
     }
 
-    /// Everything that a folder of results holds.
+    /// Returns the complete content of a folder of results.
     fn set(&self, case: String) -> RunSet {
         let mut set = RunSet { records: self.all_records(), ..RunSet::default() };
         for outcome in self.finished() {
@@ -93,7 +93,7 @@ impl Results {
     }
 }
 
-/// Columns of a record that identify its run.
+/// Returns the columns of a record that identify its run.
 fn id(outcome: &Outcome) -> Option<String> {
     outcome.records().first().map(|record| record.run.clone())
 }
@@ -105,7 +105,7 @@ impl Results {
         self.finished().into_iter().map(|outcome| Run { scene: self.scene.clone(), outcome }).collect()
     }
 
-    /// Methods without numbers, and why.
+    /// Methods without results, with their errors.
     #[getter]
     fn failures<'py>(&self, py: Python<'py>) -> Vec<(String, Bound<'py, PyAny>)> {
         let one = |failure| of_failure(py, failure).into_value(py).into_bound(py).into_any();
@@ -125,7 +125,7 @@ impl Results {
         Table::of(py, &self.all_records())
     }
 
-    /// Adds a run of the same scene, such as one of a solver of one's own.
+    /// Adds a run of the same scene, for example the result of an own solver.
     fn add(&self, py: Python<'_>, run: &Run) -> PyResult<()> {
         let (case, other) = (case_name(&self.scene), &run.outcome.identity.case);
         if case != *other {

@@ -1,4 +1,5 @@
-//! Shape tables and transfer schemes as operators: nodal values in, values at points out, and forces back.
+//! Shape tables and transfer schemes as operators: nodal values to values at points, and forces back to the
+//! nodes.
 
 use std::sync::Arc;
 
@@ -18,7 +19,7 @@ use crate::worker::{unforked, wait};
 
 type Array1<'py, T> = Bound<'py, PyArray1<T>>;
 
-/// Values, and perhaps gradients and weights, of shape functions at points.
+/// Shape values at points, optionally with gradients and weights.
 #[pyclass(frozen, module = "tissuebench")]
 pub(crate) struct ShapeTable {
     pub(crate) rows: Arc<Rows>,
@@ -28,13 +29,13 @@ pub(crate) struct ShapeTable {
     pub(crate) outside: Option<usize>,
 }
 
-/// A table transposed: forces at points to nodal forces.
+/// A transposed table, from forces at points to nodal forces.
 #[pyclass(frozen, module = "tissuebench")]
 pub(crate) struct Transposed {
     rows: Arc<Rows>,
 }
 
-/// A product of rows with every column of a field, three columns at a time: they do not mix.
+/// Applies rows to every column of a field, three independent columns at a time.
 fn product<'py>(
     py: Python<'py>,
     field: ArrayViewD<'_, f64>,
@@ -92,7 +93,7 @@ impl ShapeTable {
         self.outside
     }
 
-    /// Values at the points of a nodal field, (nodes,) or (nodes, k).
+    /// Returns the values of a nodal field, (nodes,) or (nodes, k), at the points.
     fn values<'py>(&self, py: Python<'py>, u: Floats<'py>) -> PyResult<Bound<'py, PyAny>> {
         product(py, u.as_array(), self.rows.node_count(), |u| self.rows.apply(u))
     }
@@ -101,7 +102,7 @@ impl ShapeTable {
         self.values(py, u)
     }
 
-    /// `du_i / dX_j` at the points, (points, 3, 3), of a nodal displacement (nodes, 3).
+    /// Returns `du_i / dX_j` at the points, (points, 3, 3), for a nodal displacement (nodes, 3).
     fn gradients<'py>(&self, py: Python<'py>, u: Floats2<'py>) -> PyResult<Bound<'py, PyArray3<f64>>> {
         unforked(py)?;
         let rows = self.gradients.as_ref().ok_or_else(|| input(py, "the table has no gradients"))?;
@@ -123,7 +124,7 @@ impl ShapeTable {
         Transposed { rows: self.rows.clone() }
     }
 
-    /// `(data, indices, indptr)` as `scipy.sparse.csr_matrix` takes them.
+    /// `(data, indices, indptr)` in the format of `scipy.sparse.csr_matrix`.
     #[getter]
     fn csr<'py>(&self, py: Python<'py>) -> (Array1<'py, f64>, Array1<'py, u32>, Array1<'py, i64>) {
         let offsets = self.rows.offsets().iter().map(|&at| at as i64);
@@ -146,7 +147,7 @@ impl Transposed {
         (self.rows.node_count(), self.rows.len())
     }
 
-    /// Nodal forces that do the work of forces at the points, (points,) or (points, k).
+    /// Returns the nodal forces that do the same work as forces at the points, (points,) or (points, k).
     fn __matmul__<'py>(&self, py: Python<'py>, forces: Floats<'py>) -> PyResult<Bound<'py, PyAny>> {
         product(py, forces.as_array(), self.rows.len(), |forces| self.rows.apply_transposed(forces))
     }
@@ -158,7 +159,8 @@ pub(crate) fn schemes() -> Vec<&'static str> {
     SCHEMES.iter().map(|entry| entry.name).collect()
 }
 
-/// The table of a transfer scheme from nodes (n, 3) to targets (m, 3); a scheme over a mesh takes that.
+/// Builds the table of a transfer scheme from nodes (n, 3) to targets (m, 3); schemes over a mesh need
+/// `mesh`.
 #[pyfunction]
 #[pyo3(signature = (scheme, nodes, targets, *, mesh = None, **parameters))]
 pub(crate) fn transfer(

@@ -1,4 +1,4 @@
-//! One finished run.
+//! A finished run.
 
 use std::sync::Arc;
 
@@ -14,7 +14,7 @@ use crate::error::{input, of_failure};
 use crate::mesh::Mesh;
 use crate::table::Table;
 
-/// What one method came to. All numbers are SI.
+/// Result of a method. All numbers are SI.
 #[pyclass(frozen, module = "tissuebench")]
 pub(crate) struct Run {
     pub(crate) scene: Arc<Scene>,
@@ -22,7 +22,7 @@ pub(crate) struct Run {
 }
 
 impl Run {
-    /// The method, and the solver of one's own that solved it.
+    /// Returns the name of the method and, if an own solver solved it, of this solver.
     pub(crate) fn label(&self) -> String {
         let identity = &self.outcome.identity;
         match &identity.adapter {
@@ -44,7 +44,7 @@ impl Run {
         &self.outcome.identity.method
     }
 
-    /// `ok`, or how it ended early.
+    /// `ok`, or the kind of early end.
     #[getter]
     fn status(&self) -> &'static str {
         self.outcome.status
@@ -60,7 +60,7 @@ impl Run {
         self.outcome.size.dofs
     }
 
-    /// Why it ended early, where it did; its numbers are those of the load it reached.
+    /// Reason of an early end, or none; the results are then those at the load reached.
     #[getter]
     fn failure<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyAny>> {
         self.outcome
@@ -69,7 +69,7 @@ impl Run {
             .map(|failure| of_failure(py, failure).into_value(py).into_bound(py).into_any())
     }
 
-    /// Median seconds of a pass.
+    /// Median time of a pass, s.
     #[getter]
     fn seconds(&self) -> Option<f64> {
         let total = self.outcome.phases.iter().find(|timed| timed.phase == "total");
@@ -83,7 +83,7 @@ impl Run {
         Ok(all)
     }
 
-    /// A metric by its name.
+    /// Returns a metric by its name.
     fn __getitem__(&self, name: &str) -> PyResult<f64> {
         self.outcome.metric(name).ok_or_else(|| PyKeyError::new_err(name.to_string()))
     }
@@ -106,27 +106,27 @@ impl Run {
         Table::of(py, &self.outcome.records())
     }
 
-    /// Displacement at the scene's probes, (probes, 3).
+    /// Displacement at the scene's probes, m, (probes, 3).
     #[getter]
     fn probes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         rows_of(py, self.outcome.probes.iter().map(|probe| probe.u.into()))
     }
 
-    /// The undeformed body, where states were asked for.
+    /// The undeformed body, if states were requested.
     #[getter]
     fn mesh(&self, py: Python<'_>) -> PyResult<Mesh> {
         let states = self.outcome.states.as_ref().ok_or_else(|| no_states(py))?;
         Ok(Mesh::from(states.mesh().clone()))
     }
 
-    /// Time, part of the load or number of each state.
+    /// Time, load fraction or number of each state.
     #[getter]
     fn times<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let states = self.outcome.states.as_ref().ok_or_else(|| no_states(py))?;
         Ok(PyArray1::from_iter(py, states.displacements().map(|(time, _)| time)))
     }
 
-    /// Displacement of the points of the mesh at each state, (states, points, 3).
+    /// Displacement of the points of the mesh at each state, m, (states, points, 3).
     #[getter]
     fn displacements<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray3<f64>>> {
         let states = self.outcome.states.as_ref().ok_or_else(|| no_states(py))?;
@@ -135,7 +135,7 @@ impl Run {
         PyArray1::from_vec(py, all).reshape([count, points, 3])
     }
 
-    /// Displacement of the points of the mesh at the last state, (points, 3).
+    /// Displacement of the points of the mesh at the last state, m, (points, 3).
     #[getter]
     fn displacement<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let states = self.outcome.states.as_ref().ok_or_else(|| no_states(py))?;

@@ -1,4 +1,4 @@
-//! Scenes: read, run, and posed to other solvers.
+//! Scenes: reading, running, and export as problems for other solvers.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -17,20 +17,20 @@ use crate::results::Results;
 use crate::run::Run;
 use crate::worker::{Reporter, wait};
 
-/// Repeats of a timing, as `tissuebench run` makes them.
+/// Number of repeats of a timing, as in `tissuebench run`.
 const REPEATS: Repeats = Repeats { most: 5, seconds: 1.0 };
 
-/// A scene that has been checked.
+/// A checked scene.
 #[pyclass(frozen, module = "tissuebench")]
 pub(crate) struct Scene {
     scene: Arc<scene::Scene>,
     reference: Arc<Referenced>,
 }
 
-/// What a method came to.
+/// Result of a method.
 pub(crate) type Ended = Result<Outcome, Unfinished>;
 
-/// What every run of a call has in common.
+/// Options shared by all runs of a call.
 #[derive(Clone, Copy)]
 struct Asked {
     repeats: Repeats,
@@ -48,7 +48,7 @@ impl Scene {
         Ok(Scene { reference: Referenced::new(scene.clone()), scene })
     }
 
-    /// A method that this process can run.
+    /// Returns a method that this process can run.
     fn method(&self, py: Python<'_>, id: &str) -> PyResult<scene::Method> {
         let Some(method) = self.scene.method(id) else {
             let known = self.methods().join(", ");
@@ -127,7 +127,7 @@ impl Scene {
         self.scene.methods.iter().map(|method| method.id.clone()).collect()
     }
 
-    /// Runs one method; its failure is an exception.
+    /// Runs one method; a failure raises an exception.
     #[pyo3(signature = (method, *, once = true, states = false, frames = false, progress = None))]
     fn run(
         &self,
@@ -142,7 +142,7 @@ impl Scene {
         results.run(py, method)
     }
 
-    /// Runs some or all methods; a failure of one is kept among the results.
+    /// Runs some or all methods; the failure of a method is stored among the results.
     #[pyo3(signature = (methods = None, *, once = false, states = false, frames = true, progress = None))]
     fn run_all(
         &self,
@@ -162,7 +162,7 @@ impl Scene {
         self.ran(py, methods, asked(once, states, frames), progress)
     }
 
-    /// A method's problem with its tables, for a solver of one's own.
+    /// Returns a method's problem with its tables, for an own solver.
     fn problem(&self, py: Python<'_>, method: &str) -> PyResult<Problem> {
         Problem::new(py, self.scene.clone(), self.reference.clone(), self.method(py, method)?)
     }
@@ -178,7 +178,8 @@ pub(crate) fn load(py: Python<'_>, path: PathBuf) -> PyResult<Scene> {
     Scene::of(py, scene::load(&path))
 }
 
-/// Reads a scene from text; `file` names it in messages, and paths in it are relative to its folder.
+/// Reads a scene from text; `file` is its name in messages, and paths in the scene are relative to the folder
+/// of `file`.
 #[pyfunction]
 #[pyo3(signature = (text, file = PathBuf::from("scene.toml")), text_signature = "(text, file='scene.toml')")]
 pub(crate) fn parse(py: Python<'_>, text: &str, file: PathBuf) -> PyResult<Scene> {

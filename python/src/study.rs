@@ -1,4 +1,4 @@
-//! Studies: many runs, checked, with their folder of results.
+//! Studies: many checked runs with their folder of results.
 
 use std::io::{self, Write};
 use std::path::PathBuf;
@@ -19,7 +19,7 @@ pub(crate) struct Study {
     finished: Finished,
 }
 
-/// Events as lines, on their way to who waits.
+/// Events as lines of text, passed on to the waiting thread.
 struct Lines {
     reporter: Reporter,
     line: Vec<u8>,
@@ -47,7 +47,7 @@ impl Study {
         Table::of(py, &self.finished.set.records)
     }
 
-    /// Whether every check held that is expected to, and every run had numbers.
+    /// Whether every check passed that is expected to pass, and every run has results.
     #[getter]
     fn ok(&self) -> bool {
         let held = |status| matches!(status, Status::Pass | Status::KnownFailure);

@@ -1,4 +1,4 @@
-//! A table of Arrow that polars, pyarrow, pandas and duckdb take over without a copy.
+//! An Arrow table that polars, pyarrow, pandas and duckdb use without a copy.
 
 use std::path::PathBuf;
 
@@ -18,7 +18,7 @@ use crate::columns::batch;
 use crate::error::not_run;
 use crate::worker::wait;
 
-/// Records: one number a row.
+/// Records: one number per row.
 #[pyclass(frozen, module = "tissuebench")]
 pub(crate) struct Table {
     batch: RecordBatch,
@@ -32,7 +32,7 @@ impl Table {
 
 #[pymethods]
 impl Table {
-    /// The table through Arrow's C stream interface. It has one batch; a wish for another schema is not followed.
+    /// Exports the table through Arrow's C stream interface. It has one batch; `requested_schema` is ignored.
     #[pyo3(signature = (requested_schema = None))]
     fn __arrow_c_stream__<'py>(
         &self,
@@ -60,7 +60,7 @@ impl Table {
         self.batch.schema().fields().iter().map(|field| field.name().clone()).collect()
     }
 
-    /// A column: numbers as an array, absent ones as nan; texts as a list.
+    /// Returns a column: numbers as an array with nan for missing values, texts as a list.
     fn __getitem__<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
         let column = self.batch.column_by_name(name).ok_or_else(|| PyKeyError::new_err(name.to_string()))?;
         match column.data_type() {
@@ -93,7 +93,7 @@ impl Table {
     }
 }
 
-/// The records in a folder of results.
+/// Reads the records in a folder of results.
 #[pyfunction]
 pub(crate) fn read(py: Python<'_>, results: PathBuf) -> PyResult<Table> {
     let set = wait(py, None, move |_, _| reports::read_run(&results))?.map_err(|bad| not_run(py, bad))?;

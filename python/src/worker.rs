@@ -1,4 +1,5 @@
-//! Long work on a thread of its own, while the interpreter's own thread waits for it, reports its progress and hears Ctrl-C.
+//! Long work on a separate thread, while the interpreter's own thread waits, reports progress and handles
+//! Ctrl-C.
 
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -12,33 +13,33 @@ use serde_json::{Value, json};
 
 use crate::error::not_run;
 
-/// Time between two looks for a signal.
+/// Time between two checks for a signal.
 const LOOK: Duration = Duration::from_millis(50);
 
-/// From the thread that works.
+/// Message of the working thread.
 enum Note {
-    /// Something has happened: an object with an `event`.
+    /// An event: an object with an `event`.
     Event(Value),
-    /// It has ended.
+    /// End of the work.
     End,
 }
 
-/// What work reports by.
+/// Sender of progress events.
 #[derive(Clone)]
 pub(crate) struct Reporter(Sender<Note>);
 
 impl Reporter {
-    /// Reports an event; nobody may be waiting any more.
+    /// Reports an event; it is dropped if no thread waits any more.
     pub(crate) fn send(&self, event: Value) {
         let _ = self.0.send(Note::Event(event));
     }
 }
 
-/// Refuses work in a process that was forked after its parent had worked: the threads of the pool are the
-/// parent's, and a wait for them has no end.
+/// Refuses work in a process that was forked after its parent had worked: the threads of the pool belong to
+/// the parent, and waiting for them would never end.
 ///
 /// # Errors
-/// The failure of the worker.
+/// A `RunError` in such a process.
 pub(crate) fn unforked(py: Python<'_>) -> PyResult<()> {
     static FIRST: OnceLock<u32> = OnceLock::new();
     let id = std::process::id();
@@ -50,8 +51,8 @@ pub(crate) fn unforked(py: Python<'_>) -> PyResult<()> {
     Err(not_run(py, problem))
 }
 
-/// Does work that solvers do. `progress` is called with a dictionary for every event, on this thread. A signal, or an exception of
-/// `progress`, ends the wait at once and the work at its next step.
+/// Runs long work on another thread. `progress` is called on this thread with a dictionary for every event. A
+/// signal, or an exception of `progress`, ends the wait at once and the work at its next step.
 ///
 /// # Errors
 /// The exception, or a panic of the work.
@@ -105,7 +106,7 @@ fn step_event(step: &LoadStep) -> Value {
     json!({ "event": "step", "load": step.load, "iterations": step.iterations, "tool-forces": forces })
 }
 
-/// A JSON value as Python's own.
+/// Converts a JSON value to a Python object.
 fn object<'py>(py: Python<'py>, value: &Value) -> PyResult<Bound<'py, PyAny>> {
     static LOADS: pyo3::sync::PyOnceLock<Py<PyAny>> = pyo3::sync::PyOnceLock::new();
     LOADS.import(py, "json", "loads")?.call1((value.to_string(),))

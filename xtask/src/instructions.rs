@@ -1,7 +1,8 @@
-//! Kernels counted in instructions by valgrind: a slower one is found without a clock, on a busy machine too.
+//! Instruction counts of kernels by valgrind, which reveal a slower kernel without a clock, even on a busy
+//! machine.
 //!
-//! A kernel runs once and three times; half of the difference is one run, to the instruction but for what hashing and the
-//! allocator do.
+//! A kernel runs once and three times; half of the difference is one run, exact except for hashing and the
+//! allocator.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -10,22 +11,23 @@ use std::process::Command;
 use anyhow::{Context, Result, bail, ensure};
 use serde::{Deserialize, Serialize};
 
-/// Instructions over the accepted ones at which a kernel counts as slower.
+/// Ratio of found to accepted instructions above which a kernel counts as slower.
 const MORE: f64 = 1.02;
 
-/// What was accepted, and by what it was compiled and run: other compilers and processors count others.
+/// Accepted counts, with the compiler and the processor, on which the counts depend.
 #[derive(Debug, Deserialize, PartialEq, Serialize)]
 #[serde(deny_unknown_fields)]
 struct Accepted {
     rustc: String,
-    /// Its caches decide on the blocks of matrix products.
+    /// Processor, whose caches determine the blocks of matrix products.
     processor: String,
-    /// Vector instructions.
+    /// Vector instruction set.
     path: String,
     kernels: BTreeMap<String, u64>,
 }
 
-/// Counts each kernel and compares with tests/baseline/instructions.toml, or accepts: 0 if none is slower, else 1.
+/// Counts the instructions of each kernel and compares them with tests/baseline/instructions.toml, or accepts
+/// them. Returns 0 if no kernel is slower, otherwise 1.
 pub(crate) fn instructions(root: &Path, accept: bool) -> Result<u8> {
     if Command::new("valgrind").arg("--version").output().is_err() {
         let why = "valgrind is not installed, so no instructions are counted";
@@ -80,7 +82,7 @@ fn processor() -> String {
     model.map_or("unknown", |(_, name)| name).into()
 }
 
-/// A line for each kernel, and how many are slower or on one side only.
+/// Returns a line for each kernel, and the number of kernels that are slower or missing on one side.
 fn compare(accepted: &BTreeMap<String, u64>, found: &BTreeMap<String, u64>) -> (String, usize) {
     let (mut lines, mut failed) = (String::new(), 0);
     for (name, count) in found {
@@ -114,7 +116,7 @@ fn count(program: &Path, name: &str, times: usize) -> Result<u64> {
     number.trim().replace(',', "").parse().with_context(|| format!("valgrind counted '{number}'"))
 }
 
-/// What the program prints under valgrind, on one thread, and what valgrind does.
+/// Returns the output of the program under valgrind, on one thread, and the output of valgrind.
 fn valgrind(program: &Path, tool: &[&str], args: &[&str]) -> Result<(String, String)> {
     let mut command = Command::new("valgrind");
     command.args(tool).arg(program).args(args).env("RAYON_NUM_THREADS", "1");

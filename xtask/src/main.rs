@@ -1,4 +1,4 @@
-//! Project tasks, thin by intent: each parses its arguments and shells out to cargo or to the `tissuebench` binary.
+//! Project tasks, deliberately thin: each parses its arguments and calls cargo or the `tissuebench` binary.
 //!
 //! Exit codes: those of `tissuebench` (0 all held, 1 a check failed, 2 bad usage, 3 could not run).
 
@@ -26,20 +26,22 @@ struct Cli {
 enum Task {
     /// Build, run the quick tier of the verification study, write tables, figures and the report to results/
     Verify {
-        /// All runs of the study, not only the quick tier's: about 13 minutes
+        /// Run the whole study instead of the quick tier: about 13 minutes
         #[arg(long)]
         full: bool,
         /// Further arguments of `tissuebench verify` (STUDY, --filter TEXT, --resume, ...)
         #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
         args: Vec<String>,
     },
-    /// Drive every method to where it bends and breaks, by the quick part of the stress study; its results go to results-stress/
+    /// Drive every method to its limits by the quick part of the stress study; its results go to
+    /// results-stress/
     Stress {
-        /// All of the study: about 5 minutes
+        /// Run the whole study: about 5 minutes
         #[arg(long)]
         full: bool,
     },
-    /// Run the quick tier and the quick part of the stress study and compare their numbers with those accepted in tests/baseline
+    /// Run the quick tier and the quick part of the stress study and compare the results with those accepted
+    /// in tests/baseline
     Baseline {
         /// Further arguments of `tissuebench baseline` (--accept TEXT, --check)
         #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
@@ -51,15 +53,17 @@ enum Task {
         #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
         args: Vec<String>,
     },
-    /// Count the instructions of each kernel, where valgrind is installed: more than 2 % above those accepted fail
+    /// Count the instructions of each kernel, if valgrind is installed: more than 2 % above the accepted
+    /// count is a failure
     Instructions {
-        /// Accept them
+        /// Accept the counts
         #[arg(long)]
         accept: bool,
     },
-    /// Run a small study again and again and count how often `tissuebench compare` is wrong: about a minute for each three runs
+    /// Run a small study repeatedly and count the errors of `tissuebench compare`: about a minute for every
+    /// three runs
     Noise {
-        /// How often
+        /// Number of runs
         #[arg(long, default_value_t = 20)]
         runs: u16,
     },
@@ -67,29 +71,30 @@ enum Task {
     Report,
     /// Verify and stress in full, then refresh the figures and tables kept in reports/gallery for the book
     Gallery,
-    /// Write the book's reference pages anew, and build the book where mdbook is installed
+    /// Write the book's reference pages again, and build the book if mdbook is installed
     Book,
-    /// Switch on the faults of tests/mutants.toml one at a time: a test has to find each
+    /// Switch on the faults of tests/mutants.toml one at a time: a test must find each
     Mutants {
-        /// Only these, by name
+        /// Names of the faults to switch on (default: all)
         names: Vec<String>,
     },
-    /// Kill one of two processes that work on a study a hundred times at random, with and without --isolate: nothing may be lost,
-    /// run twice or changed
+    /// Kill one of two processes that work on a study a hundred times at random, with and without --isolate:
+    /// no result may be lost, repeated or changed
     Survive,
-    /// The checks that take hours: every fault of `mutants`, `survive`, `cargo deny check`, and minutes of
-    /// each fuzz target; where cargo-deny, cargo-fuzz and a nightly compiler are installed
+    /// Run the checks that take hours: every fault of `mutants`, `survive`, `cargo deny check`, and minutes
+    /// of each fuzz target; if cargo-deny, cargo-fuzz and a nightly compiler are installed
     Nightly {
         /// Minutes for each fuzz target
         #[arg(long, default_value_t = 10, value_parser = clap::value_parser!(u32).range(1..=1440))]
         minutes: u32,
     },
-    /// Follow the guide's first page in a fresh clone of the last commit, from the install to the picture of an organ: more than ten
-    /// minutes fail
+    /// Follow the guide's first page in a fresh clone of the last commit, from installation to the picture of
+    /// an organ: more than ten minutes is a failure
     Newcomer,
-    /// Build the wheel of the Python module and test it in a fresh virtual environment, where maturin, numpy and pytest are installed
+    /// Build the wheel of the Python module and test it in a fresh virtual environment, if maturin, numpy and
+    /// pytest are installed
     Python,
-    /// What continuous integration runs: format, lints, docs, tests, quick verification
+    /// Run the steps of continuous integration: format, lints, docs, tests, quick verification
     Ci,
 }
 
@@ -107,7 +112,7 @@ fn run(task: Task) -> Result<u8> {
     match task {
         Task::Verify { full, args } => verify(full, &args),
         Task::Baseline { args } => {
-            // What the checks say is not asked here.
+            // The results of checks are irrelevant here.
             tissuebench("verify", &["--quick".into()])?;
             stress(false)?;
             let code = tissuebench("baseline", &[&["results".into()], &args[..]].concat())?;
@@ -137,7 +142,7 @@ fn survive() -> Result<u8> {
     cargo(&[&test[..], &["--", "--ignored", "--nocapture"]].concat(), &[])
 }
 
-/// Every step in order, stopping at the first that fails.
+/// Runs all steps in order and stops at the first failure.
 fn ci() -> Result<u8> {
     let steps: [&[&str]; 4] = [
         &["fmt", "--all", "--check"],
@@ -176,7 +181,8 @@ fn ci() -> Result<u8> {
     if code != 0 { Ok(code) } else { python::python(&root()) }
 }
 
-/// The page of the verification in a browser, where node and Chromium are; and its script built again, where `npm ci` was run.
+/// Tests the verification's page in a browser, if node and Chromium are installed, and builds its script
+/// again, if `npm ci` was run.
 fn page(report: &Path) -> Result<u8> {
     let folder = root().join("reports/page");
     if Command::new("node").arg("--version").output().is_err() {
@@ -202,8 +208,8 @@ fn page(report: &Path) -> Result<u8> {
     node(&["test/page.mjs".as_ref(), report.as_os_str()])
 }
 
-/// Where methods bend and break; fails where one is wrong without a word. Its numbers are asked for, not its times: as many runs at
-/// a time as the machine has processors.
+/// Runs the stress study, which fails if a method is wrong without a warning. Only its numbers matter, not
+/// its times, so there are as many simultaneous runs as processors.
 fn stress(full: bool) -> Result<u8> {
     let jobs = std::thread::available_parallelism().map_or(1, |count| count.get()).to_string();
     let mut args =
@@ -212,7 +218,8 @@ fn stress(full: bool) -> Result<u8> {
     tissuebench("verify", &args)
 }
 
-/// The runs are made by the program itself: `cargo run` between them would be a part of the noise.
+/// Runs the noise study. The runs call the program directly, because `cargo run` between them would
+/// contribute to the noise.
 fn noise(runs: u16) -> Result<u8> {
     let build = ["build", "--release", "--locked", "--package", "tissuebench-harness"];
     let code = cargo(&build, &[])?;
@@ -238,7 +245,7 @@ fn compare_stress(args: &[String]) -> Result<u8> {
     tissuebench("baseline", &[&own, args].concat())
 }
 
-/// The quick tier, unless all runs are asked for; a study of the user's own has none.
+/// Runs the quick tier, unless all runs are requested; a user's own study has no quick tier.
 fn verify(full: bool, args: &[String]) -> Result<u8> {
     let quick = "--quick".to_string();
     let whole = full || args.contains(&quick) || args.iter().any(|a| a.ends_with(".toml"));
@@ -251,7 +258,7 @@ fn verify(full: bool, args: &[String]) -> Result<u8> {
     tissuebench("verify", &args)
 }
 
-/// Runs the release binary, building it first if needed.
+/// Runs the release binary, and builds it first if needed.
 fn tissuebench(command: &str, args: &[String]) -> Result<u8> {
     eprintln!(
         "xtask: building tissuebench (4 to 8 minutes on two cores the first time), then: tissuebench {command}"
@@ -265,7 +272,7 @@ fn tissuebench(command: &str, args: &[String]) -> Result<u8> {
     cargo(&run, args)
 }
 
-/// The pages that the program writes about itself, then docs/book.
+/// Writes the pages that the program generates about itself, then docs/book.
 fn book() -> Result<u8> {
     let pages = ["test", "--locked", "--package", "tissuebench-harness", "--test", "docs", "reference"];
     let status = cargo_command(&pages, &[]).env("TISSUEBENCH_BOOK", "write").status();
@@ -302,7 +309,8 @@ fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("xtask lies in the workspace").to_path_buf()
 }
 
-/// Copies the figures and tables that the book shows from the last results: all of the verification, the maps of the stress study.
+/// Copies the figures and tables of the book from the last results: all of the verification, and the maps of
+/// the stress study.
 fn keep_gallery() -> Result<()> {
     let to = root().join("reports/gallery");
     std::fs::create_dir_all(&to)?;

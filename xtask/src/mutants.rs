@@ -1,6 +1,8 @@
-//! Faults that the tests must find. Each is compiled in beside what is right, and one is switched on at a time.
+//! Faults that the tests must find. All are compiled in next to the correct code, and one is switched on at a
+//! time.
 //!
-//! `tests/mutants.toml` lists them. The workspace is copied to `target/mutants/source` with every fault in it, so that one build serves all.
+//! `tests/mutants.toml` lists them. The workspace is copied to `target/mutants/source` with every fault in
+//! it, so a single build serves all.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -10,7 +12,7 @@ use std::time::Instant;
 use anyhow::{Context, Result, bail, ensure};
 use serde::Deserialize;
 
-/// Names the fault that is on.
+/// Environment variable with the name of the active fault.
 const SWITCH: &str = "TISSUEBENCH_MUTANT";
 
 #[derive(Deserialize)]
@@ -19,25 +21,25 @@ struct List {
     mutant: Vec<Mutant>,
 }
 
-/// One fault.
+/// A fault.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Mutant {
     name: String,
-    /// What is wrong, in a sentence.
+    /// Description of the fault in a sentence.
     what: String,
     /// Source file, from the root of the workspace.
     file: String,
     /// An expression that occurs once in the file.
     find: String,
-    /// What stands there when the fault is on.
+    /// Replacement of the expression when the fault is on.
     replace: String,
-    /// What finds it: `PACKAGE lib|TEST [FILTER]`, a test target of `cargo test`; or `baseline TEXT`, the accepted numbers of the
-    /// quick runs whose case or method contains the text.
+    /// Test that finds the fault: `PACKAGE lib|TEST [FILTER]`, a test target of `cargo test`, or
+    /// `baseline TEXT`, the accepted numbers of the quick runs whose case or method contains the text.
     test: String,
 }
 
-/// Runs the named mutants, or all: 0 if each is killed, else 1.
+/// Runs the named mutants, or all. Returns 0 if each is killed, otherwise 1.
 pub(crate) fn mutants(root: &Path, names: &[String]) -> Result<u8> {
     let all = read(&root.join("tests/mutants.toml"))?;
     if let Some(name) = names.iter().find(|name| all.iter().all(|m| m.name != **name)) {
@@ -49,7 +51,7 @@ pub(crate) fn mutants(root: &Path, names: &[String]) -> Result<u8> {
     let tests: BTreeSet<&str> = chosen.iter().map(|m| m.test.as_str()).collect();
     let targets: BTreeSet<String> = tests.iter().map(|test| target(test)).collect::<Result<_>>()?;
     for target in targets {
-        // Warnings are of the switches; errors are told.
+        // Warnings concern the switches; only errors are reported.
         let built = cargo(root, &target).arg("--no-run").output()?;
         let said = String::from_utf8_lossy(&built.stderr);
         let said = &said[said.find("\nerror").unwrap_or(0)..];
@@ -87,7 +89,8 @@ fn read(path: &Path) -> Result<Vec<Mutant>> {
     Ok(mutant)
 }
 
-/// Copies what git tracks, with the faults in it. A file whose text is the same is left alone, so that cargo builds what changed.
+/// Copies the files tracked by git, with the faults in them. Files with unchanged text are not written, so
+/// cargo builds only the changes.
 fn copy(root: &Path, mutants: &[Mutant]) -> Result<()> {
     let to = root.join("target/mutants/source");
     let mut faults: BTreeMap<&str, Vec<&Mutant>> = BTreeMap::new();
@@ -99,7 +102,7 @@ fn copy(root: &Path, mutants: &[Mutant]) -> Result<()> {
     let files = String::from_utf8(listed.stdout)?;
     let mut kept = BTreeSet::new();
     for file in files.split_terminator('\0') {
-        // A file may be deleted, and not yet so in git.
+        // A file may be deleted while git still tracks it.
         let Ok(mut text) = std::fs::read(root.join(file)) else { continue };
         if let Some(faults) = faults.remove(file) {
             text = with_faults(&String::from_utf8(text)?, &faults)?.into_bytes();
@@ -118,7 +121,7 @@ fn copy(root: &Path, mutants: &[Mutant]) -> Result<()> {
     }
 }
 
-/// Removes what the workspace no longer has.
+/// Removes files that the workspace no longer has.
 fn remove_others(folder: &Path, kept: &BTreeSet<PathBuf>) -> Result<()> {
     for entry in std::fs::read_dir(folder)? {
         let path = entry?.path();
@@ -131,9 +134,9 @@ fn remove_others(folder: &Path, kept: &BTreeSet<PathBuf>) -> Result<()> {
     Ok(())
 }
 
-/// The text of a file with a switch around each expression that is to be spoiled.
+/// Returns the text of a file with a switch around each expression of a fault.
 fn with_faults(text: &str, mutants: &[&Mutant]) -> Result<String> {
-    // By the place in the text: two faults of one expression share it.
+    // Places in the text; two faults of the same expression share a place.
     let mut places: BTreeMap<usize, (&str, String)> = BTreeMap::new();
     for Mutant { name, file, find, replace, .. } in mutants {
         let at: Vec<usize> = text.match_indices(find.as_str()).map(|(at, _)| at).collect();
@@ -156,7 +159,7 @@ fn with_faults(text: &str, mutants: &[&Mutant]) -> Result<String> {
     Ok(out + &text[done..])
 }
 
-/// The arguments by which cargo builds a test: `test --package P --test T`.
+/// Returns the arguments with which cargo builds a test: `test --package P --test T`.
 fn target(test: &str) -> Result<String> {
     let words: Vec<&str> = test.split_whitespace().collect();
     match words[..] {
@@ -167,7 +170,7 @@ fn target(test: &str) -> Result<String> {
     }
 }
 
-/// Runs a test with one fault on; with none by an empty name.
+/// Runs a test with one fault on, or without a fault for an empty name.
 fn run(root: &Path, test: &str, mutant: &str) -> Result<Output> {
     let words: Vec<&str> = test.split_whitespace().collect();
     if words[0] != "baseline" {
@@ -180,9 +183,10 @@ fn run(root: &Path, test: &str, mutant: &str) -> Result<Output> {
     let out = out.to_str().context("the workspace's path is not UTF-8")?;
     let mut verify = vec!["verify", "--quick", "--out", out];
     verify.extend(words.get(1).iter().flat_map(|text| ["--filter", text]));
-    // What the checks say is not asked here: the numbers are.
+    // Only the numbers matter here, not the results of checks.
     tissuebench(root, &verify).env(SWITCH, mutant).output()?;
-    // This build rounds otherwise than the one of the accepted numbers: they count as those of another processor.
+    // This build rounds differently from that of the accepted numbers, so these are treated as numbers of
+    // another processor.
     let accepted = std::fs::read_to_string(root.join("tests/baseline/quick.toml"))?;
     let file = root.join("target/mutants/baseline.toml");
     std::fs::write(&file, accepted.replace("\nprocessor = \"", "\nprocessor = \"another: "))?;

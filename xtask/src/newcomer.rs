@@ -1,4 +1,4 @@
-//! The guide's first page, followed by the clock: from a fresh clone to a picture of an organ.
+//! The guide's first page with a time limit: from a fresh clone to a picture of an organ.
 
 use std::path::Path;
 use std::process::Command;
@@ -6,15 +6,15 @@ use std::time::Instant;
 
 use anyhow::{Context, Result, ensure};
 
-/// The page.
+/// Page that is followed.
 const PAGE: &str = "docs/src/guide/own-organ.md";
-/// How long it may take on two cores, the build included.
+/// Largest time on two cores, s, including the build.
 const LIMIT: f64 = 600.0;
-/// What there has to be at the end.
+/// Files and folders that must exist at the end.
 const MADE: [&str; 3] =
     ["kidney-results/report/report.html", "kidney-results/report/figures", "kidney-results/volumes"];
 
-/// Clones the last commit, then runs every command of the page up to the first run, each as it stands there.
+/// Clones the last commit, then runs every command of the page up to the first run, exactly as written there.
 pub(super) fn newcomer(root: &Path) -> Result<u8> {
     let folder = root.join("target/newcomer");
     if folder.exists() {
@@ -55,7 +55,8 @@ pub(super) fn newcomer(root: &Path) -> Result<u8> {
     Ok(u8::from(all > LIMIT))
 }
 
-/// The commands of a page's shell blocks up to the first run of a scene; a block below a comment is not to be run as it stands.
+/// Returns the commands of a page's shell blocks up to the first run of a scene. A block below a comment is
+/// left out, because it is not meant to be run as written.
 fn commands(page: &str) -> Vec<&str> {
     let mut found = Vec::new();
     let (mut inside, mut before) = (false, "");

@@ -11,7 +11,8 @@ use crate::skips::skipped;
 /// Seconds in a minute.
 const MINUTE: u32 = 60;
 
-/// Runs every check, whatever the others say, with so many minutes for each fuzz target; the worst exit code.
+/// Runs every check regardless of the others, with `minutes` for each fuzz target, and returns the worst exit
+/// code.
 pub(crate) fn nightly(root: &Path, minutes: u32) -> Result<u8> {
     let checks: [(&str, &dyn Fn() -> Result<u8>); 4] = [
         ("deny", &|| deny(root)),
@@ -31,7 +32,7 @@ pub(crate) fn nightly(root: &Path, minutes: u32) -> Result<u8> {
     Ok(worst)
 }
 
-/// Licences, advisories, sources and versions of all dependencies.
+/// Checks licences, advisories, sources and versions of all dependencies.
 fn deny(root: &Path) -> Result<u8> {
     if !has("cargo-deny") {
         return skipped(root, "cargo-deny", "cargo-deny is not installed: the dependencies are not checked");
@@ -39,7 +40,7 @@ fn deny(root: &Path) -> Result<u8> {
     crate::cargo(&["deny", "--locked", "check"], &[])
 }
 
-/// Every fuzz target for some minutes, on from its corpus; new inputs stay in target/fuzz.
+/// Runs every fuzz target for some minutes, starting from its corpus; new inputs stay in target/fuzz.
 fn fuzz(root: &Path, minutes: u32) -> Result<u8> {
     if !has("cargo-fuzz") {
         return skipped(root, "cargo-fuzz", "cargo-fuzz is not installed: the readers are not fuzzed");
@@ -53,7 +54,7 @@ fn fuzz(root: &Path, minutes: u32) -> Result<u8> {
     for target in &targets {
         let (new, known) = (root.join("target/fuzz").join(target), root.join("fuzz/corpus").join(target));
         std::fs::create_dir_all(&new)?;
-        // The pinned toolchain is not the one that instruments.
+        // The pinned toolchain is not the toolchain that instruments.
         let mut command = Command::new("rustup");
         command.args([
             "run",

@@ -1,14 +1,15 @@
-//! The Python module: its wheel is built, put into a fresh virtual environment and tested there, where its tools are installed.
+//! The Python module: its wheel is built, installed in a fresh virtual environment and tested there, if the
+//! required tools are installed.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use anyhow::{Context, Result, ensure};
 
-/// What the test needs to be importable; nothing is downloaded.
+/// Modules that the test must be able to import; nothing is downloaded.
 const NEEDED: [&str; 3] = ["maturin", "numpy", "pytest"];
 
-/// Builds, installs and tests, where the tools are there.
+/// Builds, installs and tests the module if the tools are available.
 pub(crate) fn python(root: &Path) -> Result<u8> {
     let python = std::env::var_os("PYTHON").unwrap_or_else(|| "python3".into());
     let missing = |name: &&str| {
@@ -41,7 +42,7 @@ pub(crate) fn python(root: &Path) -> Result<u8> {
     if code != 0 {
         return Ok(code);
     }
-    // What the command says is compared with what the module does.
+    // The output of the command is compared with that of the module.
     let build = ["build", "--release", "--locked", "--package", "tissuebench-harness"];
     let code = crate::cargo(&build, &[])?;
     if code != 0 {
@@ -56,8 +57,8 @@ pub(crate) fn python(root: &Path) -> Result<u8> {
     Ok(crate::code_of(tests.context("could not start pytest")?))
 }
 
-/// A fresh virtual environment that finds the packages of the interpreter it is made by, without any network; returns its
-/// interpreter.
+/// Creates a virtual environment without network access that finds the packages of the creating interpreter;
+/// returns the path of its interpreter.
 fn environment(python: &std::ffi::OsStr, folder: &Path) -> Result<PathBuf> {
     let made = Command::new(python).args(["-m", "venv", "--clear"]).arg(folder).status()?;
     ensure!(made.success(), "no virtual environment can be made in {}", folder.display());
@@ -78,7 +79,7 @@ mod tests {
 
     use super::*;
 
-    /// Our packages with what they depend on, tests included.
+    /// Returns the project's packages with their dependencies, including those of tests.
     fn ours(lock: &str) -> BTreeMap<String, Vec<String>> {
         let text = std::fs::read_to_string(crate::root().join(lock)).unwrap();
         let read: toml::Value = toml::from_str(&text).unwrap();
@@ -91,7 +92,7 @@ mod tests {
         packages.filter(|p| name(p).starts_with("tissuebench-")).map(|p| (name(p), of(p))).collect()
     }
 
-    /// Dependencies outside the workspace that a package is built with, by its manifest.
+    /// Returns the name of a package and its dependencies outside the workspace, from its manifest.
     fn needed(folder: &Path) -> (String, Vec<String>) {
         let read: toml::Value =
             toml::from_str(&std::fs::read_to_string(folder.join("Cargo.toml")).unwrap()).unwrap();
@@ -100,7 +101,8 @@ mod tests {
         (name, depends.map(|(key, _)| key.clone()).collect())
     }
 
-    /// Both have a lock file: where a dependency comes or goes in one alone, the wheel can no longer be built as it is locked.
+    /// Both workspaces have a lock file. If a dependency is added or removed in only one of them, the wheel
+    /// can no longer be built as locked.
     #[test]
     fn the_lock_file_of_the_module_has_the_dependencies_of_the_workspace() {
         let (workspace, module) = (ours("Cargo.lock"), ours("python/Cargo.lock"));

@@ -1,11 +1,12 @@
-//! Steps left out for want of a tool: each is reported, and with `CI=true` fails unless `.ci/skips` names the
-//! tool.
+//! Steps omitted because a tool is missing. Each is reported, and with `CI=true` fails unless `.ci/skips`
+//! names the tool.
 
 use std::path::Path;
 
 use anyhow::{Context, Result};
 
-/// Reports that a step is left out; the exit code: 0, or 1 where continuous integration must have the tool.
+/// Reports that a step is omitted. Returns the exit code: 0, or 1 if continuous integration requires the
+/// tool.
 pub(crate) fn skipped(root: &Path, tool: &str, why: &str) -> Result<u8> {
     eprintln!("xtask: skipped: {why}");
     let path = root.join(".ci/skips");
@@ -17,7 +18,7 @@ pub(crate) fn skipped(root: &Path, tool: &str, why: &str) -> Result<u8> {
     Ok(1)
 }
 
-/// Whether a list has a line of the tool.
+/// Whether a list has a line for the tool.
 fn may_lack(list: &str, tool: &str) -> bool {
     list.lines()
         .any(|line| line.split_once(':').is_some_and(|(name, why)| name == tool && !why.trim().is_empty()))

@@ -23,7 +23,7 @@ fn a_fault_stands_beside_what_is_right() {
     );
 }
 
-/// Source moves on; the list has to follow.
+/// The sources change, and the list must match them.
 #[test]
 fn the_list_fits_the_sources() {
     let root = crate::root();
