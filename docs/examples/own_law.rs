@@ -1,4 +1,4 @@
-//! A law of one's own: energy, stress and tangent, held against differences.
+//! A user-defined law: energy, stress and tangent, checked against differences.
 //!
 //! The law of Blatz and Ko for compressible foams, J. Rheol. 6 (1962) 223-251.
 

@@ -1,4 +1,4 @@
-//! An exact solution of one's own: torsion of a bar, held against equilibrium.
+//! A user-defined exact solution: torsion of a bar, checked against equilibrium.
 
 use cases::exact::{Elastic, Exact, Matrix3, Point3, Vector3};
 

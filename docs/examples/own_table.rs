@@ -1,4 +1,4 @@
-//! A table of one's own: the rows of a transfer by the two nearest nodes, and what follows from a table alone.
+//! A user-defined table: the rows of a transfer by the two nearest nodes, and their use.
 
 use shape::{Point3, PointRows, Rows, ShapeError, Unity, Vector3};
 
@@ -24,7 +24,7 @@ fn main() -> Result<(), ShapeError> {
     let nodes: Vec<Point3> = (0..5).map(|i| Point3::new(i as f64 * 1e-3, 0.0, 0.0)).collect();
     let table = two_nearest(&nodes, &[Point3::new(1.4e-3, 0.0, 0.0), Point3::new(2.6e-3, 0.0, 0.0)])?;
 
-    // Displacements go to the targets, forces come back with the same work.
+    // Displacements are interpolated to the targets; forces are mapped back with the same work.
     let u: Vec<Vector3> = nodes.iter().map(|x| 0.1 * x.coords).collect();
     let f = [Vector3::new(1.0, 0.0, 0.0), Vector3::new(-2.0, 0.0, 0.0)];
     let at_targets: f64 = table.rows().apply(&u).iter().zip(&f).map(|(u, f)| u.dot(f)).sum();

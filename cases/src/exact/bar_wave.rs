@@ -41,8 +41,12 @@ enum Of {
 }
 
 impl BarWave {
-    /// A bar at time 0. The pull `p0` (Pa) grows over `over` (s; 0 for a sudden pull). Length (m) and density
-    /// (kg/m^3) have to be positive.
+    /// A bar at time 0 with the given length (m) and density (kg/m^3). The pull `p0` (Pa) grows over `over`
+    /// (s; 0 for a sudden pull).
+    ///
+    /// # Errors
+    ///
+    /// A length or density that is not positive, or a negative `over`.
     pub fn new(
         elastic: Elastic,
         pull: f64,

@@ -35,7 +35,12 @@ pub struct CantileverPlaneStrain {
 }
 
 impl CantileverPlaneStrain {
-    /// Tip load `P` along +y (N per metre of width), length `L` and depth `D` (m, both above zero).
+    /// A cantilever under the tip load `P` along +y (N per metre of width), with length `L` and depth `D`
+    /// (m).
+    ///
+    /// # Errors
+    ///
+    /// A length or depth that is not positive.
     pub fn new(elastic: Elastic, load: f64, length: f64, depth: f64) -> Result<Self, ExactError> {
         for (name, value) in [("length", length), ("depth", depth)] {
             if !(value > 0.0 && value.is_finite()) {

@@ -10,7 +10,11 @@ pub struct Elastic {
 }
 
 impl Elastic {
-    /// Checks the constants: `young > 0` in Pa, `-1 < poisson < 0.5`.
+    /// A material with Young's modulus `young` (Pa) and Poisson's ratio `poisson`.
+    ///
+    /// # Errors
+    ///
+    /// Values outside of `young > 0` and `-1 < poisson < 0.5`.
     pub fn new(young: f64, poisson: f64) -> Result<Elastic, ExactError> {
         if !(young > 0.0 && young.is_finite()) {
             return Err(ExactError::Material { what: "young", value: young, need: "a positive number" });

@@ -2,7 +2,7 @@
 
 use catalogue::Problem;
 
-/// Constants that a solution does not accept.
+/// Error for constants that a solution does not accept.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum ExactError {
     /// A parameter out of its range.

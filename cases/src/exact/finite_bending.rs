@@ -35,7 +35,11 @@ pub struct FiniteBending {
 }
 
 impl FiniteBending {
-    /// Thickness `h` (m) and angle per length `k` (1/m), `0 < k h <= 1`.
+    /// A block of thickness `h` (m), bent by the angle per length `k` (1/m).
+    ///
+    /// # Errors
+    ///
+    /// Values outside of `0 < k h <= 1`.
     pub fn new(law: &Hyperelastic, thickness: f64, curvature: f64) -> Result<FiniteBending, ExactError> {
         let bend = thickness * curvature;
         if !(thickness > 0.0 && thickness.is_finite() && bend > 0.0 && bend <= 1.0) {

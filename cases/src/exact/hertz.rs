@@ -32,7 +32,11 @@ pub struct Hertz {
 }
 
 impl Hertz {
-    /// Radius of the sphere (m) and its depth in the half space (m), both positive.
+    /// A sphere of the given radius (m), pressed into the half space to the given depth (m).
+    ///
+    /// # Errors
+    ///
+    /// A radius or depth that is not positive.
     pub fn new(elastic: Elastic, radius: f64, depth: f64) -> Result<Hertz, ExactError> {
         for (name, value) in [("radius", radius), ("depth", depth)] {
             if !(value > 0.0 && value.is_finite()) {

@@ -31,10 +31,10 @@ pub struct Homogeneous {
 }
 
 impl Homogeneous {
-    /// Axial stretch `l > 0` along z between frictionless plates, with free sides. The lateral stretch `m`
-    /// makes the stress of the sides vanish; it is bracketed between 1/16 and 16 and bisected to the last
-    /// digit. `None` if there is no such stretch: Saint Venant-Kirchhoff bars have no width from `l^2 = 1 + 1
-    /// / nu` on.
+    /// Compression or extension by the axial stretch `l > 0` along z between frictionless plates, with free
+    /// sides. The lateral stretch `m` makes the stress of the sides vanish; it is bracketed between 1/16 and
+    /// 16 and bisected to the last digit. `None` if there is no such stretch: Saint Venant-Kirchhoff bars
+    /// have no width from `l^2 = 1 + 1 / nu` on.
     pub fn free_slip(law: &Hyperelastic, stretch: f64) -> Option<Homogeneous> {
         let side = |m: f64| law.principal_stress([m, m, stretch])[0];
         let (mut low, mut high) = (0.0625, 16.0);
@@ -55,7 +55,7 @@ impl Homogeneous {
         })
     }
 
-    /// Axial stretch `l > 0` along z between walls that fix x and y.
+    /// Compression or extension by the axial stretch `l > 0` along z between walls that fix x and y.
     pub fn confined(law: &Hyperelastic, stretch: f64) -> Homogeneous {
         Homogeneous {
             deformation: Matrix3::from_diagonal(&Vector3::new(1.0, 1.0, stretch)),
@@ -63,7 +63,7 @@ impl Homogeneous {
         }
     }
 
-    /// Shear `g` of planes of constant y along x.
+    /// Simple shear `g` of planes of constant y along x.
     pub fn simple_shear(law: &Hyperelastic, shear: f64) -> Homogeneous {
         let mut deformation = Matrix3::identity();
         deformation[(0, 1)] = shear;

@@ -37,7 +37,11 @@ pub struct LameCube {
 }
 
 impl LameCube {
-    /// Side (m) and density (kg/m^3), both positive, and amplitude (m); at time 0.
+    /// A cube at time 0 with the given side (m), density (kg/m^3) and amplitude (m).
+    ///
+    /// # Errors
+    ///
+    /// A side or density that is not positive.
     pub fn new(elastic: Elastic, side: f64, density: f64, amplitude: f64) -> Result<LameCube, ExactError> {
         for (name, value) in [("side", side), ("density", density)] {
             if !(value > 0.0 && value.is_finite()) {

@@ -38,8 +38,12 @@ pub struct RelaxingCompression {
 }
 
 impl RelaxingCompression {
-    /// Shortening `strain` per unit height, reached after `over` (s; 0 for a sudden load). A share `0 <= g <
-    /// 1` of the shear modulus relaxes with the time `tau` (s, positive). At time 0.
+    /// A prism at time 0. The shortening `strain` per unit height is reached after `over` (s; 0 for a sudden
+    /// load). The part `share` of the shear modulus relaxes with the time `tau` (s).
+    ///
+    /// # Errors
+    ///
+    /// A negative `over`, a share outside of `0 <= g < 1`, or a time that is not positive.
     pub fn new(
         elastic: Elastic,
         strain: f64,

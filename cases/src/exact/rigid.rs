@@ -23,7 +23,7 @@ pub struct Rigid {
 }
 
 impl Rigid {
-    /// A shift `t` (m) and a rotation vector `w` (rad, linearised).
+    /// A motion by the shift `t` (m) and the rotation vector `w` (rad, linearised).
     pub fn new(elastic: Elastic, shift: Vector3, rotation: Vector3) -> Rigid {
         Rigid { elastic, shift, rotation }
     }

@@ -48,7 +48,11 @@ struct Mode {
 }
 
 impl RollerBox {
-    /// Sides (m) and density (kg/m^3), all positive, and amplitude (m); at time 0.
+    /// A box at time 0 with the given sides (m), density (kg/m^3) and amplitude (m).
+    ///
+    /// # Errors
+    ///
+    /// A side or density that is not positive.
     pub fn new(
         elastic: Elastic,
         size: [f64; 3],

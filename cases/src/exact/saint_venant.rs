@@ -57,6 +57,10 @@ pub struct SaintVenantFlexure {
 impl SaintVenantFlexure {
     /// A bar under the end load `P` along +y (N), with length along x, full depth along y and full width
     /// along z (m).
+    ///
+    /// # Errors
+    ///
+    /// A size that is not positive, or a depth below 0.02 of the width.
     pub fn new(
         elastic: Elastic,
         load: f64,
@@ -80,8 +84,8 @@ impl SaintVenantFlexure {
     }
 
     /// `sum_m (-1)^m L(s_m, t)` over the images above (`s_m = pi (a (2m + 1) - y) / b`) and below (`+ y`) the
-    /// section, with `t = pi z / b`: their difference is the series of `sinh / cosh`, their sum that of `cosh
-    /// / cosh`.
+    /// section, with `t = pi z / b`. Their difference is the series of `sinh / cosh`, their sum the series of
+    /// `cosh / cosh`.
     fn images(&self, y: f64, z: f64, term: impl Fn(f64, f64) -> Complex) -> (Complex, Complex) {
         let [a, b] = self.half;
         (0..=self.images).rev().fold((Complex::ZERO, Complex::ZERO), |(above, below), m| {

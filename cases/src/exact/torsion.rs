@@ -47,6 +47,10 @@ pub struct Torsion {
 
 impl Torsion {
     /// A bar with the given angle per length (rad/m), full depth along y and full width along z (m).
+    ///
+    /// # Errors
+    ///
+    /// A size that is not positive, or a depth below 0.02 of the width.
     pub fn new(elastic: Elastic, twist: f64, [depth, width]: [f64; 2]) -> Result<Torsion, ExactError> {
         for (name, value) in [("depth", depth), ("width", width)] {
             if !(value > 0.0 && value.is_finite()) {

@@ -98,8 +98,10 @@ pub(crate) fn axis(keys: AxisKeys, key: &str, report: &mut Report) -> Option<Axi
 impl Axis {
     /// The scene at one value of the axis, with the named methods (all if `methods` is empty).
     ///
-    /// # Errors All findings about the scene, as given or at this value; or a key of the axis that the scene
-    /// cannot have.
+    /// # Errors
+    ///
+    /// All findings about the scene, as given or at this value; or a key of the axis that the scene cannot
+    /// have.
     pub fn at(&self, scene: &Scene, methods: &[String], value: f64) -> Result<Scene, Vec<SceneError>> {
         let refuse = |key: &str, problem: Problem| {
             vec![scene.error(

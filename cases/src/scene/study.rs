@@ -24,7 +24,7 @@ use super::vocabulary::{Kernels, Word};
 use super::{document, load, text_of};
 use catalogue::metric::Needs;
 
-/// A study.
+/// A study: runs of scenes, with their variations and checks.
 #[derive(Clone, Debug)]
 pub struct Study {
     /// Title of the study in one line.
@@ -60,7 +60,6 @@ pub struct Run {
     pub essentials: Vec<Essential>,
     /// Integration rule with which every cloud is solved again. The change of the solution is the error of
     /// integration; the remaining error is the error of discretisation.
-    /// then is the error of its discretisation.
     pub split: Option<Integration>,
     /// Number of random clouds, with the seeds 1 to `seeds`, in place of the method's own cloud; 0 for its
     /// own. The spread of their results shows the influence of the node positions. The scene's checks apply
