@@ -6,8 +6,8 @@ use material::{Material, Tangent};
 use shape::Matrix3;
 
 // ANCHOR: law
-/// The compressible law of Blatz and Ko, `W = mu/2 (I1 - 3 + (J^(-2 b) - 1) / b)`, with `b = nu / (1 - 2 nu)` and
-/// mu in Pa.
+/// The compressible law of Blatz and Ko, `W = mu/2 (I1 - 3 + (J^(-2 b) - 1) / b)`, with
+/// `b = nu / (1 - 2 nu)` and mu in Pa.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BlatzKo {
     mu: f64,
