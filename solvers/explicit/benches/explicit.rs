@@ -1,7 +1,9 @@
-//! Internal forces: one evaluation of each kernel beside the plain loop of the same run, which is what to compare with
-//! on a machine that is not quiet. Strains near 0.1, neo-Hookean, nodes and points of a structured grid.
+//! Benchmark of internal forces: one evaluation of each kernel next to the plain loop of the same run, which
+//! is the value to compare with on a machine that is not idle. Strains are near 0.1, the law is neo-Hookean,
+//! nodes and points are those of a structured grid.
 //!
-//! Per element and evaluation (per point for EFG; a fused product counts two flops, `ln` and the cube root some 30):
+//! Cost per element and evaluation (per point for EFG; a fused product counts two flops, `ln` and the cube
+//! root some 30):
 //!
 //! | kernel | bytes | flops | memory at 20 GB/s | arithmetic at 40 Gflop/s |
 //! |---|---|---|---|---|
@@ -11,14 +13,19 @@
 //! | hex8 mean dilation | 656 (one pass) | 2500 | 33 ns | 63 ns |
 //! | EFG, 31 neighbours | 806 (31 x (3 gradients + short node)) | 860 | 40 ns | 22 ns |
 //!
-//! What each kernel waits for, from its measured distance to these bounds: tet4 for gather and scatter (see the benchmark
-//! `tet4`); hex8 for products, of which 950 vectors of eight elements (mean dilation 1200) at one per cycle of 3.7 GHz are 32 ns (40), for sums and differences and
-//! the scatter of its nodes (20 ns), and outside the kernel for copies of nodes and their sums (5 ns): kernel alone 52 ns (62),
-//! whole evaluation 58 (68), beside busy neighbours the least of 20 samples; out of cache for memory, 130 (130); EFG for
-//! loads, eight per neighbour (53 ns in cache, 90 out of it).
-//! Other laws: the benchmark `laws`.
-//! Not covered: quadratic elements (they take the EFG kernel), and what takes the plain loop: dilation of EFG rows, and
-//! of the linear and the St. Venant-Kirchhoff law.
+//! The measured distance of each kernel to these bounds shows its bottleneck:
+//!
+//! - tet4: gather and scatter (see the benchmark `tet4`).
+//! - hex8: products, sums and copies. Its 950 product vectors of eight elements (mean dilation 1200) at one
+//!   per cycle of 3.7 GHz take
+//! 32 ns (40). Sums and differences and the scatter of its nodes take 20 ns. Copies of nodes and their sums,
+//! outside the kernel, take 5 ns. The kernel alone takes 52 ns (62), a whole evaluation 58 ns (68), the best
+//! of 20 samples next to busy neighbours. Out of cache, hex8 waits for memory: 130 ns (130).
+//! - EFG: loads, eight per neighbour (53 ns in cache, 90 ns out of cache).
+//!
+//! Other laws are covered by the benchmark `laws`. Quadratic elements, which use the EFG kernel, are not
+//! covered. Cases of the plain loop are not covered either: dilation of EFG rows, and of the linear and the
+//! St. Venant-Kirchhoff law.
 
 mod common;
 

@@ -1,10 +1,11 @@
-//! Internal forces: the time of every law over the neo-Hookean's, one group for each kernel and one entry for each law, on
-//! one thread. `cargo bench` prints the ratios once more at the end, of turns that take the laws one after the other: that
-//! is what to read on a machine that is not quiet.
+//! Benchmark of internal forces for every law relative to the neo-Hookean law, on one thread, with one group
+//! for each kernel and one entry for each law. At the end, `cargo bench` prints the ratios again from turns
+//! that take the laws one after the other. These are the ratios to read on a machine that is not idle.
 //!
-//! Floating-point operations per point in vector instructions (a fused product is one), counted in the source, of the law
-//! alone; and the measured time of the whole kernel over the neo-Hookean's at strains near 0.1, AVX2 / AVX-512 (Intel of
-//! family 6, model 167, 2 shared cores, one thread, in cache):
+//! The table gives the floating-point operations per point in vector instructions (a fused product counts
+//! once), counted in the source of the law alone. It also gives the measured time of the whole kernel
+//! relative to the neo-Hookean law at strains near 0.1, AVX2 / AVX-512 (Intel family 6, model 167, 2 shared
+//! cores, one thread, in cache):
 //!
 //! | law | instructions | tet4 | tet4 nodal | hex8 | hex8 mean | rows |
 //! |---|---|---|---|---|---|---|
@@ -16,13 +17,14 @@
 //! | Hencky | 165 | 1.41 / 1.08 | 1.21 / 1.07 | 1.58 / 1.52 | 1.38 / 1.31 | 1.10 / 1.09 |
 //! | Ogden, three terms | 190 | 1.58 / 1.14 | 1.33 / 1.15 | 1.70 / 1.60 | 1.63 / 1.52 | 1.12 / 1.10 |
 //!
-//! The bound of Ogden's law on hex8 in AVX2: 8 points x 190 instructions on 4 lanes at two per cycle of some 3.5 GHz are
-//! 54 ns per element, beside the 55 ns of the kernel with the linear law: 1.63 of the neo-Hookean's time. Bytes are those of the kernel, whatever
-//! the law (see the benchmark `explicit`).
+//! The bound of Ogden's law on hex8 in AVX2: 8 points x 190 instructions on 4 lanes at two per cycle of some
+//! 3.5 GHz take 54 ns per element, in addition to the 55 ns of the kernel with the linear law. This is 1.63
+//! of the neo-Hookean time. Bytes are those of the kernel, whatever the law (see the benchmark `explicit`).
 //!
-//! A whole step of a run (`element-step` of a block of 18^3 hex8 or 10^3 cells of tet4, one thread, medians of ten and three)
-//! has gather, update and energies besides; Ogden's over the neo-Hookean's, AVX2 / AVX-512: hex8 1.60 (148 over 92 ns) / 1.47
-//! (115 over 78), hex8 mean 1.52 / 1.42, tet4 1.48 / 1.13.
+//! A whole step of a run (`element-step` of a block of 18^3 hex8 or 10^3 cells of tet4, one thread, medians
+//! of ten and three) includes gather, update and energies. The time with Ogden's law relative to the
+//! neo-Hookean law, AVX2 / AVX-512, is: hex8 1.60 (148 over 92 ns) / 1.47 (115 over 78), hex8 mean 1.52 /
+//! 1.42, tet4 1.48 / 1.13.
 
 mod common;
 
@@ -36,18 +38,19 @@ use lanes::LanePath;
 use material::Law;
 use shape::{DilationGroups, Vector3, VolumeRows};
 
-/// Turns of the table at the end, and evaluations of one law in each; the shortest counts.
+/// Number of turns of the final table; the shortest time counts.
 const TURNS: usize = 60;
+/// Number of evaluations of one law in each turn.
 const IN_TURN: usize = 4;
 
-/// All laws, the neo-Hookean first.
+/// Returns all laws, the neo-Hookean law first.
 fn laws() -> Vec<Law> {
     let mut laws = Law::all(20e3, 0.495).unwrap();
     laws.sort_by_key(|law| !matches!(law, Law::NeoHookean(_)));
     laws
 }
 
-/// One table of each kernel.
+/// One table for each kernel.
 struct Bodies {
     tet4: (VolumeRows, DilationGroups, Vec<Vector3>),
     hex8: (VolumeRows, DilationGroups, Vec<Vector3>),
@@ -59,7 +62,7 @@ impl Bodies {
         Bodies { tet4: solid(CellKind::Tet4, 10), hex8: solid(CellKind::Hex8, 18), rows: cloud(6, 28) }
     }
 
-    /// Volume, groups, displacements and points per item.
+    /// Returns volume, groups, displacements and points per item.
     fn each(&self) -> [(&VolumeRows, Option<&DilationGroups>, &[Vector3], usize); 5] {
         let ((tet4, nodal, u), (hex8, mean, v), (rows, w)) = (&self.tet4, &self.hex8, &self.rows);
         [
@@ -72,7 +75,7 @@ impl Bodies {
     }
 }
 
-/// Kernels of one table with each law, but for those that take the plain loop.
+/// Returns the kernels of one table with each law, except those that use the plain loop.
 fn forces<'a>(
     laws: &'a [Law],
     (volume, groups): (&'a VolumeRows, Option<&'a DilationGroups>),
@@ -107,7 +110,8 @@ fn groups(c: &mut Criterion, laws: &[Law], bodies: &Bodies) {
     }
 }
 
-/// Nanoseconds per element (per point for rows) and the ratio to the first law, of every kernel and path.
+/// Prints nanoseconds per element (per point for rows) and the ratio to the first law, for every kernel and
+/// path.
 fn table(laws: &[Law], bodies: &Bodies) {
     let one = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
     for path in LanePath::available() {
@@ -138,7 +142,7 @@ fn main() {
     let mut criterion = Criterion::default().configure_from_args();
     groups(&mut criterion, &laws, &bodies);
     criterion.final_summary();
-    // Without it the benchmark is a test.
+    // Without `--bench` the benchmark runs as a test.
     if std::env::args().any(|argument| argument == "--bench") {
         table(&laws, &bodies);
     }

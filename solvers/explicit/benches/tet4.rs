@@ -1,12 +1,17 @@
-//! The tetrahedron of four nodes: in cache against its own arithmetic, out of cache against in cache, and a whole step of the published
-//! ramp against its internal forces. One thread, ratios within turns that take everything one after the other: only these mean
-//! something on a machine that is not quiet, so this is a plain program without criterion.
+//! Benchmark of the tetrahedron with four nodes: in cache relative to its own arithmetic, out of cache
+//! relative to in cache, and a whole step of the published ramp relative to its internal forces.
 //!
-//! *The arithmetic alone* does what the kernel does with eight elements (gradient, invariants, neo-Hookean law, stress, forces of four
-//! nodes, in the same three passes) from 16 blocks in the first-level cache and back there, 26 KB in and 12 KB out. It reads and writes
-//! no node, and has nothing in registers that the kernel has to load.
+//! Everything runs on one thread. Ratios are taken within turns that process everything one after the other.
+//! Only such ratios are meaningful on a machine that is not idle, so this is a plain program without
+//! criterion.
 //!
-//! Measured on AVX-512 of AMD family 26 (Zen 5, 4.1 GHz, 1 MB and 32 MB of cache, two cores, both busy with other work), best of 60 turns:
+//! *The arithmetic alone* does the work of the kernel on eight elements (gradient, invariants, neo-Hookean
+//! law, stress, forces of four nodes, in the same three passes). It reads 16 blocks in the first-level cache
+//! and writes there, 26 KB in and 12 KB out. It reads and writes no node, and keeps nothing in registers that
+//! the kernel has to load.
+//!
+//! Measured on AVX-512 of AMD family 26 (Zen 5, 4.1 GHz, 1 MB and 32 MB of cache, two cores, both busy with
+//! other work), best of 60 turns:
 //!
 //! | | ns per element | ratio |
 //! |---|---|---|
@@ -16,27 +21,36 @@
 //! | 1,296,000 elements, 114 MB | 9 to 13 (memory shared with others) | 1.8 to 2.8 |
 //! | step of the ramp | 6.1 | 1.23 of its internal forces |
 //!
-//! Limits, in cycles per block of eight elements. Throughputs per cycle, measured: products 2, sums 2, shuffles across 128 bits 2, any
-//! four of them together 4; loads of 64 bytes 2, stores of 64 bytes 1.
+//! Limits, in cycles per block of eight elements. Measured throughputs per cycle: products 2, sums 2,
+//! shuffles across 128 bits 2, any four of them together 4; loads of 64 bytes 2, stores of 64 bytes 1.
 //!
 //! | | products | sums | shuffles | instructions | at best | measured |
 //! |---|---|---|---|---|---|---|
 //! | arithmetic alone | 116 | 42 | 0 | 256 | 58 (products) | 80 |
 //! | kernel | 116 | 80 | 112 | 596 | 84 (all vector units) | 141 |
 //!
-//! Gather and scatter of 32 nodes add 150 vector instructions to the 170 of the arithmetic: with all units always busy the kernel would take
-//! 1.45 times the 58 cycles of the products, and it comes as near to its bound (1.7) as such code does (1.4 without nodes). 12 % more are
-//! displacements to the chunks and the sums of their copies. 1.6 times the arithmetic would be 113 cycles for the kernel.
+//! Gather and scatter of 32 nodes add 150 vector instructions to the 170 of the arithmetic. With all units
+//! always busy the kernel would take 1.45 times the 58 cycles of the products. It comes as near to its bound
+//! (1.7) as such code does (1.4 without nodes). Copying displacements to the chunks and summing their copies
+//! takes 12 % more. A factor of 1.6 over the arithmetic would be 113 cycles for the kernel.
 //!
-//! Tried without gain, as ratios of the time in cache: numbers of nodes multiplied beforehand, 64 instructions less (0.98); scatter in a
-//! fourth pass (1.03), or by permutations of two registers (1.02); passes of eight blocks (1.0); chunks of 512, 1024, 1536, 3072
-//! elements (1.13, 1.06, 1.03, 1.0); patches of the six elements of a cut cell, whose eight nodes are read once and added to once, from and to
-//! scratch (1.0: a fifth fewer instructions, which were not what it waits for). A node's sum that waits for the one before costs 0.07. Out of cache: displacements in scratch memory
-//! of a thread (1.0), nodes of the next chunk asked for (1.0).
+//! Variants without gain, as ratios of the time in cache:
 //!
-//! Memory: 88 bytes of an element and some 56 of its part of nodes, of which one core reads 37 GB/s: 2.4 + 1.5 ns, the former behind the
-//! arithmetic as blocks are asked for ahead. Of the step 0.81 are internal forces. Contact was 0.33 of it until its search kept lists of points
-//! from step to step, and the step 1.63 of its forces. At the end of the ramp, with twice as many points that touch, it is 1.3 of them.
+//! - node numbers multiplied beforehand, 64 instructions less (0.98);
+//! - scatter in a fourth pass (1.03), or by permutations of two registers (1.02);
+//! - passes of eight blocks (1.0);
+//! - chunks of 512, 1024, 1536, 3072 elements (1.13, 1.06, 1.03, 1.0);
+//! - patches of the six elements of a cut cell, whose eight nodes are read once and added to once, from and
+//!   to scratch (1.0: a fifth fewer instructions, which are not the bottleneck).
+//!
+//! The sum of a node that waits for the previous sum costs 0.07. Out of cache: displacements in scratch
+//! memory of a thread (1.0), prefetching the nodes of the next chunk (1.0).
+//!
+//! Memory: an element takes 88 bytes and some 56 for its part of the nodes, and one core reads 37 GB/s: 2.4 +
+//! 1.5 ns. The former is hidden behind the arithmetic, because blocks are prefetched. Internal forces take
+//! 0.81 of the step. Contact took 0.33 of the step until its search kept lists of points from step to step;
+//! the step then took 1.63 of its forces. At the end of the ramp, with twice as many points in contact, the
+//! step takes 1.3 of its forces.
 
 mod common;
 mod ramp;
@@ -54,12 +68,14 @@ use material::{Law, Material, NeoHookean};
 use rayon::ThreadPoolBuilder;
 use shape::Vector3;
 
-/// Turns, each of which takes one time of everything.
+/// Number of turns, each of which takes one time of everything.
 const TURNS: usize = 60;
-/// Blocks of the arithmetic alone, and those that go through a pass together, as in the kernel.
+/// Number of blocks of the arithmetic alone.
 const BLOCKS: usize = 16;
+/// Number of blocks that go through a pass together, as in the kernel.
 const TOGETHER: usize = 4;
-/// Cells along an edge of the cubes, of six elements each: in the second-level cache, in the third, in memory.
+/// Cells along an edge of the cubes, of six elements each: in the second-level cache, in the third-level
+/// cache, in memory.
 const CELLS: [usize; 3] = [10, 26, 60];
 
 #[repr(align(64))]
@@ -71,7 +87,7 @@ struct Block {
 }
 
 impl Block {
-    /// Numbers of the right size.
+    /// Fills a block with numbers of realistic size.
     fn new(block: usize) -> Block {
         let wave = |k: usize| std::array::from_fn(|l| ((97 * block + 13 * k + l) as f64).sin());
         let scaled = |k: usize, by: f64| wave(k).map(|x: f64| by * x);
@@ -169,7 +185,7 @@ fn sum_lanes<const FMA: bool>(x: &[f64]) -> f64 {
     sums.iter().flatten().sum()
 }
 
-/// Nanoseconds that each of `items` takes when `work` is done `times` times, after once without a clock.
+/// Returns the nanoseconds per item when `work` is repeated `times` times, after one run without a clock.
 fn time(items: usize, times: usize, mut work: impl FnMut()) -> f64 {
     work();
     let start = Instant::now();
@@ -179,7 +195,7 @@ fn time(items: usize, times: usize, mut work: impl FnMut()) -> f64 {
     start.elapsed().as_secs_f64() * 1e9 / (items * times) as f64
 }
 
-/// The times of one thing, one from each turn.
+/// Times of one quantity, one from each turn.
 #[derive(Default)]
 struct Times(Vec<f64>);
 
@@ -203,7 +219,7 @@ impl Times {
 }
 
 fn main() {
-    // Without it the benchmark is a test.
+    // Without `--bench` the benchmark runs as a test.
     let turns = if std::env::args().any(|argument| argument == "--bench") { TURNS } else { 1 };
     let path = LanePath::best();
     let pools = [1, 2].map(|n| ThreadPoolBuilder::new().num_threads(n).build().unwrap());
@@ -229,7 +245,7 @@ fn main() {
     let [mut one, mut two, mut read] = [(); 3].map(|()| [(); 3].map(|()| Times::default()));
     let [mut step, mut kernel] = [(); 2].map(|()| Times::default());
     let mut none = |_: f64, _: &[Vector3], _: &[Vector3], _: &mut [Vector3]| ();
-    // Until the jaws touch with some force.
+    // Steps until the jaws touch with some force.
     pools[0].install(|| motion.run(50 * turns, 0, &mut none, &mut |_, _| ()).unwrap());
     for _ in 0..turns {
         alone.0.push(time(BLOCKS * LANES, 200, || {

@@ -5,44 +5,45 @@ use super::step_lanes::{Forces, Inertia, accelerate, advance};
 use super::{ExplicitError, InternalForce, ToolEnergies, Tools};
 use shape::{Matrix3, Vector3};
 
-/// What is asked of an integration.
+/// Parameters of a time integration.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DynamicsParams {
     /// Time step, s.
     pub dt: f64,
     /// Mass-proportional damping `alpha` of `C = alpha M`, 1/s.
     pub damping: f64,
-    /// How the critical step is found that `dt` must not exceed.
+    /// Parameters of the estimate of the critical step, which `dt` must not exceed.
     pub critical: LanczosParams,
-    /// Steps between two checks of the critical step as the body deforms; 0: before the first step only.
+    /// Number of steps between two checks of the critical step as the body deforms; 0: before the first step
+    /// only.
     pub recheck: usize,
-    /// The critical step at the start, if it is known, with the springs of what may touch.
+    /// Critical step at the start, if known, including the springs of possible contact.
     pub known: Option<CriticalStep>,
 }
 
-/// A degree of freedom led along a given displacement.
+/// Degree of freedom with a prescribed displacement.
 pub struct Prescribed<'a> {
     /// Node.
     pub node: u32,
     /// Axis, 0 to 2.
     pub axis: u8,
-    /// Displacement (m) at a time (s).
+    /// Displacement (m) as a function of time (s).
     pub motion: &'a (dyn Fn(f64) -> f64 + Sync),
 }
 
-/// External forces: `(t, u_n, v_(n-1/2), f)` adds nodal forces (N) to `f`, which starts from zero. Velocities lag half
-/// a step.
+/// External forces: `(t, u_n, v_(n-1/2), f)` adds nodal forces (N) to `f`, which starts from zero. The
+/// velocities lag by half a step.
 pub type External<'a> = dyn FnMut(f64, &[Vector3], &[Vector3], &mut [Vector3]) + 'a;
 
 /// Energy balance at one step, J.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Balance {
-    /// Step.
+    /// Number of the step.
     pub step: usize,
     /// Time, s.
     pub time: f64,
-    /// `v_(n-1/2) . M v_(n+1/2) / 2`: at a whole step, and with the strain energy constant to rounding in a linear
-    /// undamped motion.
+    /// Kinetic energy `v_(n-1/2) . M v_(n+1/2) / 2` at a whole step. Its sum with the strain energy is
+    /// constant to rounding in a linear undamped motion.
     pub kinetic: f64,
     /// Strain energy.
     pub strain: f64,
@@ -52,14 +53,18 @@ pub struct Balance {
     pub support: f64,
     /// Energy lost to damping since the start.
     pub damping: f64,
-    /// Of the tools; zero without any.
+    /// Energies of the tools; zero without tools.
     pub tools: ToolEnergies,
-    /// `kinetic + strain + damping + tools.kinetic + tools.stored + tools.friction + tools.damping - external - support
-    /// - tools.work`, less the same at the start, over the largest of these terms so far.
+    /// Relative energy error: the change of the sum below since the start, over the largest of its terms so
+    /// far.
+    ///
+    /// The sum is
+    /// `kinetic + strain + damping + tools.kinetic + tools.stored + tools.friction + tools.damping` less
+    /// `external + support + tools.work`.
     pub drift: f64,
 }
 
-/// A motion under way. Same bits at any number of threads.
+/// Explicit time integration of a body. The bits do not depend on the number of threads.
 pub struct Dynamics<'a, 'b> {
     force: &'b mut InternalForce<'a>,
     mass: &'b [f64],
@@ -71,27 +76,32 @@ pub struct Dynamics<'a, 'b> {
     step: usize,
     /// Step and time of the last change of the time step.
     since: (usize, f64),
-    /// Time step that led here, s: another one than the next right after a change.
+    /// Previous time step, s; differs from the next one right after a change of the time step.
     before: f64,
     u: Vec<Vector3>,
-    /// At `n - 1/2`.
+    /// Velocities at `n - 1/2`, m/s.
     v: Vec<Vector3>,
     internal: Vec<Vector3>,
     external: Vec<Vector3>,
     previous_external: Vec<Vector3>,
     reaction: Vec<f64>,
-    /// Of external forces, supports and damping, J.
+    /// Work of external forces and of supports, and energy lost to damping, J.
     work: [f64; 3],
-    /// The half of this step's damping work that belongs after it, J.
+    /// Half of this step's damping work, which belongs to the next step, J.
     pending: f64,
     start: Option<f64>,
     scale: f64,
-    /// The last of the critical step.
+    /// Last estimate of the critical step.
     estimate: Option<Estimate>,
 }
 
 impl<'a, 'b> Dynamics<'a, 'b> {
-    /// From displacements `u` (m) and velocities `v` (m/s) at t = 0. Refuses a time step beyond the critical one.
+    /// Starts from displacements `u` (m) and velocities `v` (m/s) at t = 0.
+    ///
+    /// # Errors
+    ///
+    /// [`ExplicitError::StepTooLarge`] if the time step exceeds the critical step; also for invalid lengths,
+    /// parameters, masses or degrees of freedom.
     pub fn new(
         force: &'b mut InternalForce<'a>,
         mass: &'b [f64],
@@ -150,7 +160,11 @@ impl<'a, 'b> Dynamics<'a, 'b> {
         Ok(dynamics)
     }
 
-    /// With tools that touch. Their penalties count in the critical step from here on.
+    /// Adds tools that may touch the body. Their penalties count in the critical step from here on.
+    ///
+    /// # Errors
+    ///
+    /// [`ExplicitError::StepTooLarge`] if the time step exceeds the critical step with these penalties.
     pub fn with_tools(mut self, tools: Tools<'b>) -> Result<Dynamics<'a, 'b>, ExplicitError> {
         self.tools = Some(tools);
         if self.params.known.is_none() {
@@ -160,12 +174,16 @@ impl<'a, 'b> Dynamics<'a, 'b> {
         Ok(self)
     }
 
-    /// The tools, as of the last step recorded or made.
+    /// Tools in the state of the last recorded or completed step.
     pub fn tools(&self) -> Option<&Tools<'b>> {
         self.tools.as_ref()
     }
 
-    /// Goes on with another time step (s), if that is no larger than the critical one.
+    /// Continues with another time step (s).
+    ///
+    /// # Errors
+    ///
+    /// [`ExplicitError::StepTooLarge`] if the step exceeds the critical step.
     pub fn set_step(&mut self, dt: f64) -> Result<(), ExplicitError> {
         if !(dt > 0.0 && dt.is_finite()) {
             return Err(ExplicitError::BadParameter {
@@ -186,8 +204,9 @@ impl<'a, 'b> Dynamics<'a, 'b> {
         self.force.body().volume.at().displacement_gradients(&self.u)
     }
 
-    /// Critical step at the present displacements, or that of the last estimate if the body has hardly changed its shape since: an
-    /// estimate takes thirty evaluations of the internal forces, to look takes about one.
+    /// Returns the critical step at the current displacements, or the last estimate if the body has hardly
+    /// changed its shape since. An estimate takes thirty evaluations of the internal forces, the comparison
+    /// of shapes about one.
     pub fn critical_step(&mut self) -> Result<CriticalStep, ExplicitError> {
         let gradients = self.gradients();
         if let Some(last) = self.estimate.as_ref().filter(|last| last.serves(&gradients)) {
@@ -221,12 +240,12 @@ impl<'a, 'b> Dynamics<'a, 'b> {
         &self.u
     }
 
-    /// Velocities half a step back (at the start: those given), m/s.
+    /// Velocities half a step back, m/s; at the start the given velocities.
     pub fn velocities(&self) -> &[Vector3] {
         &self.v
     }
 
-    /// Steps made.
+    /// Number of completed steps.
     pub fn steps(&self) -> usize {
         self.step
     }
@@ -236,13 +255,13 @@ impl<'a, 'b> Dynamics<'a, 'b> {
         self.since.1 + (self.step - self.since.0) as f64 * self.params.dt
     }
 
-    /// Reaction (N) at each prescribed degree of freedom at the last step made.
+    /// Reaction (N) at each prescribed degree of freedom in the last completed step.
     pub fn reactions(&self) -> &[f64] {
         &self.reaction
     }
 
-    /// Makes `steps` steps; `record` sees the balance at every step whose number is a multiple of `every` (0: none),
-    /// before the displacements move on from it.
+    /// Makes `steps` steps. `record` is called with the balance and the displacements at every step whose
+    /// number is a multiple of `every` (0: never), before the displacements advance.
     pub fn run(
         &mut self,
         steps: usize,
@@ -265,10 +284,11 @@ impl<'a, 'b> Dynamics<'a, 'b> {
         Ok(())
     }
 
-    /// Forces at `n`, then velocities at `n + 1/2`; returns the kinetic energy at `n`.
+    /// Computes the forces at `n`, then the velocities at `n + 1/2`, and returns the kinetic energy at `n`,
+    /// J.
     ///
-    /// With `c = alpha dt / 2`: `v_(n+1/2) = ((1 - c) v_(n-1/2) + dt M^-1 (f_ext - f_int)) / (1 + c)`; `dt` is the mean of
-    /// the steps before and after.
+    /// With `c = alpha dt / 2`: `v_(n+1/2) = ((1 - c) v_(n-1/2) + dt M^-1 (f_ext - f_int)) / (1 + c)`; `dt`
+    /// is the mean of the steps before and after.
     fn accelerate(&mut self, external: &mut External) -> Result<f64, ExplicitError> {
         let (step, time) = (self.step, self.time());
         let (before_dt, after_dt) = (self.before, self.params.dt);
@@ -288,12 +308,13 @@ impl<'a, 'b> Dynamics<'a, 'b> {
         let c = 0.5 * self.params.damping * dt;
         let (keep, push) = ((1.0 - c) / (1.0 + c), dt / (1.0 + c));
         let first = step == 0;
-        // From here on what the body holds against its loads, contact included.
+        // From here on, the internal forces are the forces that the body holds against its loads, contact
+        // included.
         for (node, touch) in self.tools.iter().flat_map(Tools::forces) {
             self.internal[node] -= touch;
         }
         if first {
-            // So that the step below ends at v_0 + dt/2 a_0: v_(-1/2) = (1 + c) v_0 - dt/2 M^-1 f.
+            // The step below then ends at v_0 + dt/2 a_0: v_(-1/2) = (1 + c) v_0 - dt/2 M^-1 f.
             for i in 0..self.v.len() {
                 let f = self.external[i] - self.internal[i];
                 self.v[i] = self.v[i] * (1.0 + c) - f * (0.5 * dt / self.mass[i]);
@@ -306,7 +327,7 @@ impl<'a, 'b> Dynamics<'a, 'b> {
         let (mut kinetic, mut moved) = (0.5 * sums.kinetic, sums.moved);
         let [mut lost, mut next_lost] = sums.lost.map(|lost| 0.5 * lost);
         let work = if first { 0.0 } else { 0.5 * before_dt * sums.work };
-        // Prescribed velocities, their share of the energies and the reactions behind them.
+        // Prescribed velocities, their part of the energies and their reactions.
         for (p, reaction) in self.prescribed.iter().zip(&mut self.reaction) {
             let (i, axis) = (p.node as usize, p.axis as usize);
             let m = self.mass[i];
@@ -326,13 +347,13 @@ impl<'a, 'b> Dynamics<'a, 'b> {
             moved += after * after;
             self.v[i][axis] = after;
         }
-        // One sum watches all velocities: it is finite only if each of them is (below 1e154 m/s).
+        // This single sum checks all velocities: it is finite only if each of them is (below 1e154 m/s).
         if !moved.is_finite() {
             return Err(self.not_finite(step, time));
         }
         self.work[0] += work;
-        // `alpha dt/2 v_(n+1/2) . M (v_n + v_(n+1))` per step, v_n the mean of its neighbours: what the kinetic energy
-        // loses, exactly. Half of it is known at n, half at n + 1.
+        // The kinetic energy loses exactly `alpha dt/2 v_(n+1/2) . M (v_n + v_(n+1))` per step, v_n the mean
+        // of its neighbours. Half of it is known at n, half at n + 1.
         let half = 0.5 * self.params.damping * dt;
         if !first {
             self.work[2] += half * lost + self.pending;
@@ -348,7 +369,8 @@ impl<'a, 'b> Dynamics<'a, 'b> {
                 .into_iter()
                 .find_map(|(what, f)| bad(f).map(|node| (what, node)))
                 .unwrap_or_else(|| {
-                    // All are numbers, and the square of one overflows: that of the fastest.
+                    // All values are finite, but the square of one overflows: report the node with the
+                    // largest velocity.
                     let speed = |i: &usize| self.v[*i].amax();
                     let fastest = (0..self.v.len()).max_by(|i, j| speed(i).total_cmp(&speed(j)));
                     ("kinetic energy", fastest.unwrap_or(0))
@@ -356,7 +378,7 @@ impl<'a, 'b> Dynamics<'a, 'b> {
         ExplicitError::NotFinite { step, time, what, node }
     }
 
-    /// `u_(n+1) = u_n + dt v_(n+1/2)`.
+    /// Computes `u_(n+1) = u_n + dt v_(n+1/2)`.
     fn advance(&mut self) {
         let dt = self.params.dt;
         advance(self.force.path(), dt, &self.v, &mut self.u);
@@ -386,7 +408,7 @@ impl<'a, 'b> Dynamics<'a, 'b> {
     fn check_step(&mut self) -> Result<(), ExplicitError> {
         let (step, time, dt) = (self.step, self.time(), self.params.dt);
         let critical = self.critical_step()?.dt;
-        // `!(dt <= critical)`: a NaN must not pass.
+        // A NaN must not pass, hence `!(dt <= critical)`.
         if !(dt <= critical) {
             return Err(ExplicitError::StepTooLarge { step, time, dt, critical });
         }
@@ -394,7 +416,7 @@ impl<'a, 'b> Dynamics<'a, 'b> {
     }
 }
 
-/// Marks the (node, axis) of a list among all degrees of freedom; each may be named once.
+/// Marks the (node, axis) pairs of a list among all degrees of freedom; each pair may occur once.
 pub(super) fn constrained(
     nodes: usize,
     list: impl Iterator<Item = (u32, u8)>,

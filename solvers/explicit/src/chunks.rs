@@ -1,8 +1,8 @@
-//! Elements in chunks of fixed size, each with its own copy of the nodes it touches: the bits of a sum depend on the
-//! chunks and never on which thread ran them.
+//! Elements in chunks of fixed size, each with its own copy of its nodes.
 //!
-//! A chunk reads displacements into its own slots, sums forces in its own slots, and each node then adds up its copies
-//! in the order of the chunks. Colouring costs 30 to 60 % instead, and racing sums change from run to run.
+//! A chunk reads displacements into its own slots and sums forces in its own slots. Each node then adds up
+//! its copies in the order of the chunks. The bits of a sum therefore depend on the chunks, never on the
+//! thread that processed them. Colouring costs 30 to 60 % more, and racing sums change from run to run.
 
 use std::ops::Range;
 
@@ -10,8 +10,8 @@ use rayon::prelude::*;
 
 use shape::Vector3;
 
-/// One node of one chunk: three components and a pad, one AVX2 register. Aligned: every other one would straddle two cache
-/// lines (0.97 of the time of tet4).
+/// Copy of one node in one chunk: three components and a pad, one AVX2 register. The alignment matters:
+/// without it every other slot straddles two cache lines (with it 0.97 of the time of tet4).
 #[derive(Clone, Copy)]
 #[repr(C, align(32))]
 pub(super) struct Slot(pub [f64; 4]);
@@ -23,19 +23,20 @@ impl Slot {
 /// Nodes per task of the sum over copies.
 const NODES: usize = 1024;
 
-/// Which slots belong to which chunk and node.
+/// Assignment of slots to chunks and nodes.
 pub(super) struct Border {
-    /// Slots of each chunk, chunks + 1.
+    /// Start of each chunk's slots, chunks + 1 entries.
     offsets: Vec<usize>,
     /// Node of each slot.
     nodes: Vec<u32>,
-    /// Copies of each node: slots by ascending chunk.
+    /// Start of each node's entries in `copies`, nodes + 1 entries.
     copy_offsets: Vec<u32>,
+    /// Slots of each node, by ascending chunk.
     copies: Vec<u32>,
 }
 
 impl Border {
-    /// From the distinct nodes of every chunk.
+    /// Builds the assignment from the distinct nodes of every chunk.
     pub fn new(node_count: usize, chunks: &[Vec<u32>]) -> Border {
         let nodes: Vec<u32> = chunks.concat();
         let mut offsets = vec![0];
@@ -76,7 +77,8 @@ impl Border {
         self.offsets[chunk]..self.offsets[chunk + 1]
     }
 
-    /// Runs `work(chunk, a, b)` on every chunk with its part of two slot arrays; true when all returned true.
+    /// Runs `work(chunk, a, b)` on every chunk with its part of two slot arrays. Returns true if every call
+    /// returned true.
     pub fn for_each<A: Send, B: Send>(
         &self,
         a: &mut [A],
@@ -93,12 +95,12 @@ impl Border {
             tasks.push((chunk, a_head, b_head));
         }
         let run = |(chunk, a, b): (usize, &mut [A], &mut [B])| work(chunk, a, b);
-        // Without `all`, which stops early: later chunks would keep the forces of an earlier call.
+        // Not `all`, which stops early: later chunks would keep the forces of an earlier call.
         tasks.into_par_iter().map(run).reduce(|| true, |x, y| x & y)
     }
 
-    /// `finish` of the sum of the copies of every node, into `out`. Sums of a whole task before the first `finish` would go
-    /// through memory once more (0.97 of the time of tet4 and hex8 without).
+    /// Writes `finish` of the sum of the copies of every node to `out`. Summing a whole task before the first
+    /// `finish` would pass through memory once more (without this 0.97 of the time of tet4 and hex8).
     pub fn sum<const W: usize, T: Send>(
         &self,
         copy: impl Fn(usize) -> [f64; W] + Sync,
@@ -120,13 +122,13 @@ impl Border {
         });
     }
 
-    /// Nodal forces from the slots.
+    /// Sums the slots to nodal forces, N.
     pub fn forces(&self, slots: &[Slot], f: &mut [Vector3]) {
         self.sum(|slot| slots[slot].0, |[x, y, z, _]| Vector3::new(x, y, z), f);
     }
 }
 
-/// Displacements of a chunk's nodes into its slots.
+/// Copies the displacements of a chunk's nodes into its slots.
 #[inline(always)]
 pub(super) fn load(nodes: &[u32], u: &[Vector3], slots: &mut [Slot]) {
     for (slot, &node) in slots.iter_mut().zip(nodes) {
@@ -135,8 +137,8 @@ pub(super) fn load(nodes: &[u32], u: &[Vector3], slots: &mut [Slot]) {
     }
 }
 
-/// Consecutive runs of `order` of at most `size` items, and the distinct nodes of each in the order of first use.
-/// `number` is called with every entry of an item and its place among the chunk's nodes.
+/// Divides `order` into consecutive runs of at most `size` items, with the distinct nodes of each run in the
+/// order of first use and the positions of each item's nodes among them.
 pub(super) fn split(
     node_count: usize,
     order: &[u32],
@@ -164,12 +166,12 @@ pub(super) fn split(
     chunks
 }
 
-/// One run of items.
+/// Run of items with its nodes.
 pub(super) struct ChunkNodes {
-    /// The items, by their number in the table.
+    /// Items, by their number in the table.
     pub items: Vec<u32>,
     /// Distinct nodes.
     pub nodes: Vec<u32>,
-    /// For every item the places of its nodes among `nodes`.
+    /// Positions of each item's nodes among `nodes`.
     pub local: Vec<Vec<u32>>,
 }

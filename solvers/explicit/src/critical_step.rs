@@ -1,43 +1,44 @@
-//! The critical time step, from the largest eigenvalue of `M^-1 K` by Lanczos.
+//! Critical time step, from the largest eigenvalue of `M^-1 K` by Lanczos.
 
 use shape::SurfaceRows;
 
 use super::{ExplicitError, InternalForce};
 use shape::{Matrix3, Vector3};
 
-/// What to ask of the estimate.
+/// Parameters of the estimate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LanczosParams {
-    /// Lanczos steps; 15 find the largest eigenvalue to a few per cent, from below.
+    /// Number of Lanczos steps; 15 find the largest eigenvalue to a few per cent, from below.
     pub steps: usize,
-    /// Factor on the step, for what the estimate lacks: 0.95.
+    /// Factor on the time step that covers the error of the estimate, such as 0.95.
     pub safety: f64,
 }
 
-/// The estimate.
+/// Estimate of the critical step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CriticalStep {
-    /// `safety * 2 / omega_max`, s.
+    /// Critical time step `safety * 2 / omega_max`, s.
     pub dt: f64,
     /// Largest angular frequency found, rad/s.
     pub omega_max: f64,
-    /// Lanczos steps made: fewer than asked for when the space is exhausted.
+    /// Number of Lanczos steps made: fewer than requested if the space is exhausted.
     pub steps: usize,
 }
 
-/// Change of shape `|dF F^-1|` at any point since an estimate up to which it is kept. Moduli are products of two or four `F^-1`
-/// times a constant or `ln J`: they change by five times that at most in the neo-Hookean law, the frequency by half of it, 5 %, which
-/// the factor of 0.9 on the step covers.
+/// Change of shape `|dF F^-1|` at any point since an estimate up to which the estimate is kept. Moduli are
+/// products of two or four `F^-1` times a constant or `ln J`. In the neo-Hookean law they change by at most
+/// five times the change of shape, and the frequency by half of that, 5 %, which the factor of 0.9 on the
+/// step covers.
 const KEPT: f64 = 0.02;
 
-/// An estimate, with the displacement gradients that it is of.
+/// Estimate, with the displacement gradients for which it was made.
 pub(super) struct Estimate {
     pub critical: CriticalStep,
     pub gradients: Vec<Matrix3>,
 }
 
 impl Estimate {
-    /// Whether it serves a body of these gradients.
+    /// Whether the estimate is valid for a body with these gradients.
     pub fn serves(&self, gradients: &[Matrix3]) -> bool {
         self.gradients.iter().zip(gradients).all(|(then, now)| {
             let inverse = (Matrix3::identity() + then).try_inverse();
@@ -46,11 +47,12 @@ impl Estimate {
     }
 }
 
-/// Springs to the ground all over a surface, the same in every direction: `sum_q w k N_I N_J 1`. Where tools may touch by
-/// penalty this is no less than their tangent, whichever points touch, so a step that is stable with it stays so in contact.
+/// Ground springs on a whole surface, equal in every direction: `sum_q w k N_I N_J 1`. With the penalty of
+/// tools as modulus, the springs are at least as stiff as the contact tangent, whichever points touch. A step
+/// that is stable with them stays stable in contact.
 #[derive(Clone, Copy, Debug)]
 pub struct Springs<'a> {
-    /// Where.
+    /// Surface that carries the springs.
     pub surface: &'a SurfaceRows,
     /// Stiffness per undeformed area, Pa/m.
     pub modulus: f64,
@@ -71,12 +73,16 @@ impl Springs<'_> {
     }
 }
 
-/// Critical step of central differences at the displacements `u` (m) with lumped `mass` (kg). Where `free` is false a
-/// degree of freedom (3 node + axis) is constrained.
+/// Estimates the critical step of central differences at the displacements `u` (m) with lumped `mass` (kg). A
+/// degree of freedom `3 node + axis` is constrained if `free` returns false for it.
 ///
-/// Lanczos on `A = M^-1/2 K M^-1/2`, `K v` by the central difference of internal forces at a displacement of 1e-6 of
-/// a length taken from the body's own size; full reorthogonalisation. The start vector is fixed pseudo-random noise,
-/// so the same body gives the same step.
+/// The method is Lanczos with full reorthogonalisation on `A = M^-1/2 K M^-1/2`. `K v` is a central
+/// difference of internal forces, at a displacement of 1e-6 of a length taken from the body's own size. The
+/// start vector is fixed pseudo-random noise, so the same body gives the same step.
+///
+/// # Errors
+///
+/// [`ExplicitError::BadParameter`] for invalid `params`, [`ExplicitError::Inverted`] if a point is inverted.
 pub fn critical_step(
     force: &mut InternalForce,
     mass: &[f64],
@@ -87,7 +93,7 @@ pub fn critical_step(
     critical_step_touching(force, mass, u, free, None, params)
 }
 
-/// As [`critical_step`], of the body with springs on its surface.
+/// Estimates the critical step as [`critical_step`], for the body with springs on its surface.
 pub fn critical_step_touching(
     force: &mut InternalForce,
     mass: &[f64],
@@ -128,7 +134,7 @@ pub fn critical_step_touching(
             w[i] = if constrained[i] { 0.0 } else { w[i] / root[i] };
         }
         alpha.push(dot(&w, v));
-        // Twice is enough (Parlett): the basis stays orthogonal to rounding.
+        // Two passes are enough (Parlett): the basis stays orthogonal to rounding.
         for _ in 0..2 {
             for q in &basis {
                 let c = dot(&w, q);
@@ -148,7 +154,7 @@ pub fn critical_step_touching(
     Ok(CriticalStep { dt: safety * 2.0 / omega_max, omega_max, steps: alpha.len() })
 }
 
-/// `K v` by `(f(u + h v) - f(u - h v)) / 2 h`.
+/// Product `K v` by `(f(u + h v) - f(u - h v)) / 2 h`.
 struct Difference<'a, 'b> {
     force: &'a mut InternalForce<'b>,
     u: &'a [Vector3],
@@ -174,12 +180,13 @@ impl Difference<'_, '_> {
     }
 }
 
-/// A length of the size of the smallest spacing: one over the largest shape gradient, m.
+/// Returns a length of the order of the smallest spacing: the inverse of the largest shape gradient, m.
 fn spacing(force: &InternalForce) -> f64 {
     1.0 / force.body().volume.grads().iter().map(Vector3::norm).fold(f64::MIN_POSITIVE, f64::max)
 }
 
-/// Unit vector of numbers in (-1, 1) by a 64-bit linear congruence (Knuth's MMIX constants), zero where constrained.
+/// Returns a unit vector of numbers in (-1, 1) by a 64-bit linear congruence (Knuth's MMIX constants), zero
+/// at constrained degrees of freedom.
 fn noise(n: usize, constrained: &[bool]) -> Vec<f64> {
     let mut state = 1u64;
     let mut v: Vec<f64> = (0..n)
@@ -197,7 +204,8 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-/// Largest eigenvalue of the symmetric tridiagonal matrix by bisection on the number of negative pivots.
+/// Returns the largest eigenvalue of a symmetric tridiagonal matrix by bisection on the number of negative
+/// pivots.
 fn largest_eigenvalue(alpha: &[f64], beta: &[f64]) -> f64 {
     let radius = |i: usize| {
         let left = if i > 0 { beta[i - 1].abs() } else { 0.0 };

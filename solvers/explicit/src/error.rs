@@ -1,72 +1,73 @@
-//! What can go wrong in explicit dynamics.
+//! Errors of explicit dynamics.
 
 use contact::ContactError;
 
-/// A quadrature point that is inside out, or whose displacements are not numbers.
+/// Quadrature point that is inverted, or whose displacements are not numbers.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[error("quadrature point {point} has det F = {det_f}; it must be positive")]
 pub struct InvertedPoint {
     /// Row of the volume quadrature.
     pub point: usize,
-    /// `det F` there; NaN where a displacement is.
+    /// Value of `det F` at the point; NaN if a displacement is NaN.
     pub det_f: f64,
 }
 
-/// Why an explicit computation cannot start or go on.
+/// Reason why an explicit computation cannot start or continue.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum ExplicitError {
-    /// Two arrays that should be of one length.
+    /// An array has the wrong length.
     #[error("{what}: {found} given, {expected} needed")]
     Length {
-        /// Which array.
+        /// Name of the array.
         what: &'static str,
-        /// Its length.
+        /// Length of the array.
         found: usize,
-        /// The length it needs.
+        /// Required length.
         expected: usize,
     },
-    /// A region index beyond the laws.
+    /// A region index has no law.
     #[error("point {point} lies in region {region}, but there are {laws} laws")]
     NoLaw {
         /// Quadrature point.
         point: usize,
-        /// Its region.
+        /// Region of the point.
         region: usize,
         /// Number of laws.
         laws: usize,
     },
-    /// A parameter out of its range.
+    /// A parameter is out of its range.
     #[error("{what} is {value}; it must be {allowed}")]
     BadParameter {
-        /// Which parameter.
+        /// Name of the parameter.
         what: &'static str,
-        /// Its value.
+        /// Value of the parameter.
         value: f64,
-        /// What is allowed.
+        /// Allowed values.
         allowed: &'static str,
     },
-    /// A node whose lumped mass is not positive: no integration point sees it, or its values sum to less than zero.
+    /// The lumped mass of a node is not positive: no integration point sees the node, or its values sum to
+    /// less than zero.
     #[error("node {node} has lumped mass {mass:e} kg; it must be positive")]
     NodalMass {
         /// The node.
         node: usize,
-        /// Its mass, kg.
+        /// Mass of the node, kg.
         mass: f64,
     },
-    /// A degree of freedom that is not there, or is prescribed twice.
+    /// A degree of freedom does not exist, or is prescribed twice.
     #[error("node {node}, axis {axis} cannot be prescribed: {why}")]
     BadDof {
         /// The node.
         node: usize,
         /// The axis.
         axis: u8,
-        /// Why not.
+        /// Reason.
         why: &'static str,
     },
-    /// A point inside out before the first step.
+    /// A point is inverted before the first step.
     #[error(transparent)]
     Inverted(#[from] InvertedPoint),
-    /// A point turned inside out on the way.
+    /// A point was inverted during the motion.
     #[error("step {step} (t = {time:e} s): {at}")]
     InvertedAt {
         /// Step.
@@ -76,19 +77,19 @@ pub enum ExplicitError {
         /// The point and its `det F`.
         at: InvertedPoint,
     },
-    /// A displacement or a force that is not a number.
+    /// A displacement or a force is not a number.
     #[error("step {step} (t = {time:e} s): the {what} of node {node} is not finite")]
     NotFinite {
         /// Step.
         step: usize,
         /// Time, s.
         time: f64,
-        /// Which quantity.
+        /// Name of the quantity.
         what: &'static str,
         /// Node.
         node: usize,
     },
-    /// A time step beyond the critical one: the motion would grow without bound.
+    /// The time step exceeds the critical step: the motion would grow without bound.
     #[error("step {step} (t = {time:e} s): the time step {dt:e} s exceeds the critical {critical:e} s")]
     StepTooLarge {
         /// Step.
@@ -100,7 +101,7 @@ pub enum ExplicitError {
         /// Critical time step, s.
         critical: f64,
     },
-    /// Contact without meaning in a state on the way.
+    /// Contact has no meaning in a state during the motion.
     #[error("step {step} (t = {time:e} s): tool[{tool}]: {cause}")]
     ContactAt {
         /// Step.
@@ -109,10 +110,10 @@ pub enum ExplicitError {
         time: f64,
         /// Index of the tool.
         tool: usize,
-        /// Why.
+        /// Error of the contact.
         cause: ContactError,
     },
-    /// A tool so light that it would jump off what it touches within a step.
+    /// A tool is so light that it would jump off the tissue within a step.
     #[error(
         "step {step} (t = {time:e} s): tool {tool} of {mass:e} kg swings on its contact with a critical step of \
          {critical:e} s; it must be at least twice the time step {dt:e} s: give it more mass"
@@ -122,19 +123,19 @@ pub enum ExplicitError {
         step: usize,
         /// Time, s.
         time: f64,
-        /// Its index.
+        /// Index of the tool.
         tool: usize,
-        /// Its mass, kg.
+        /// Mass of the tool, kg.
         mass: f64,
         /// Time step, s.
         dt: f64,
-        /// `2 sqrt(m / (k_n A))` with the area in contact, s.
+        /// Critical step of the tool, `2 sqrt(m / (k_n A))` with the area in contact, s.
         critical: f64,
     },
-    /// A relaxation that has not come to rest.
+    /// The relaxation has not come to rest.
     #[error("not at rest after {steps} steps: estimated relative error {error:e} (tolerance {tolerance:e})")]
     NotRelaxed {
-        /// Steps made.
+        /// Number of steps made.
         steps: usize,
         /// Estimated relative error.
         error: f64,

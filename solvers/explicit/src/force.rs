@@ -1,4 +1,4 @@
-//! Internal forces of a body by the fastest kernel that fits its table and laws.
+//! Internal forces of a body, computed by the fastest kernel that fits its table and laws.
 
 use shape::{DilationGroups, Layout, VolumeRows};
 
@@ -11,16 +11,16 @@ use lanes::LanePath;
 use material::{Law, Material};
 use shape::{Matrix3, Vector3};
 
-/// A body for explicit computation: a quadrature with its laws.
+/// Body for explicit computation: a quadrature with its laws.
 #[derive(Clone, Copy)]
 pub struct ExplicitBody<'a> {
     /// The volume quadrature.
     pub volume: &'a VolumeRows,
     /// Laws, by region index.
     pub laws: &'a [Law],
-    /// Region index of every quadrature point; empty when all are of region 0.
+    /// Region index of every quadrature point; empty if all points are in region 0.
     pub region: &'a [u16],
-    /// Points that share one dilation (F-bar), or none.
+    /// Groups of points that share one dilation (F-bar), if any.
     pub groups: Option<&'a DilationGroups>,
 }
 
@@ -54,7 +54,7 @@ impl ExplicitBody<'_> {
     }
 }
 
-/// The internal force `f_I(u) = dE/du_I` of a body, ready to be evaluated many times.
+/// Evaluator of the internal force `f_I(u) = dE/du_I` of a body, for many evaluations.
 pub struct InternalForce<'a> {
     body: ExplicitBody<'a>,
     engine: Engine,
@@ -69,7 +69,11 @@ enum Engine {
 }
 
 impl<'a> InternalForce<'a> {
-    /// Chooses the kernel by what the table says of itself and by the laws; lanes run on `path`.
+    /// Chooses the kernel from the layout of the table and the laws. Lane kernels run on `path`.
+    ///
+    /// # Errors
+    ///
+    /// [`ExplicitError::Length`] or [`ExplicitError::NoLaw`] if the parts of the body do not fit together.
     pub fn new(body: ExplicitBody<'a>, path: LanePath) -> Result<InternalForce<'a>, ExplicitError> {
         body.check()?;
         let laws = || LaneLaw::of_regions(&body);
@@ -85,7 +89,11 @@ impl<'a> InternalForce<'a> {
         Ok(InternalForce { body, engine: engine.unwrap_or(Engine::Plain), path })
     }
 
-    /// The plain loop, whatever the table: the reference of the other kernels.
+    /// Uses the plain loop for any table: the reference of the other kernels.
+    ///
+    /// # Errors
+    ///
+    /// As [`InternalForce::new`].
     pub fn plain(body: ExplicitBody<'a>) -> Result<InternalForce<'a>, ExplicitError> {
         body.check()?;
         Ok(InternalForce { body, engine: Engine::Plain, path: LanePath::PORTABLE })
@@ -101,7 +109,7 @@ impl<'a> InternalForce<'a> {
         self.body.volume.rows().node_count()
     }
 
-    /// The kernel chosen and its instructions.
+    /// Returns the chosen kernel and its instruction set.
     pub fn info(&self) -> KernelInfo {
         let kernel = match &self.engine {
             Engine::Plain => Kernel::Plain,
@@ -112,12 +120,17 @@ impl<'a> InternalForce<'a> {
         KernelInfo { kernel, path: kernel.is_parallel().then_some(self.path) }
     }
 
-    /// Instructions asked for; the plain loop uses none of its own.
+    /// Requested instruction set; the plain loop does not use it.
     pub fn path(&self) -> LanePath {
         self.path
     }
 
-    /// Internal forces (N) at nodal displacements `u` (m). On an error `f` holds no forces.
+    /// Computes the internal forces (N) at nodal displacements `u` (m). After an error, `f` contains no valid
+    /// forces.
+    ///
+    /// # Errors
+    ///
+    /// [`InvertedPoint`] if `J` is not positive at a point.
     pub fn evaluate(&mut self, u: &[Vector3], f: &mut [Vector3]) -> Result<(), InvertedPoint> {
         assert_eq!((u.len(), f.len()), (self.node_count(), self.node_count()), "one vector per node");
         let not_inverted = match &mut self.engine {
@@ -128,13 +141,17 @@ impl<'a> InternalForce<'a> {
         };
         if !not_inverted {
             plain::check(self.body.volume, u)?;
-            // A kernel and the plain loop may round `J` on two sides of zero: the plain loop decides.
+            // A kernel and the plain loop may round `J` to different sides of zero: the plain loop decides.
             plain_forces(&self.body, u, f)?;
         }
         Ok(())
     }
 
-    /// Strain energy (J) at nodal displacements `u` (m), by the plain loop.
+    /// Computes the strain energy (J) at nodal displacements `u` (m) by the plain loop.
+    ///
+    /// # Errors
+    ///
+    /// [`InvertedPoint`] if `J` is not positive at a point.
     pub fn energy(&self, u: &[Vector3]) -> Result<f64, InvertedPoint> {
         let density = |q: usize, h: &Matrix3| self.body.law(q).energy(h);
         match self.body.groups {

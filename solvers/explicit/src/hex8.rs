@@ -1,9 +1,9 @@
-//! Trilinear hexahedra with 2 x 2 x 2 Gauss points, standard or with one mean dilation per element: eight elements in
-//! the lanes of one block.
+//! Trilinear hexahedra with 2 x 2 x 2 Gauss points, standard or with one mean dilation per element; eight
+//! elements in the lanes of one block.
 //!
-//! At every point `grad N_a = A_q dN_a/dxi`, with `dN_a/dxi` the same for all elements: nine numbers instead of 24 are
-//! stored per point (656 bytes per element instead of 1616), and `du/dxi` takes 156 operations per element and three
-//! components for what would be 576. Forces go back by the transpose of each step.
+//! At every point `grad N_a = A_q dN_a/dxi`, with `dN_a/dxi` the same for all elements. Nine numbers instead
+//! of 24 are stored per point (656 bytes per element instead of 1616). `du/dxi` takes 156 operations per
+//! element and three components instead of 576. Forces are computed by the transpose of each step.
 
 use geometry::element::HEX_CORNERS;
 use shape::DilationGroups;
@@ -18,7 +18,7 @@ use lanes::{LANES, LanePath};
 use shape::locality_order;
 use shape::{Matrix3, Point3, Vector3};
 
-/// Elements per chunk: some 1400 distinct nodes.
+/// Elements per chunk, with some 1400 distinct nodes.
 const SIZE: usize = 1024;
 
 pub(super) struct Hex8 {
@@ -32,16 +32,17 @@ pub(super) struct Hex8 {
 
 struct Chunk {
     blocks: Vec<Block>,
-    /// Blocks up to this one are of this region.
+    /// Runs of blocks with one region: end of the run, and region index.
     runs: Vec<(usize, u16)>,
 }
 
 impl Hex8 {
-    /// Of rows laid out as trilinear hexahedra; none for groups other than one per element, or a law that changes inside one.
+    /// Builds the kernel from rows laid out as trilinear hexahedra. Returns `None` for groups other than one
+    /// per element, or if a law changes within an element.
     pub fn new(body: &ExplicitBody, laws: Vec<LaneLaw>) -> Option<Hex8> {
         let (volume, rows) = (body.volume, body.volume.rows());
         let count = rows.len() / 8;
-        // A cell is of one region; a table that says otherwise is none of a mesh.
+        // A cell belongs to one region; a table in which it does not is not from a mesh.
         if (0..rows.len()).any(|q| body.region(q) != body.region(q - q % 8)) {
             return None;
         }
@@ -53,7 +54,8 @@ impl Hex8 {
                 return None;
             }
         }
-        // Which Gauss point comes where: lowest axis fastest, corner order, ... whatever the first element shows.
+        // Order of the Gauss points, such as lowest axis fastest or corner order, as found in the first
+        // element.
         let tables = NODE.map(|a| reference(&HEX_CORNERS[a]));
         let place: Vec<usize> = (0..8)
             .map(|q| (0..8).find(|&c| fit(volume.row(q).1, &tables[c]).is_some()))
@@ -79,7 +81,7 @@ impl Hex8 {
         if self.mean { Kernel::Hex8MeanDilation } else { Kernel::Hex8 }
     }
 
-    /// Internal forces; false where some `J` is not positive.
+    /// Computes internal forces, N. Returns false if `J` is not positive somewhere.
     pub fn forces(&mut self, path: LanePath, u: &[Vector3], f: &mut [Vector3]) -> bool {
         let Hex8 { border, chunks, u: slots, f: sums, laws, mean } = self;
         let not_inverted = border.for_each(slots, sums, |c, slots, sums| {

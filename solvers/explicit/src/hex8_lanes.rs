@@ -1,11 +1,13 @@
 //! Kernels of the trilinear hexahedron: eight elements in the lanes of one block.
 //!
-//! Three passes over the eight points: `H` with its invariants, the law, the stress carried back. In one pass a point is a
-//! chain of some 150 cycles that fills the window of the processor; apart, points overlap, and with one dilation per
-//! element the second half finds `H` where the first left it (together 0.70 and 0.57 of the time). The last pass is all
-//! products, at one vector per cycle: sums and shuffles of the next block's gather fit beside them (0.95 of the time).
+//! The kernels make three passes over the eight points: `H` with its invariants, the law, and the stress
+//! carried back. In a single pass a point is a chain of some 150 cycles that fills the out-of-order window of
+//! the processor. In separate passes the points overlap, and with one dilation per element the second half
+//! reuses `H` of the first half (together 0.70 and 0.57 of the time). The last pass consists of products, at
+//! one vector per cycle. The sums and shuffles of the next block's gather fit between them (0.95 of the
+//! time).
 //!
-//! Every loop over lanes stands in a function of its own: arrays that come in by reference are known not to overlap, and
+//! Every loop over lanes is in a function of its own. Arrays passed by reference are known not to overlap;
 //! without that knowledge a loop of eight stays scalar, at three times the time.
 
 use super::chunks::Slot;
@@ -17,14 +19,14 @@ use material::lane::invariants::{Coefficients, add_cofactor, piola, pressed};
 use material::lane::{LANES, LaneStrain, Lanes};
 use material::{Law, Volumetric};
 
-/// Eight elements; points and nodes by index bits.
+/// Block of eight elements; points and nodes are indexed by corner bits.
 #[repr(C, align(64))]
 pub(super) struct Block {
     pub points: [Point; 8],
     pub nodes: [[u16; LANES]; 8],
 }
 
-/// `A_q / 8`, [3 beta + j], and the weight.
+/// Map `A_q / 8`, [3 beta + j], and weight of a point.
 #[derive(Clone, Copy)]
 pub(super) struct Point {
     pub map: [Lanes; 9],
@@ -35,24 +37,25 @@ impl Point {
     pub const EMPTY: Point = Point { map: [[0.0; LANES]; 9], weight: [0.0; LANES] };
 }
 
-/// What the passes leave for one another. Aligned: registers of 64 bytes would otherwise straddle cache lines.
+/// Intermediate results of the passes. The alignment keeps 64-byte registers within cache lines.
 #[repr(align(64))]
 struct Scratch {
-    /// Displacements of the nodes against the first, [component][index bits].
+    /// Displacements of the nodes relative to the first node, [component][corner bits], m.
     u: [[Lanes; 8]; 3],
-    /// Forces of the nodes, likewise.
+    /// Forces of the nodes, [component][corner bits], N.
     f: [[Lanes; 8]; 3],
-    /// `8 du_i/dxi_beta`, [i][beta][value].
+    /// Derivatives `8 du_i/dxi_beta`, [i][beta][value].
     slopes: [[[Lanes; 4]; 3]; 3],
-    /// Of the points; in place of `H` at last `S_i beta = sum_j w P_ij A_j beta`, [3 i + beta].
+    /// Strains of the points. In the last pass `H` is replaced by `S_i beta = sum_j w P_ij A_j beta`, [3 i +
+    /// beta].
     points: [LaneStrain; 8],
-    /// Of the stress.
+    /// Coefficients of the stress at the points.
     coefficients: [[Lanes; 3]; 8],
-    /// Of a law with lanes of its own.
+    /// Stress at the points, for laws with their own lane code, Pa.
     stress: [[Lanes; 9]; 8],
-    /// Of each element: volume, `w (J - 1)`, `w mu b`.
+    /// Sums of each element: volume, `w (J - 1)`, `w mu b`.
     sums: [Lanes; 3],
-    /// `J^(2/3)` and `p` of each element.
+    /// Shared values of each element: `J^(2/3)` and `p`.
     shared: [Lanes; 2],
 }
 
@@ -69,11 +72,11 @@ impl Scratch {
     };
 }
 
-/// One node.
+/// Gathers the displacements of node `k` relative to the first node.
 #[inline(always)]
 fn gather<const BITS: usize>(block: &Block, k: usize, u: &[Slot], nodal: &mut [[Lanes; 8]; 3]) {
     assert!(within(&[block.nodes[0], block.nodes[k]], u.len()));
-    // SAFETY: the nodes were just looked at, and a kernel has the registers of its path.
+    // SAFETY: the nodes were checked above, and a kernel runs with the registers of its path.
     let lanes = unsafe {
         let origin = lanes_of::<BITS>(u, &block.nodes[0], &[[0.0; LANES]; 3]);
         lanes_of::<BITS>(u, &block.nodes[k], &origin)
@@ -83,11 +86,11 @@ fn gather<const BITS: usize>(block: &Block, k: usize, u: &[Slot], nodal: &mut [[
     }
 }
 
-/// One component.
+/// Computes the derivatives of one component.
 #[inline(always)]
 fn derivatives(v: &[Lanes; 8], [x, y, z]: &mut [[Lanes; 4]; 3]) {
     for l in 0..LANES {
-        // From the first node on.
+        // Values are relative to the first node.
         let d = slopes([0.0, v[1][l], v[2][l], v[3][l], v[4][l], v[5][l], v[6][l], v[7][l]]);
         (x[0][l], x[1][l], x[2][l], x[3][l]) = (d[0][0], d[0][1], d[0][2], d[0][3]);
         (y[0][l], y[1][l], y[2][l], y[3][l]) = (d[1][0], d[1][1], d[1][2], d[1][3]);
@@ -95,7 +98,7 @@ fn derivatives(v: &[Lanes; 8], [x, y, z]: &mut [[Lanes; 4]; 3]) {
     }
 }
 
-/// `H_ij = sum_beta du_i/dxi_beta A_j beta` at the point of index bits `q`.
+/// Computes `H_ij = sum_beta du_i/dxi_beta A_j beta` at the point with corner bits `q`.
 #[inline(always)]
 fn strain<const FMA: bool>(d: &[[[Lanes; 4]; 3]; 3], map: &[Lanes; 9], q: usize, out: &mut LaneStrain) {
     let m = madd::<FMA>;
@@ -112,7 +115,7 @@ fn strain<const FMA: bool>(d: &[[[Lanes; 4]; 3]; 3], map: &[Lanes; 9], q: usize,
     }
 }
 
-/// `good` turns 0 where `J` is not positive.
+/// Computes the stress coefficients of a point. `good` becomes 0 in lanes where `J` is not positive.
 #[inline(always)]
 fn law<const FMA: bool>(
     w: &Lanes,
@@ -129,7 +132,8 @@ fn law<const FMA: bool>(
     }
 }
 
-/// As [`law`] but for the shared dilation; `sums` are the point's parts of volume, `w (J - 1)` and `w mu b`.
+/// Computes the coefficients as [`law`] without the shared dilation, and adds the point's parts of volume,
+/// `w (J - 1)` and `w mu b` to `sums`.
 #[inline(always)]
 fn isochoric<const FMA: bool>(
     w: &Lanes,
@@ -150,7 +154,7 @@ fn isochoric<const FMA: bool>(
     }
 }
 
-/// The point's parts of volume and `w (J - 1)`.
+/// Adds the point's parts of volume and `w (J - 1)` to `sums`.
 #[inline(always)]
 fn volumes<const FMA: bool>(w: &Lanes, strain: &LaneStrain, sums: &mut [Lanes; 3]) {
     for l in 0..LANES {
@@ -160,12 +164,12 @@ fn volumes<const FMA: bool>(w: &Lanes, strain: &LaneStrain, sums: &mut [Lanes; 3
     }
 }
 
-/// `J^(2/3)` and `p` of the elements.
+/// Computes `J^(2/3)` and `p` of the elements.
 #[inline(always)]
 fn share<const FMA: bool>(sums: &[Lanes; 3], [mu, lambda, quadratic]: [f64; 3], out: &mut [Lanes; 2]) {
     for l in 0..LANES {
         let v = sums[0][l];
-        // A lane left over has no volume.
+        // An unused lane has no volume.
         let per_volume = if v > 0.0 { 1.0 / v } else { 0.0 };
         let [s, p] = close_group::<FMA>(
             sums[1][l] * per_volume,
@@ -177,7 +181,7 @@ fn share<const FMA: bool>(sums: &[Lanes; 3], [mu, lambda, quadratic]: [f64; 3], 
     }
 }
 
-/// `S_i beta` of one point in place of its `H`.
+/// Replaces `H` of one point by `S_i beta`.
 #[inline(always)]
 fn pull_back<const FMA: bool>(
     map: &[Lanes; 9],
@@ -191,7 +195,7 @@ fn pull_back<const FMA: bool>(
     }
 }
 
-/// As [`pull_back`], of the stress `p` and the pressure of the element.
+/// Replaces `H` as [`pull_back`], for the stress `p` and the pressure of the element.
 #[inline(always)]
 fn pull_back_stress<const FMA: bool>(
     point: &Point,
@@ -224,11 +228,11 @@ fn pull_back_lane<const FMA: bool>(map: &[Lanes; 9], p: &[f64; 9], l: usize, out
     }
 }
 
-/// The transpose of [`derivatives`], of component `i`.
+/// Applies the transpose of [`derivatives`], for component `i`.
 #[inline(always)]
 fn derivatives_back(s: &[LaneStrain; 8], i: usize, out: &mut [Lanes; 8]) {
     for l in 0..LANES {
-        // A value belongs to the two points along the axis it does not depend on.
+        // Each value belongs to the two points along the axis on which it does not depend.
         let two = |beta: usize, a: usize, b: usize| s[a].h[3 * i + beta][l] + s[b].h[3 * i + beta][l];
         let v = slopes_back(&[
             [two(0, 0, 1), two(0, 2, 3), two(0, 4, 5), two(0, 6, 7)],
@@ -249,7 +253,7 @@ fn scatter<const BITS: usize>(block: &Block, [x, y, z]: &[[Lanes; 8]; 3], f: &mu
     }
 }
 
-/// Displacements of the nodes, gathered before, to `H` and invariants of the points.
+/// Computes `H` and invariants of the points from the gathered displacements.
 #[inline(always)]
 fn strains<const FMA: bool>(block: &Block, x: &mut Scratch) {
     for i in 0..3 {
@@ -260,7 +264,7 @@ fn strains<const FMA: bool>(block: &Block, x: &mut Scratch) {
     }
 }
 
-/// `S` of the points to forces of the nodes, added to `f`.
+/// Computes nodal forces from `S` of the points, and adds them to `f`.
 #[inline(always)]
 fn forces<const FMA: bool, const BITS: usize>(block: &Block, x: &mut Scratch, f: &mut [Slot]) {
     for i in 0..3 {
@@ -270,7 +274,8 @@ fn forces<const FMA: bool, const BITS: usize>(block: &Block, x: &mut Scratch, f:
 }
 
 on_path! {
-    /// Internal forces of blocks (one at least) of one law, added to `f`; false where some `J` is not positive.
+    /// Adds internal forces of blocks (at least one) of one law to `f`. Returns false if `J` is not positive
+    /// somewhere.
     pub(super) fn internal(path: LanePath, blocks: &[Block], law: &LaneLaw, u: &[Slot], f: &mut [Slot]) -> bool = internal_lanes::<BITS>
 }
 
@@ -289,7 +294,7 @@ fn internal_lanes<const FMA: bool, const BITS: usize>(
 }
 
 on_path! {
-    /// As [`internal`] with one dilation per element, the mean over its points.
+    /// Adds internal forces as [`internal`], with one dilation per element, the mean over its points.
     pub(super) fn dilated(path: LanePath, blocks: &[Block], law: &LaneLaw, u: &[Slot], f: &mut [Slot]) -> bool = dilated_lanes::<BITS>
 }
 
@@ -368,7 +373,7 @@ fn dilated_neo_hookean<const FMA: bool, const BITS: usize>(
     good == [1.0; LANES]
 }
 
-/// Any other law, point by point; the mean dilation acts on its `volume`.
+/// Computes any other law point by point; the mean dilation acts on its `volume`.
 #[inline(always)]
 fn other<const FMA: bool, const BITS: usize>(
     path: LanePath,

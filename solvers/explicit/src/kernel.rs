@@ -1,23 +1,23 @@
-//! Which kernel evaluates the internal forces, for plans and records.
+//! Names of the kernels for internal forces, for plans and records.
 
 use lanes::LanePath;
 
-/// The kernels, chosen by table, dilation groups and laws.
+/// Kernel for internal forces, chosen by table, dilation groups and laws.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kernel {
-    /// Tetrahedra of four nodes, eight at a time.
+    /// Tetrahedra with four nodes, eight at a time.
     Tet4,
-    /// The same with nodal-mean dilation.
+    /// Tetrahedra with four nodes and nodal-mean dilation, eight at a time.
     Tet4NodalDilation,
     /// Trilinear hexahedra with eight Gauss points, eight elements at a time.
     Hex8,
-    /// The same with one mean dilation per element.
+    /// Trilinear hexahedra with one mean dilation per element, eight at a time.
     Hex8MeanDilation,
     /// Rows of any length, eight points at a time.
     Rows,
-    /// One point after another on one thread: several times slower. It serves dilation groups other than those above, and
-    /// all groups where a law is no sum of a part in the change of shape and one in that of volume (linear,
-    /// St. Venant-Kirchhoff).
+    /// One point after another on one thread, several times slower. Used for dilation groups other than those
+    /// above, and for all groups if a law does not split into a part for shape change and a part for volume
+    /// change (linear, St. Venant-Kirchhoff).
     Plain,
 }
 
@@ -32,7 +32,7 @@ impl Kernel {
         Kernel::Plain,
     ];
 
-    /// Name for the record.
+    /// Returns the name for records.
     pub fn name(self) -> &'static str {
         match self {
             Kernel::Tet4 => "tet4",
@@ -44,17 +44,17 @@ impl Kernel {
         }
     }
 
-    /// Whether it runs in lanes and on all threads.
+    /// Whether the kernel runs in lanes and on all threads.
     pub fn is_parallel(self) -> bool {
         self != Kernel::Plain
     }
 }
 
-/// What evaluates the internal forces of a body; known before the first evaluation.
+/// Kernel and instruction set for the internal forces of a body; known before the first evaluation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct KernelInfo {
     /// The kernel.
     pub kernel: Kernel,
-    /// Instructions of its lanes; none in the plain loop.
+    /// Instruction set of its lanes; `None` for the plain loop.
     pub path: Option<LanePath>,
 }

@@ -1,8 +1,9 @@
 //! Explicit computation in the reference configuration: internal forces, lumped mass, critical step, central
-//! differences and dynamic relaxation. No stiffness is ever assembled.
+//! differences and dynamic relaxation. No stiffness matrix is assembled.
 //!
-//! [`InternalForce`] evaluates the nodal forces of an [`ExplicitBody`]: by lanes, one kernel for each kind of table, or by a plain loop,
-//! which every kernel is tested against. [`Dynamics`] steps a body in time, [`relax`] finds its rest.
+//! [`InternalForce`] evaluates the nodal forces of an [`ExplicitBody`]: in lanes, with one kernel for each
+//! kind of table, or by a plain loop against which every kernel is tested. [`Dynamics`] steps a body in time,
+//! and [`relax`] finds its static equilibrium.
 //!
 //! ```
 //! use explicit::{ExplicitBody, InternalForce};

@@ -4,20 +4,20 @@ use shape::VolumeRows;
 
 use super::ExplicitError;
 
-/// How the consistent mass matrix `M_IJ = sum_q rho w N_I N_J` is brought onto its diagonal.
+/// Method of lumping the consistent mass matrix `M_IJ = sum_q rho w N_I N_J` onto its diagonal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Lumping {
-    /// Row sums, `m_I = sum_q rho w N_I`: for linear elements and moving least squares. The corners of quadratic
-    /// elements would get zero or negative mass.
+    /// Row sums, `m_I = sum_q rho w N_I`, for linear elements and moving least squares. The corners of
+    /// quadratic elements would get zero or negative mass.
     RowSum,
-    /// Diagonal scaling of Hinton, Rock & Zienkiewicz (1976), point set by point set: the diagonal `sum_q rho w N_I^2`
-    /// scaled to the mass of the element. Always positive.
+    /// Diagonal scaling (Hinton, Rock & Zienkiewicz 1976), element by element: the diagonal
+    /// `sum_q rho w N_I^2` scaled to the mass of the element. Always positive.
     DiagonalScaling,
 }
 
 impl Lumping {
-    /// Diagonal scaling where some shape value is negative enough to be quadratic (rows of 10 or 20 nodes of one
-    /// length), row sums elsewhere.
+    /// Returns diagonal scaling for tables of quadratic elements (all rows with 10 or all with 20 nodes), row
+    /// sums for all other tables.
     pub fn for_table(volume: &VolumeRows) -> Lumping {
         match volume.rows().uniform_len() {
             Some(10 | 20) => Lumping::DiagonalScaling,
@@ -26,8 +26,12 @@ impl Lumping {
     }
 }
 
-/// Nodal masses (kg), all positive; their sum is `sum_q rho w`. `density` (kg/m^3) by region index, `region` of every
-/// point or empty when all are of region 0.
+/// Computes nodal masses (kg), all positive; their sum is `sum_q rho w`. `density` (kg/m^3) is given by
+/// region index, `region` for every point; `region` is empty if all points are in region 0.
+///
+/// # Errors
+///
+/// [`ExplicitError::NodalMass`] if a mass is not positive; also for invalid lengths, densities or regions.
 pub fn lumped_mass(
     volume: &VolumeRows,
     density: &[f64],
@@ -78,7 +82,7 @@ pub fn lumped_mass(
             }
         }
     }
-    // `!(m > 0)`: a NaN must not pass.
+    // A NaN must not pass, hence `!(m > 0)`.
     match mass.iter().position(|&m| !(m > 0.0)) {
         Some(node) => Err(ExplicitError::NodalMass { node, mass: mass[node] }),
         None => Ok(mass),

@@ -1,4 +1,4 @@
-//! What the kernels need of the law of a region.
+//! Laws in the form that the kernels use.
 
 use super::force::ExplicitBody;
 use lanes::madd;
@@ -14,16 +14,18 @@ pub(super) struct Moduli {
     pub lambda: f64,
 }
 
-/// A law as the kernels run it: the neo-Hookean within their own loops, each other by its own lanes.
+/// Law of a region as the kernels run it: the neo-Hookean law inside their own loops, every other law by its
+/// own lane code.
 pub(super) enum LaneLaw {
     NeoHookean(Moduli),
-    /// With groups of points, the part of the law that does not change with `J`, and the other.
+    /// Any other law. With groups of points, the first part does not change with `J`, and the second is
+    /// volumetric.
     Other(Law, Volumetric),
 }
 
 impl LaneLaw {
-    /// Of every region of a body; none where points share a dilation and a law is no sum of a part in the change of shape and
-    /// one in that of volume.
+    /// Returns the laws of all regions of a body. Returns `None` if points share a dilation and a law does
+    /// not split into a part for shape change and a part for volume change.
     pub fn of_regions(body: &ExplicitBody) -> Option<Vec<LaneLaw>> {
         let law = |law: &Law| match (law, body.groups) {
             (Law::NeoHookean(law), _) => {
@@ -35,8 +37,8 @@ impl LaneLaw {
         body.laws.iter().map(law).collect()
     }
 
-    /// What a group of points has of this law per volume, Pa: `mu` and `lambda` of the neo-Hookean form, and the factor of
-    /// `(J - 1)^2 / 2`.
+    /// Returns the contribution of this law to a group of points per volume, Pa: `mu` and `lambda` of the
+    /// neo-Hookean form, and the factor of `(J - 1)^2 / 2`.
     pub fn of_group(&self) -> [f64; 3] {
         match self {
             LaneLaw::NeoHookean(moduli) => [moduli.mu, moduli.lambda, 0.0],
@@ -46,7 +48,7 @@ impl LaneLaw {
 }
 
 on_path! {
-    /// Stress of eight points each, Pa.
+    /// Computes the stress of eight points for each strain, Pa.
     pub(super) fn stress(law: &Law, strains: &[LaneStrain], p: &mut [[Lanes; 9]]) = stress_lanes
 }
 
@@ -55,8 +57,8 @@ fn stress_lanes<const FMA: bool>(law: &Law, strains: &[LaneStrain], p: &mut [[La
     law.stress_batch::<FMA>(strains, p);
 }
 
-/// `J_a^(2/3)` and `p_a = (1/V_a) dE/dJ_a` of one dilation group from its mean `J_a - 1`, `B_a = sum share w mu b`,
-/// `1 / V_a`, and `sum share w` times the moduli of [`LaneLaw::of_group`].
+/// Computes `J_a^(2/3)` and `p_a = (1/V_a) dE/dJ_a` of one dilation group from its mean `J_a - 1`,
+/// `B_a = sum share w mu b`, `1 / V_a`, and `sum share w` times the moduli of [`LaneLaw::of_group`].
 #[inline(always)]
 pub(super) fn close_group<const FMA: bool>(
     j: f64,

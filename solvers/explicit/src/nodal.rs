@@ -1,4 +1,5 @@
-//! Nodal-mean dilation on tetrahedra: `J_a = sum_q share w J_q / V_a` at the nodes, between two passes over the elements.
+//! Nodal-mean dilation on tetrahedra: `J_a = sum_q share w J_q / V_a` at the nodes, between two passes over
+//! the elements.
 //!
 //! For the neo-Hookean law the sum over pairs (node a, point q) splits,
 //!
@@ -6,13 +7,14 @@
 //! E = sum_q w mu/2 (J_q^(-2/3) I1_q S_q - 3) + sum_a (-M_a ln J_a + L_a/2 (ln J_a)^2),
 //! S_q = sum_a share J_a^(2/3),  M_a = sum_q share w mu,  L_a = sum_q share w lambda,
 //! ```
+//! The first pass over the elements therefore adds two numbers to each node, `sum share w (J - 1)` and
+//! `B_a = sum share w mu b_q` with `b = J^(-2/3) I1 / 3 - 1`. The second pass reads two numbers from each
+//! node, `J_a^(2/3)` and `p_a = (1/V_a) dE/dJ_a = (B_a (1 + sigma) + sigma M_a + L_a ln J_a) / (J_a V_a)`,
+//! `sigma = J_a^(2/3) - 1`.
 //!
-//! so the first pass brings two numbers to each node, `sum share w (J - 1)` and `B_a = sum share w mu b_q` with
-//! `b = J^(-2/3) I1 / 3 - 1`; the second takes two back, `J_a^(2/3)` and
-//! `p_a = (1/V_a) dE/dJ_a = (B_a (1 + sigma) + sigma M_a + L_a ln J_a) / (J_a V_a)`, `sigma = J_a^(2/3) - 1`.
-//!
-//! Laws whose shape part does not change with `J` have no `B_a` and `M_a`. Their volumetric energies `L_a/2 (ln J_a)^2` and
-//! `K_a/2 (J_a - 1)^2` give `p_a = (L_a ln J_a / J_a + K_a (J_a - 1)) / V_a`; a node may have parts of several laws.
+//! Laws whose shape part does not change with `J` have neither `B_a` nor `M_a`. Their volumetric energies
+//! `L_a/2 (ln J_a)^2` and `K_a/2 (J_a - 1)^2` give `p_a = (L_a ln J_a / J_a + K_a (J_a - 1)) / V_a`. A node
+//! may combine several laws.
 
 use rayon::prelude::*;
 use shape::DilationGroups;
@@ -26,16 +28,17 @@ use lanes::{LANES, LanePath, on_path};
 const NODES: usize = 1024;
 
 pub(super) struct Nodal {
-    /// Slots by node and part, where groups end at the border of parts; none where a group is a node.
+    /// Slots by node and part, if groups end at the borders of parts; `None` if every group is a node.
     border: Option<Border>,
-    /// `sum share w (J - 1)` and `B_a` of each slot, then what `closed` has for it.
+    /// Values of each slot: `sum share w (J - 1)` and `B_a` after the first pass, then the slot's copy of
+    /// `closed`.
     slots: Vec<[f64; 2]>,
     constants: Vec<Constants>,
-    /// `sum share w (J - 1)` and `B_a` of each group, then `J_a^(2/3)` and `p_a`.
+    /// Values of each group: `sum share w (J - 1)` and `B_a`, then `J_a^(2/3)` and `p_a`.
     closed: Vec<[f64; 2]>,
 }
 
-/// Of one group: `1 / V_a` (1/m^3), `M_a`, `L_a` and `K_a` (J).
+/// Constants of one group: `1 / V_a` (1/m^3), `M_a`, `L_a` and `K_a` (J).
 #[derive(Clone, Copy)]
 struct Constants {
     per_volume: f64,
@@ -45,8 +48,9 @@ struct Constants {
 }
 
 impl Nodal {
-    /// None unless the groups are those of [`DilationGroups::nodal`] with four even shares, cut by part where
-    /// there are several. `chunks` has the distinct nodes of every chunk, and a chunk the points of one part.
+    /// Prepares the pass over nodes. Returns `None` unless the groups are those of [`DilationGroups::nodal`]
+    /// with four equal shares, divided by part if there are several parts. `chunks` has the distinct nodes of
+    /// every chunk; the points of a chunk belong to one part.
     pub fn new(
         body: &ExplicitBody,
         groups: &DilationGroups,
@@ -85,7 +89,7 @@ impl Nodal {
                 s[3] += 0.25 * w * quadratic;
             }
         }
-        // A node of no element, or of none in a part, has no volume; nothing reads what comes out there.
+        // A node without an element, or without one in a part, has no volume; its result is not used.
         let constants = |s: &[f64; 4]| Constants {
             per_volume: if s[0] > 0.0 { 1.0 / s[0] } else { 0.0 },
             mu: s[1],
@@ -105,7 +109,7 @@ impl Nodal {
         &mut self.slots
     }
 
-    /// From the sums of the first pass to what the second needs.
+    /// Converts the sums of the first pass into the input of the second.
     pub fn close(&mut self, path: LanePath, of_nodes: &Border) {
         let Nodal { border, slots, constants, closed } = self;
         border.as_ref().unwrap_or(of_nodes).sum(|slot| slots[slot], |sum| sum, closed);
@@ -113,7 +117,7 @@ impl Nodal {
         tasks.for_each(|(constants, closed)| close(path, constants, closed));
     }
 
-    /// `J_a^(2/3)` and `p_a` of each group, the slots to bring them to, and the group of each slot.
+    /// Returns `J_a^(2/3)` and `p_a` of each group, the slots to fill with them, and the group of each slot.
     pub fn closed<'a>(
         &'a mut self,
         of_nodes: &'a Border,
@@ -131,7 +135,7 @@ fn close_lanes<const FMA: bool>(constants: &[Constants], closed: &mut [[f64; 2]]
     let one = |c: &Constants, [j, b]: [f64; 2]| {
         close_group::<FMA>(j * c.per_volume, b, c.per_volume, [c.mu, c.lambda, c.quadratic])
     };
-    // In blocks of fixed length, so that the loop becomes vector instructions.
+    // Blocks of fixed length, so that the loop is vectorised.
     let (blocks, rest) = closed.as_chunks_mut::<LANES>();
     let (constants, last) = constants.as_chunks::<LANES>();
     for (c, at) in constants.iter().zip(blocks) {

@@ -1,5 +1,5 @@
-//! The plain loop over quadrature points: any law, any table, any dilation groups; one scatter, one thread. What the
-//! lane kernels are tested against, and the way of every law and table they do not know.
+//! Plain loop over quadrature points on one thread, for any law, table and dilation groups. It is the
+//! reference for tests of the lane kernels, and the fallback for laws and tables without a lane kernel.
 
 #![allow(non_snake_case)]
 
@@ -9,7 +9,7 @@ use super::InvertedPoint;
 use material::volume_change;
 use shape::{Matrix3, Vector3};
 
-/// Displacement gradient at one point, and `J - 1`; refused unless `J > 0`.
+/// Returns the displacement gradient at one point, and `J - 1`; an error unless `J > 0`.
 fn strain(volume: &VolumeRows, q: usize, u: &[Vector3]) -> Result<(Matrix3, f64), InvertedPoint> {
     let (nodes, grads) = volume.row(q);
     let mut H = Matrix3::zeros();
@@ -20,12 +20,13 @@ fn strain(volume: &VolumeRows, q: usize, u: &[Vector3]) -> Result<(Matrix3, f64)
     if 1.0 + j > 0.0 { Ok((H, j)) } else { Err(InvertedPoint { point: q, det_f: 1.0 + j }) }
 }
 
-/// The first point that is inside out.
+/// Checks that no point is inverted; the error names the first inverted point.
 pub(super) fn check(volume: &VolumeRows, u: &[Vector3]) -> Result<(), InvertedPoint> {
     (0..volume.weights().len()).try_for_each(|q| strain(volume, q, u).map(|_| ()))
 }
 
-/// `f_I = sum_q w P(H_q) grad N_I`, N; `stress(q, H)` is the first Piola-Kirchhoff stress at point `q`.
+/// Computes `f_I = sum_q w P(H_q) grad N_I`, N; `stress(q, H)` is the first Piola-Kirchhoff stress at point
+/// `q`.
 pub(super) fn forces(
     volume: &VolumeRows,
     stress: impl Fn(usize, &Matrix3) -> Matrix3,
@@ -47,7 +48,7 @@ fn add(volume: &VolumeRows, q: usize, wP: &Matrix3, f: &mut [Vector3]) {
     }
 }
 
-/// `sum_q w W(H_q)`, J.
+/// Computes `sum_q w W(H_q)`, J.
 pub(super) fn energy(
     volume: &VolumeRows,
     density: impl Fn(usize, &Matrix3) -> f64,
@@ -60,7 +61,8 @@ pub(super) fn energy(
     Ok(sum)
 }
 
-/// `J_a - 1 = sum_q share w (J_q - 1) / V_a` of every group, with its volume `V_a`, and `H`, `J - 1` of every point.
+/// Values `J_a - 1 = sum_q share w (J_q - 1) / V_a` and `V_a` of every group, and `H` and `J - 1` of every
+/// point.
 type Dilated = (Vec<(f64, f64)>, Vec<(Matrix3, f64)>);
 
 fn dilated(volume: &VolumeRows, groups: &DilationGroups, u: &[Vector3]) -> Result<Dilated, InvertedPoint> {
@@ -79,13 +81,14 @@ fn dilated(volume: &VolumeRows, groups: &DilationGroups, u: &[Vector3]) -> Resul
     Ok(((0..groups.len()).map(mean).collect(), strains))
 }
 
-/// `H_bar = (J_a / J_q)^(1/3) (I + H) - I` and the factor.
+/// Returns `H_bar = (J_a / J_q)^(1/3) (I + H) - I` and the factor.
 fn bar(H: &Matrix3, j: f64, j_a: f64) -> (Matrix3, f64) {
     let less = ((j_a.ln_1p() - j.ln_1p()) / 3.0).exp_m1();
     (H * (1.0 + less) + Matrix3::identity() * less, 1.0 + less)
 }
 
-/// As [`energy`] with `W(F_bar)` over all pairs (group a, point q) of weight `share w`, `F_bar = (J_a / J_q)^(1/3) F`.
+/// Computes the energy as [`energy`], with `W(F_bar)` over all pairs (group a, point q) of weight `share w`,
+/// `F_bar = (J_a / J_q)^(1/3) F`.
 pub(super) fn dilated_energy(
     volume: &VolumeRows,
     groups: &DilationGroups,
@@ -104,8 +107,9 @@ pub(super) fn dilated_energy(
     Ok(sum)
 }
 
-/// The derivative of [`dilated_energy`]. With `r = (J_a / J_q)^(1/3)` and `dF_bar = r dF + F_bar (dJ_a / (3 J_a) -
-/// dJ_q / (3 J_q))`: `w P_q = sum_a share w (r P(F_bar) - P(F_bar) : F_bar / 3 F^-T) + w sum_a share p_a cof F`,
+/// Computes the derivative of [`dilated_energy`]. With `r = (J_a / J_q)^(1/3)` and
+/// `dF_bar = r dF + F_bar (dJ_a / (3 J_a) - dJ_q / (3 J_q))`:
+/// `w P_q = sum_a share w (r P(F_bar) - P(F_bar) : F_bar / 3 F^-T) + w sum_a share p_a cof F`,
 /// `p_a = sum_q share w P(F_bar) : F_bar / (3 J_a V_a)`.
 pub(super) fn dilated_forces(
     volume: &VolumeRows,

@@ -1,36 +1,38 @@
-//! Rigid tools in a dynamic relaxation: a closure that is led, or one more unknown that a force moves.
+//! Rigid tools in a dynamic relaxation: displacement control, or force control with the displacement as one
+//! more unknown.
 
 use contact::{ContactCounts, ContactError, ContactHistory, ContactSearch, ContactSurface};
 use contact::{Drive, Stand, Tool, ToolState};
 use shape::Vector3;
 
-/// A tool under a constant drive, in the state that it starts from.
+/// Tool under a constant drive, with its initial state.
 #[derive(Clone, Debug)]
 pub struct PressingTool<'a> {
     /// The tool.
     pub tool: &'a Tool,
-    /// Closure (m) or force along its way (N), constant through the relaxation.
+    /// Displacement (m) or force along its direction (N), constant during the relaxation.
     pub drive: Drive,
-    /// Closure at the start, m; that of the drive from the first step on if it is led.
+    /// Displacement at the start, m; under displacement control, that of the drive from the first step on.
     pub closure: f64,
-    /// What its contact remembers.
+    /// History of its contact.
     pub history: ContactHistory,
 }
 
-/// Tools on a surface through a relaxation.
+/// Tools on a surface during a relaxation.
 ///
-/// The closure of a tool that a force drives follows the rule of the nodes, with a mass of its own: that on which the penalty
-/// of the whole surface swings with twice the time step as its critical one, `m = k_n A dt^2`, so that contact is stable
-/// whatever touches. Slip is kept after every step of the relaxation, as in dynamics.
+/// The displacement of a force-driven tool follows the update rule of the nodes, with a mass of its own. This
+/// is the mass at which the penalty of the whole surface has twice the time step as its critical step,
+/// `m = k_n A dt^2`, so that contact is stable whichever points touch. Slip is committed after every step of
+/// the relaxation, as in dynamics.
 pub struct Pressing<'a> {
     surface: &'a ContactSurface<'a>,
     search: ContactSearch<'a>,
     tools: Vec<PressingTool<'a>>,
-    /// Closures at the last step, m.
+    /// Displacements of the tools at the last step, m.
     before: Vec<f64>,
-    /// Last move of every closure, m.
+    /// Last increment of every displacement, m.
     moves: Vec<f64>,
-    /// Force that each exerts along its way at this and at the last step, N.
+    /// Force of each tool along its direction at this step and at the last, N.
     pushed: Vec<[f64; 2]>,
     states: Vec<ToolState>,
     area: f64,
@@ -38,7 +40,7 @@ pub struct Pressing<'a> {
 }
 
 impl<'a> Pressing<'a> {
-    /// Tools as they stand.
+    /// Places the tools at their initial displacements.
     pub fn new(surface: &'a ContactSurface<'a>, mut tools: Vec<PressingTool<'a>>) -> Pressing<'a> {
         let before = tools.iter().map(|tool| tool.closure).collect();
         for tool in &mut tools {
@@ -60,7 +62,7 @@ impl<'a> Pressing<'a> {
         }
     }
 
-    /// Goes on under other drives, in the tools' order.
+    /// Continues under other drives, in the order of the tools.
     pub fn drive(&mut self, drives: impl Iterator<Item = Drive>) {
         for (tool, drive) in self.tools.iter_mut().zip(drives) {
             tool.drive = drive;
@@ -71,24 +73,25 @@ impl<'a> Pressing<'a> {
         self.moves.fill(0.0);
     }
 
-    /// Every tool as of the last step.
+    /// State of every tool at the last step.
     pub fn states(&self) -> &[ToolState] {
         &self.states
     }
 
-    /// What the contact search did and skipped.
+    /// Counters of the contact search.
     pub fn counts(&self) -> ContactCounts {
         self.counts
     }
 
-    /// The surface with the largest penalty or stick slope, Pa/m.
+    /// Returns the surface with the largest penalty or stick slope, Pa/m.
     pub(super) fn springs(&self) -> Option<super::Springs<'a>> {
         let stiffest = |tool: &PressingTool| tool.tool.law().penalty().max(tool.tool.law().stick());
         let modulus = self.tools.iter().map(stiffest).reduce(f64::max)?;
         Some(super::Springs { surface: self.surface.rows(), modulus })
     }
 
-    /// Contact forces (N) in the state `u` (m), added to `force`, and committed; fails with the index of a tool.
+    /// Adds the contact forces (N) in the state `u` (m) to `force` and commits the contact. An error has the
+    /// index of its tool.
     pub(super) fn touch(
         &mut self,
         u: &[Vector3],
@@ -113,8 +116,8 @@ impl<'a> Pressing<'a> {
         Ok(())
     }
 
-    /// Fails where a tool pushes from within the body, or stands in it and touches nothing, in the state `u` (m) at the end: on
-    /// the way there it may.
+    /// Checks the final state `u` (m): no tool may push from within the body, or overlap the body without
+    /// contact. During the relaxation both may happen. An error has the index of its tool.
     pub(super) fn check_sides(&mut self, u: &[Vector3]) -> Result<(), (usize, ContactError)> {
         for (k, tool) in self.tools.iter().enumerate() {
             let lost = |cause| (k, cause);
@@ -134,7 +137,8 @@ impl<'a> Pressing<'a> {
         tool.tool.law().penalty() * self.area * dt * dt
     }
 
-    /// `(dd . dQ, dd . m dd)` of the closures' last moves: their share in the Rayleigh quotient.
+    /// Returns `(dd . dQ, dd . m dd)` of the last increments of displacement: their part in the Rayleigh
+    /// quotient.
     pub(super) fn quotient(&self, dt: f64) -> (f64, f64) {
         let each = self.tools.iter().zip(&self.moves).zip(&self.pushed);
         each.fold((0.0, 0.0), |(stiff, inert), ((tool, d), [now, before])| {
@@ -142,8 +146,8 @@ impl<'a> Pressing<'a> {
         })
     }
 
-    /// Moves the closures that a force drives, `d <- r^2 d + s^2 (F - Q) / m`; the largest move (m) and the largest force that
-    /// is lacking (N).
+    /// Advances the displacements of force-driven tools, `d <- r^2 d + s^2 (F - Q) / m`. Returns the largest
+    /// increment (m) and the largest force imbalance (N).
     pub(super) fn advance(&mut self, dt: f64, r: f64, s: f64) -> (f64, f64) {
         let (mut moved, mut lacking) = (0.0f64, 0.0f64);
         for k in 0..self.tools.len() {

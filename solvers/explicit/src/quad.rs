@@ -1,9 +1,9 @@
-//! Four numbers of one node in one register.
+//! Operations on four numbers of one node in one register.
 //!
-//! The compiler turns loops over eight lanes into vector instructions by itself, but leaves sums of `[f64; 4]` scalar
-//! and builds lanes one number at a time, which stalls the loads behind them: written out here, at twice the speed.
-//! `WIDE` is true only inside kernels compiled for AVX2 and FMA, `BITS` is the width of a kernel's registers; without them the same
-//! sums run as plain loops.
+//! The compiler vectorises loops over eight lanes, but leaves sums of `[f64; 4]` scalar and builds lanes one
+//! number at a time, which stalls the loads behind them. Explicit intrinsics are twice as fast. `WIDE` is
+//! true only inside kernels compiled for AVX2 and FMA; `BITS` is the width of a kernel's registers. Without
+//! them the same sums run as plain loops.
 
 use super::chunks::Slot;
 use lanes::{LANES, madd};
@@ -11,13 +11,13 @@ use lanes::{LANES, madd};
 #[cfg(target_arch = "x86_64")]
 use std::arch::x86_64::*;
 
-/// `y += a x`.
+/// Computes `y += a x`.
 #[inline(always)]
 pub(super) fn axpy<const WIDE: bool>(a: f64, x: &Slot, y: &mut Slot) {
     #[cfg(target_arch = "x86_64")]
     if WIDE {
-        // SAFETY: WIDE stands for AVX2 and FMA; slots are aligned, and other loads and stores ask for no alignment and stay
-        // inside their arrays.
+        // SAFETY: WIDE implies AVX2 and FMA. Slots are aligned; other loads and stores need no alignment and
+        // stay inside their arrays.
         unsafe {
             let sum = _mm256_fmadd_pd(
                 _mm256_set1_pd(a),
@@ -33,8 +33,8 @@ pub(super) fn axpy<const WIDE: bool>(a: f64, x: &Slot, y: &mut Slot) {
     }
 }
 
-/// Whether all nodes of these rows of lanes are below `count`: some ten vector instructions for a block, in place of a branch for each
-/// node as it is read.
+/// Whether all nodes in these rows of lanes are below `count`. The check takes some ten vector instructions
+/// for a block, instead of a branch for each node.
 #[inline(always)]
 pub(super) fn within<const N: usize>(nodes: &[[u16; LANES]; N], count: usize) -> bool {
     let mut last = 0;
@@ -44,11 +44,12 @@ pub(super) fn within<const N: usize>(nodes: &[[u16; LANES]; N], count: usize) ->
     usize::from(last) < count
 }
 
-/// Components x, y, z of `u[nodes[l]] - origin[l]` for eight lanes. Loops and no `array::from_fn`: its closures were left as calls, which made
-/// the whole kernel three times as slow.
+/// Returns the components x, y, z of `u[nodes[l]] - origin[l]` for eight lanes. Plain loops are used, because
+/// the closures of `array::from_fn` were not inlined and made the whole kernel three times slower.
 ///
 /// # Safety
-/// Registers of `BITS` must be there, and all nodes within `u`.
+///
+/// Registers of `BITS` must be available, and all nodes must lie within `u`.
 #[inline(always)]
 pub(super) unsafe fn lanes_of<const BITS: usize>(
     u: &[Slot],
@@ -56,12 +57,14 @@ pub(super) unsafe fn lanes_of<const BITS: usize>(
     origin: &[[f64; LANES]; 3],
 ) -> [[f64; LANES]; 3] {
     let mut out = [[0.0; LANES]; 3];
-    // SAFETY: the caller's promise; slots are aligned, and other stores ask for no alignment and stay inside their arrays.
+    // SAFETY: guaranteed by the caller. Slots are aligned; other stores need no alignment and stay inside
+    // their arrays.
     unsafe {
         match BITS {
             #[cfg(target_arch = "x86_64")]
             512 => {
-                // Lanes 0 and 2 in one register, 1 and 3, 4 and 6, 5 and 7: unpacked by twos they come out in order.
+                // Lanes 0 and 2 in one register, 1 and 3, 4 and 6, 5 and 7: pairwise unpacking then gives
+                // them in order.
                 let two = |low: u16, high: u16| {
                     _mm512_insertf64x4::<1>(_mm512_castpd256_pd512(quad(u, low)), quad(u, high))
                 };
@@ -106,10 +109,11 @@ pub(super) unsafe fn lanes_of<const BITS: usize>(
     out
 }
 
-/// The other way: adds (x, y, z) of every lane to its node, one lane after the other.
+/// Adds (x, y, z) of every lane to its node, one lane after the other; the reverse of [`lanes_of`].
 ///
 /// # Safety
-/// As [`lanes_of`].
+///
+/// As for [`lanes_of`].
 #[inline(always)]
 pub(super) unsafe fn add_lanes<const BITS: usize>(
     x: &[f64; LANES],
@@ -141,17 +145,20 @@ pub(super) unsafe fn add_lanes<const BITS: usize>(
     }
 }
 
+/// Loads the four numbers of a node.
+///
 /// # Safety
-/// AVX must be there, and the node within `u`.
+///
+/// AVX must be available, and the node must lie within `u`.
 #[cfg(target_arch = "x86_64")]
 #[inline(always)]
 unsafe fn quad(u: &[Slot], node: u16) -> __m256d {
-    // SAFETY: the caller's promise.
+    // SAFETY: guaranteed by the caller.
     unsafe { _mm256_load_pd(u.as_ptr().add(node as usize).cast()) }
 }
 
-/// For eight lanes, both numbers of `pairs` summed over four nodes. Tet4 with nodal dilation takes 0.95 of the time that it
-/// took with one number after the other.
+/// Returns for eight lanes both numbers of `pairs`, summed over four nodes. Tet4 with nodal dilation takes
+/// 0.95 of the time with one number after the other.
 #[inline(always)]
 pub(super) fn lanes_of_sums<const WIDE: bool>(
     pairs: &[[f64; 2]],
@@ -187,14 +194,15 @@ pub(super) fn lanes_of_sums<const WIDE: bool>(
     out
 }
 
-/// 4 x 4 transpose.
+/// Transposes a 4 x 4 matrix.
 ///
 /// # Safety
-/// AVX must be there.
+///
+/// AVX must be available.
 #[cfg(target_arch = "x86_64")]
 #[inline(always)]
 unsafe fn transposed(r: [__m256d; 4]) -> [__m256d; 4] {
-    // SAFETY: the caller's promise.
+    // SAFETY: guaranteed by the caller.
     unsafe {
         let (a, b) = (_mm256_unpacklo_pd(r[0], r[1]), _mm256_unpackhi_pd(r[0], r[1]));
         let (c, d) = (_mm256_unpacklo_pd(r[2], r[3]), _mm256_unpackhi_pd(r[2], r[3]));

@@ -1,4 +1,4 @@
-//! Adaptive dynamic relaxation: the static solution as the end of a damped motion.
+//! Adaptive dynamic relaxation: the static solution as the limit of a damped motion.
 
 use super::central_difference::constrained;
 use super::critical_step::{LanczosParams, critical_step_touching};
@@ -6,39 +6,41 @@ use super::{ExplicitError, InternalForce, Pressing};
 use material::Material;
 use shape::{FixedDof, Vector3};
 
-/// What is asked of a relaxation.
+/// Parameters of a relaxation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RelaxationParams {
-    /// Largest estimated error of a displacement over the largest displacement.
+    /// Tolerance of the estimated error of a displacement, relative to the largest displacement.
     pub tolerance: f64,
-    /// Steps after which to give up.
+    /// Largest number of steps.
     pub steps: usize,
-    /// How the critical step is found.
+    /// Parameters of the estimate of the critical step.
     pub critical: LanczosParams,
-    /// Steps between two estimates of the critical step; 0: at the start only.
+    /// Number of steps between two estimates of the critical step; 0: at the start only.
     pub recheck: usize,
 }
 
-/// What happened.
+/// Outcome of a relaxation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RelaxationInfo {
-    /// Steps made.
+    /// Number of steps made.
     pub steps: usize,
-    /// Estimated error of a displacement over the largest displacement.
+    /// Estimated error of a displacement, relative to the largest displacement.
     pub error: f64,
-    /// Largest out-of-balance force over the largest internal force.
+    /// Largest out-of-balance force, relative to the largest internal force.
     pub residual: f64,
     /// Lowest angular frequency at the end, rad/s.
     pub omega_min: f64,
-    /// `omega_min` over the frequency of a shear wave across twice the body's longest side,
-    /// `pi sqrt(mu / rho) / (2 L)`. A slender body in bending has some tenths; far below, a spurious slow mode governs
-    /// (meshless kernels of wide support with mass lumped on their parameters) and the steps are wasted on it.
+    /// Ratio of `omega_min` to the frequency of a shear wave across twice the body's longest side,
+    /// `pi sqrt(mu / rho) / (2 L)`. A slender body in bending has some tenths. If the ratio is far smaller, a
+    /// spurious slow mode governs (meshless kernels with wide support and mass lumped on their parameters),
+    /// and the steps are wasted on it.
     pub slow_mode: f64,
     /// Last time step, s.
     pub dt: f64,
 }
 
-/// A body at rest: its displacements (m), and the force of its supports on every node (N), zero in free degrees of freedom.
+/// Body at rest: displacements (m), and forces of the supports on every node (N), zero at free degrees of
+/// freedom.
 #[derive(Clone, Debug, PartialEq)]
 #[allow(missing_docs)]
 pub struct Rested {
@@ -47,13 +49,15 @@ pub struct Rested {
     pub info: RelaxationInfo,
 }
 
-/// Steps in a row that must pass the stopping rule: a swing about its end stands still at its turning points.
+/// Number of consecutive steps that must pass the stopping rule, because an oscillation about the end stands
+/// still at its turning points.
 const CONFIRM: usize = 10;
 
-/// External forces at displacements: adds nodal forces (N) to the second argument, which starts from zero.
+/// External forces at given displacements: adds nodal forces (N) to the second argument, which starts from
+/// zero.
 pub type StaticLoad<'a> = dyn FnMut(&[Vector3], &mut [Vector3]) + 'a;
 
-/// [`relax_under`] without tools.
+/// Finds static displacements as [`relax_under`], without tools.
 pub fn relax(
     force: &mut InternalForce,
     mass: &[f64],
@@ -65,14 +69,20 @@ pub fn relax(
     relax_under(force, mass, fixed, load, None, start, params).map(|rested| (rested.u, rested.info))
 }
 
-/// Static displacements (m) under `load` and tools that press, with `fixed` degrees of freedom, from `start`; `mass` may be any
-/// positive one.
+/// Finds the static displacements (m) under `load` and pressing tools, with `fixed` degrees of freedom, from
+/// `start`. `mass` (kg) may be any positive mass.
 ///
 /// With `k = 2 / (omega_min dt)`, `R = (k - 1) / (k + 1)` and `s = (1 + R) dt / 2`:
-/// `u_(n+1) = u_n + R^2 (u_n - u_(n-1)) + s^2 M^-1 (f_ext - f_int)`; `omega_min^2` by the Rayleigh quotient
-/// `du . df / du . M du` of the last step, `f` the internal less the contact forces. Stops when `max |du| rho / (1 - rho)`, `rho = R + 0.2 (1 - R)`, stays
-/// below the tolerance: what a geometric series of steps has left. Source: Joldes, Wittek & Miller, Comput. Methods
-/// Appl. Mech. Engrg. 200 (2011).
+/// `u_(n+1) = u_n + R^2 (u_n - u_(n-1)) + s^2 M^-1 (f_ext - f_int)`. `omega_min^2` is the Rayleigh quotient
+/// `du . df / du . M du` of the last step, with `f` the internal less the contact forces. The relaxation
+/// stops when `max |du| rho / (1 - rho)`, `rho = R + 0.2 (1 - R)`, stays below the tolerance. This is the
+/// remainder of a geometric series of steps. Source: Joldes, Wittek & Miller, Comput. Methods Appl. Mech.
+/// Engrg. 200 (2011).
+///
+/// # Errors
+///
+/// [`ExplicitError::NotRelaxed`] if `params.steps` do not suffice; also for invalid input, inverted points
+/// and contact errors.
 pub fn relax_under(
     force: &mut InternalForce,
     mass: &[f64],
@@ -127,20 +137,20 @@ fn check(n: usize, mass: &[f64], start: &[Vector3], params: RelaxationParams) ->
     Err(ExplicitError::BadParameter { what, value, allowed: "between 0 and 1" })
 }
 
-/// The motion to rest.
+/// Motion of the body towards rest.
 struct Trajectory<'a, 'b> {
     force: &'a mut InternalForce<'b>,
     mass: &'a [f64],
     constrained: Vec<bool>,
     u: Vec<Vector3>,
-    /// Of the last step.
+    /// Increment of the last step, m.
     du: Vec<Vector3>,
     internal: Vec<Vector3>,
-    /// Internal forces of the step before.
+    /// Internal forces of the previous step.
     previous: Vec<Vector3>,
     external: Vec<Vector3>,
     touch: Vec<Vector3>,
-    /// Of a shear wave across the body, rad/s.
+    /// Frequency of a shear wave across the body, rad/s.
     expected: f64,
     info: RelaxationInfo,
 }
@@ -184,7 +194,7 @@ impl<'a, 'b> Trajectory<'a, 'b> {
         })
     }
 
-    /// Internal forces less those of contact, and the external ones.
+    /// Computes the internal forces less the contact forces, and the external forces.
     fn forces(
         &mut self,
         step: usize,
@@ -212,14 +222,14 @@ impl<'a, 'b> Trajectory<'a, 'b> {
         Ok(())
     }
 
-    /// What balances constrained degrees of freedom, N.
+    /// Returns the forces that balance the constrained degrees of freedom, N.
     fn reaction(&self) -> Vec<Vector3> {
         let lacking = |i: usize, a: usize| self.internal[i][a] - self.external[i][a];
         let held = |i: usize, a: usize| if self.constrained[3 * i + a] { lacking(i, a) } else { 0.0 };
         (0..self.u.len()).map(|i| Vector3::from_fn(|a, _| held(i, a))).collect()
     }
 
-    /// The lowest frequency that the last step moved in, by its Rayleigh quotient.
+    /// Estimates the lowest frequency in the last step by its Rayleigh quotient.
     fn find_slowest(&mut self, dt: f64, pressing: Option<&Pressing>) {
         let (mut stiff, mut inert) = (0.0, 0.0);
         for i in 0..self.u.len() {
@@ -231,13 +241,13 @@ impl<'a, 'b> Trajectory<'a, 'b> {
             stiff += of_tools;
             inert += mass;
         }
-        // Softening makes the quotient negative for a while; the last positive one stays.
+        // Softening makes the quotient negative for a while; the last positive value is kept.
         if stiff > 0.0 && inert > 0.0 {
             self.info.omega_min = (stiff / inert).sqrt();
         }
     }
 
-    /// One step, and how far it is from rest.
+    /// Makes one step and estimates the distance from rest.
     fn advance(
         &mut self,
         step: usize,
@@ -288,7 +298,8 @@ impl<'a, 'b> Trajectory<'a, 'b> {
     }
 }
 
-/// `pi sqrt(mu / rho) / (2 L)` of the softest law, L the longest side of the box around the points, rad/s.
+/// Returns `pi sqrt(mu / rho) / (2 L)` for the softest law, with L the longest side of the box around the
+/// points, rad/s.
 fn shear_frequency(force: &InternalForce, mass: &[f64]) -> f64 {
     let body = force.body();
     let density = mass.iter().sum::<f64>() / body.volume.weights().iter().sum::<f64>();
@@ -297,7 +308,7 @@ fn shear_frequency(force: &InternalForce, mass: &[f64]) -> f64 {
         let x = body.volume.points().iter().map(|p| p[axis]);
         x.clone().fold(f64::NEG_INFINITY, f64::max) - x.fold(f64::INFINITY, f64::min)
     };
-    // A single point has no extent; any positive length will do there.
+    // A single point has no extent; any positive length is acceptable.
     let length = (0..3).map(extent).fold(f64::MIN_POSITIVE, f64::max);
     0.5 * std::f64::consts::PI * (mu / density).sqrt() / length
 }

@@ -1,8 +1,8 @@
-//! Rows of any length, meshless ones above all: the three components (and a pad) of one node in one register, eight
-//! points together for the law.
+//! Rows of any length, mainly from meshless methods: the three components (and a pad) of one node in one
+//! register, eight points together for the law.
 //!
-//! Lanes over points would have to gather and scatter every component on its own, as neighbours differ from point to
-//! point; along x, y, z both are one load or store of 32 bytes.
+//! Lanes over points would need a gather and a scatter for every component, because neighbours differ from
+//! point to point. Along x, y, z both are a single load or store of 32 bytes.
 
 use super::chunks::{Border, ChunkNodes, Slot, load, split};
 use super::force::ExplicitBody;
@@ -15,15 +15,15 @@ use material::lane::{LANES, LaneStrain, Lanes};
 use shape::Vector3;
 use shape::locality_order;
 
-/// Points per chunk: the displacements and forces of their nodes (64 bytes each) stay in the second-level cache, the
-/// copies of nodes are few beside the entries.
+/// Points per chunk. The displacements and forces of their nodes (64 bytes each) stay in the second-level
+/// cache, and copies of nodes are few compared with the entries.
 const SIZE: usize = 1024;
 
-/// Batches that go through each step together: the law is a chain of some 150 cycles, and two of them overlap (0.92 of the
-/// time; four gain no more).
+/// Number of batches that pass through each step together. The law is a chain of some 150 cycles, and two
+/// batches overlap (0.92 of the time; four gain no more).
 const TOGETHER: usize = 2;
 
-/// Standard internal forces of any table.
+/// Kernel for standard internal forces of any table.
 pub(super) struct Ragged {
     border: Border,
     chunks: Vec<Chunk>,
@@ -34,12 +34,13 @@ pub(super) struct Ragged {
 
 struct Chunk {
     batches: Vec<Batch>,
-    /// Place among the chunk's nodes and gradient of every entry, points in the order of the batches.
+    /// Position of each entry's node among the chunk's nodes, points in the order of the batches.
     nodes: Vec<u16>,
+    /// Gradient of each entry, 1/m.
     grads: Vec<[f64; 3]>,
 }
 
-/// Eight points of one law; a point left over has no entry and no weight.
+/// Batch of eight points of one law; an unused lane has no entry and no weight.
 struct Batch {
     ends: [u32; LANES],
     weights: [f64; LANES],
@@ -47,7 +48,7 @@ struct Batch {
 }
 
 impl Ragged {
-    /// None when a chunk touches more nodes than 16 bits can number.
+    /// Builds the kernel. Returns `None` if a chunk has more nodes than 16 bits can number.
     pub fn new(body: &ExplicitBody, laws: Vec<LaneLaw>) -> Option<Ragged> {
         let rows = body.volume.rows();
         let order = locality_order(body.volume.points());
@@ -62,7 +63,7 @@ impl Ragged {
         Some(Ragged { border, chunks, u: slots.clone(), f: slots, laws })
     }
 
-    /// Internal forces; false where some `J` is not positive.
+    /// Computes internal forces, N. Returns false if `J` is not positive somewhere.
     pub fn forces(&mut self, path: LanePath, u: &[Vector3], f: &mut [Vector3]) -> bool {
         let Ragged { border, chunks, u: slots, f: sums, laws } = self;
         let not_inverted = border.for_each(slots, sums, |c, slots, sums| {
@@ -103,7 +104,8 @@ impl Chunk {
 }
 
 on_path! {
-    /// Internal forces of one chunk, added to `f`; `not_inverted` turns false where some `J` is not positive.
+    /// Adds internal forces of one chunk to `f`; `not_inverted` becomes false if `J` is not positive
+    /// somewhere.
     fn internal(path: LanePath, laws: &[LaneLaw], chunk: &Chunk, u: &[Slot], f: &mut [Slot], not_inverted: &mut bool) = internal_lanes
 }
 
@@ -116,7 +118,7 @@ fn internal_lanes<const FMA: bool>(
     f: &mut [Slot],
     not_inverted: &mut bool,
 ) {
-    // `H` of each batch, and in its place `w P`.
+    // Holds `H` of each batch, later replaced by `w P`.
     let (mut x, mut good) = ([[[0.0; LANES]; 9]; TOGETHER], [1.0; LANES]);
     let mut first = 0;
     for batches in chunk.batches.chunks(TOGETHER) {
@@ -166,7 +168,7 @@ fn internal_lanes<const FMA: bool>(
     *not_inverted = good == [1.0; LANES];
 }
 
-/// `w P` in place of `H`. `good` turns 0 where `J` is not positive.
+/// Replaces `H` by `w P`. `good` becomes 0 in lanes where `J` is not positive.
 #[inline(always)]
 fn neo_hookean<const FMA: bool>(
     batch: &Batch,
@@ -174,7 +176,7 @@ fn neo_hookean<const FMA: bool>(
     x: &mut [Lanes; 9],
     good: &mut Lanes,
 ) {
-    // Written to `x` at the end: the loop would stay scalar.
+    // The stress is written to `x` at the end, because the loop would otherwise stay scalar.
     for l in 0..LANES {
         let h = [x[0][l], x[1][l], x[2][l], x[3][l], x[4][l], x[5][l], x[6][l], x[7][l], x[8][l]];
         let (at, minors) = Invariants::of::<FMA>(&h);
@@ -186,7 +188,7 @@ fn neo_hookean<const FMA: bool>(
     }
 }
 
-/// As [`neo_hookean`], of any other law and up to [`TOGETHER`] batches.
+/// Replaces `H` as [`neo_hookean`], for any other law and up to [`TOGETHER`] batches.
 #[inline(always)]
 fn other<const FMA: bool>(
     path: LanePath,
@@ -218,7 +220,8 @@ fn strained<const FMA: bool>(x: &[Lanes; 9], out: &mut LaneStrain) {
     }
 }
 
-/// Columns `H_.j = sum_I u_I g_Ij`. Two sums at once: one alone would wait four cycles for each of its terms.
+/// Returns the columns `H_.j = sum_I u_I g_Ij`. Two sums run at once: a single sum would wait four cycles for
+/// each term.
 #[inline(always)]
 fn gradient<const FMA: bool>(nodes: &[u16], grads: &[[f64; 3]], u: &[Slot]) -> [Slot; 3] {
     let mut sums = [[Slot::ZERO; 3]; 2];

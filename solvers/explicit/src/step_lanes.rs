@@ -1,10 +1,12 @@
-//! One step of central differences over all degrees of freedom, eight in the lanes of one block. The same sums one node after the
-//! other, with a branch for each axis and two divisions, took a fifth of a whole step of 1331 nodes.
+//! One step of central differences over all degrees of freedom, eight in the lanes of one block.
+//!
+//! The same sums node by node, with a branch for each axis and two divisions, took a fifth of a whole step of
+//! 1331 nodes.
 
 use lanes::{LANES, LanePath, Lanes, madd, on_path};
 use shape::Vector3;
 
-/// Mass (kg) of every degree of freedom and one over it, both zero where a displacement is prescribed.
+/// Mass (kg) of every degree of freedom and its inverse, both zero at prescribed degrees of freedom.
 pub(super) struct Inertia {
     mass: Vec<f64>,
     per_mass: Vec<f64>,
@@ -20,16 +22,16 @@ impl Inertia {
     }
 }
 
-/// Sums over the free degrees of freedom, of velocities `v-` before and `v+` after the step.
+/// Sums over the free degrees of freedom, with velocities `v-` before and `v+` after the step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Sums {
-    /// `m v- v+`.
+    /// Sum of `m v- v+`.
     pub kinetic: f64,
-    /// `m v- (v- + v+)` and `m v+ (v- + v+)`.
+    /// Sums of `m v- (v- + v+)` and `m v+ (v- + v+)`.
     pub lost: [f64; 2],
-    /// `v+ v+`.
+    /// Sum of `v+ v+`.
     pub moved: f64,
-    /// `v-` times the external force of this step and the one before.
+    /// Sum of `v-` times the external forces of this step and the previous step.
     pub work: f64,
 }
 
@@ -41,8 +43,8 @@ pub(super) struct Forces<'a> {
     pub internal: &'a [Vector3],
 }
 
-/// `v <- keep v + push / m (external - internal)` of the free degrees of freedom; the velocities of the others come in as zero and
-/// stay so.
+/// Computes `v <- keep v + push / m (external - internal)` at the free degrees of freedom. All other
+/// velocities must be zero on input and stay zero.
 pub(super) fn accelerate(
     path: LanePath,
     inertia: &Inertia,
@@ -50,7 +52,8 @@ pub(super) fn accelerate(
     forces: Forces,
     v: &mut [Vector3],
 ) -> Sums {
-    // Added up out here: inside, the compiler lays the lanes out for that, and takes them apart in every block.
+    // The lanes are added up outside the kernel. Inside, the compiler would arrange the lanes for this sum
+    // and rearrange them in every block.
     let mut sums = [[0.0; LANES]; 5];
     blocks(path, inertia, factors, forces, v, &mut sums);
     let [kinetic, lost, next_lost, moved, work] = sums.map(|lanes| lanes.iter().sum());
@@ -79,7 +82,7 @@ fn blocks_lanes<const FMA: bool>(
         let forces = [&external[k], &before[k], &internal[k]];
         block::<FMA>(&mass[k], &per_mass[k], factors, forces, v, sums);
     }
-    // Lanes left over have no mass and add nothing.
+    // Unused lanes have no mass and add nothing.
     let forces = [&padded(last_external), &padded(last_before), &padded(last_internal)];
     let mut v = padded(last_v);
     block::<FMA>(&padded(last_mass), &padded(last_per_mass), factors, forces, &mut v, sums);
@@ -110,7 +113,7 @@ fn block<const FMA: bool>(
 }
 
 on_path! {
-    /// `u <- u + dt v`.
+    /// Computes `u <- u + dt v`.
     pub(super) fn advance(dt: f64, v: &[Vector3], u: &mut [Vector3]) = advance_lanes
 }
 
@@ -128,7 +131,7 @@ fn padded(rest: &[f64]) -> Lanes {
 
 #[inline(always)]
 fn flat(vectors: &[Vector3]) -> &[f64] {
-    // SAFETY: a vector is its three numbers, one after the other, and nothing else.
+    // SAFETY: a vector consists of its three numbers, one after the other, and nothing else.
     unsafe { std::slice::from_raw_parts(vectors.as_ptr().cast(), 3 * vectors.len()) }
 }
 

@@ -1,8 +1,9 @@
-//! Tetrahedra of four nodes and one point: eight of them in the lanes of one block.
+//! Tetrahedra with four nodes and one point, eight of them in the lanes of one block.
 //!
-//! Gradients of a partition of unity sum to zero, so three of the four are stored and
-//! `H = sum_a (u_a - u_0) grad N_a`; the force on node 0 is minus the sum of the others, momentum is conserved to the
-//! last bit of each element. 88 bytes per element (9 gradients, weight, four 16-bit nodes) instead of 120.
+//! The gradients of a partition of unity sum to zero, so only three of the four are stored, and
+//! `H = sum_a (u_a - u_0) grad N_a`. The force on node 0 is minus the sum of the others, so momentum is
+//! conserved to the last bit of each element. An element takes 88 bytes (9 gradients, weight, four 16-bit
+//! nodes) instead of 120.
 
 use super::Kernel;
 use super::chunks::{Border, ChunkNodes, Slot, load, split};
@@ -14,10 +15,11 @@ use lanes::{LANES, LanePath};
 use shape::Vector3;
 use shape::locality_order;
 
-/// Elements per chunk: 512 distinct nodes or so, whose displacements and forces stay in the first-level cache.
+/// Elements per chunk, with about 512 distinct nodes, whose displacements and forces stay in the first-level
+/// cache.
 const SIZE: usize = 2048;
 
-/// Standard or nodal-mean dilation on tetrahedra of four nodes.
+/// Kernel for tetrahedra with four nodes, standard or with nodal-mean dilation.
 pub(super) struct Tet4 {
     border: Border,
     chunks: Vec<Chunk>,
@@ -28,12 +30,12 @@ pub(super) struct Tet4 {
 }
 
 impl Tet4 {
-    /// Of rows laid out as linear tetrahedra; none for groups other than one per node and part, weighted
-    /// evenly.
+    /// Builds the kernel from rows laid out as linear tetrahedra. Returns `None` for groups other than one
+    /// per node and part with equal weights.
     pub fn new(body: &ExplicitBody, laws: Vec<LaneLaw>) -> Option<Tet4> {
         let (volume, rows) = (body.volume, body.volume.rows());
         let mut order = locality_order(volume.points());
-        // A chunk is of one part, so that each of its nodes stands for one group.
+        // A chunk belongs to one part, so that each of its nodes represents one group.
         let part = |q: &u32| body.groups.and_then(|groups| groups.parts().get(*q as usize));
         order.sort_by_key(part);
         let parts: Vec<ChunkNodes> = order
@@ -63,7 +65,7 @@ impl Tet4 {
         if self.nodal.is_some() { Kernel::Tet4NodalDilation } else { Kernel::Tet4 }
     }
 
-    /// Internal forces; false where some `J` is not positive.
+    /// Computes internal forces, N. Returns false if `J` is not positive somewhere.
     pub fn forces(&mut self, path: LanePath, u: &[Vector3], f: &mut [Vector3]) -> bool {
         let Tet4 { border, chunks, u: slots, f: sums, laws, nodal } = self;
         let not_inverted = match nodal {
@@ -101,7 +103,7 @@ impl Tet4 {
 /// Blocks of one chunk, by law.
 pub(super) struct Chunk {
     pub blocks: Vec<Block>,
-    /// Blocks up to this one are of this region.
+    /// Runs of blocks with one region: end of the run, and region index.
     pub runs: Vec<(usize, u16)>,
 }
 
@@ -117,12 +119,13 @@ impl Chunk {
         order.sort_by_key(|&k| region(k));
         let (mut blocks, mut runs) = (Vec::new(), Vec::new());
         for alike in order.chunk_by(|&a, &b| region(a) == region(b)) {
-            // Lanes far apart: neighbours share nodes, and eight sums in turn into one node wait for each other (0.97 of the
-            // time, with nodal dilation 0.90).
+            // Elements in the lanes are far apart: neighbours share nodes, and successive sums into one node
+            // wait for each other (0.97 of the time, with nodal dilation 0.90).
             let stride = alike.len().div_ceil(LANES);
             for first in 0..stride {
                 let group = alike[first..].iter().step_by(stride);
-                // A lane left over has no weight and no gradient: J = 1 and no force, on the chunk's first node.
+                // An unused lane has no weight and no gradient: J = 1 and no force, on the chunk's first
+                // node.
                 let mut block =
                     Block { grads: [[0.0; LANES]; 9], weight: [0.0; LANES], nodes: [[0; LANES]; 4] };
                 for (l, &k) in group.enumerate() {

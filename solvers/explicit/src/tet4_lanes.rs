@@ -1,9 +1,10 @@
-//! Kernels of the tetrahedron of four nodes: eight elements in the lanes of one block.
+//! Kernels of the tetrahedron with four nodes: eight elements in the lanes of one block.
 //!
-//! Three passes over a few blocks: strains, the law, then stress and forces. In one pass a block is a chain that fills the window of the
-//! processor: the neo-Hookean law in two takes 0.8 of the time, apart from gather and scatter in a pass of its own 0.77 of that.
-//! Each law's loop over blocks is compiled on its own: two in one function spoil each other's vectors. The benchmark `tet4`
-//! reports how far the kernel is from its bounds.
+//! The kernels make three passes over a few blocks: strains, the law, then stress and forces. In a single
+//! pass a block is a chain that fills the out-of-order window of the processor. The neo-Hookean law in two
+//! passes takes 0.8 of the time; separated from gather and scatter in a pass of its own it takes 0.77 of
+//! that. The loop of each law over blocks is compiled separately, because two in one function spoil each
+//! other's vectorisation. The benchmark `tet4` reports the distance of the kernel from its bounds.
 
 use super::chunks::Slot;
 use super::moduli::{LaneLaw, Moduli, stress};
@@ -14,7 +15,7 @@ use material::Law;
 use material::lane::invariants::{Invariants, add_cofactor, piola, pressed};
 use material::lane::{LANES, LaneStrain, Lanes};
 
-/// Blocks that go through each pass together; two and eight take as long.
+/// Number of blocks that go through each pass together; two and eight take as long.
 const TOGETHER: usize = 4;
 
 #[repr(C, align(64))]
@@ -25,20 +26,20 @@ pub(super) struct Block {
     pub nodes: [[u16; LANES]; 4],
 }
 
-/// What one pass leaves for the next. Aligned as [`LaneStrain`] is.
+/// Intermediate results between passes, aligned like [`LaneStrain`].
 #[repr(align(64))]
 struct Passed<T>([T; TOGETHER]);
 
 impl Block {
-    /// Asks for a block to come: without that a hundred thousand elements take 1.8 times as long. Four to sixteen blocks ahead are
-    /// alike; those of a whole pass asked for at once are too many (1.5 times).
+    /// Prefetches a later block; without this, a hundred thousand elements take 1.8 times as long. Four to
+    /// sixteen blocks ahead are equivalent. Prefetching all blocks of a pass at once is too much (1.5 times).
     #[inline(always)]
     fn fetch_ahead(&self) {
         fetch(std::ptr::from_ref(self).wrapping_add(8));
     }
 }
 
-/// Makes sure that all nodes of some blocks are among so many slots.
+/// Checks that all nodes of the blocks lie within the given number of slots.
 #[inline(always)]
 fn check(blocks: &[Block], slots: usize) {
     for block in blocks {
@@ -46,14 +47,15 @@ fn check(blocks: &[Block], slots: usize) {
     }
 }
 
-/// Displacements relative to node 0, [3 a + i].
+/// Returns displacements relative to node 0, [3 a + i].
 ///
 /// # Safety
-/// Registers of `BITS` must be there, and the block's nodes within `u`.
+///
+/// Registers of `BITS` must be available, and the block's nodes must lie within `u`.
 #[inline(always)]
 unsafe fn gather<const BITS: usize>(block: &Block, u: &[Slot]) -> [[f64; LANES]; 9] {
     let mut d = [[0.0; LANES]; 9];
-    // SAFETY: the caller's promise.
+    // SAFETY: guaranteed by the caller.
     let origin = unsafe { lanes_of::<BITS>(u, &block.nodes[0], &[[0.0; LANES]; 3]) };
     for a in 0..3 {
         // SAFETY: as above.
@@ -66,17 +68,18 @@ unsafe fn gather<const BITS: usize>(block: &Block, u: &[Slot]) -> [[f64; LANES];
 /// Adds the forces of nodes 1 to 3 and 0.
 ///
 /// # Safety
-/// Registers of `BITS` must be there, and the block's nodes within `f`.
+///
+/// Registers of `BITS` must be available, and the block's nodes must lie within `f`.
 #[inline(always)]
 unsafe fn scatter<const BITS: usize>(block: &Block, out: &[Lanes; 12], f: &mut [Slot]) {
     for a in 0..4 {
         let nodes = &block.nodes[(a + 1) % 4];
-        // SAFETY: the caller's promise.
+        // SAFETY: guaranteed by the caller.
         unsafe { add_lanes::<BITS>(&out[3 * a], &out[3 * a + 1], &out[3 * a + 2], nodes, f) };
     }
 }
 
-/// `H_ij = sum_a d_ai g_aj` of one lane.
+/// Returns `H_ij = sum_a d_ai g_aj` of one lane.
 #[inline(always)]
 fn gradient<const FMA: bool>(d: &[[f64; LANES]; 9], g: &[[f64; LANES]; 9], l: usize) -> [f64; 9] {
     let m = madd::<FMA>;
@@ -88,7 +91,7 @@ fn gradient<const FMA: bool>(d: &[[f64; LANES]; 9], g: &[[f64; LANES]; 9], l: us
     h
 }
 
-/// `f_a = w P grad N_a` of one lane, and minus their sum for node 0.
+/// Computes `f_a = w P grad N_a` of one lane, and minus their sum for node 0.
 #[inline(always)]
 fn forces<const FMA: bool>(p: &[f64; 9], g: &[[f64; LANES]; 9], l: usize, out: &mut [Lanes; 12]) {
     let m = madd::<FMA>;
@@ -101,7 +104,7 @@ fn forces<const FMA: bool>(p: &[f64; 9], g: &[[f64; LANES]; 9], l: usize, out: &
     }
 }
 
-/// `H` of eight elements.
+/// Computes `H` of eight elements.
 #[inline(always)]
 fn strain<const FMA: bool>(d: &[Lanes; 9], g: &[Lanes; 9], out: &mut LaneStrain) {
     for l in 0..LANES {
@@ -119,7 +122,7 @@ fn weighted(p: &[Lanes; 9], w: f64, l: usize) -> [f64; 9] {
     out
 }
 
-/// Forces of eight elements at the stress `p`.
+/// Computes the forces of eight elements for the stress `p`.
 #[inline(always)]
 fn forces_of<const FMA: bool>(block: &Block, p: &[Lanes; 9], out: &mut [Lanes; 12]) {
     for l in 0..LANES {
@@ -129,7 +132,8 @@ fn forces_of<const FMA: bool>(block: &Block, p: &[Lanes; 9], out: &mut [Lanes; 1
     }
 }
 
-/// As [`forces_of`] with the mean pressure of the groups, four times which is `pressure`.
+/// Computes the forces as [`forces_of`] with the mean pressure of the groups; `pressure` is four times the
+/// mean.
 #[inline(always)]
 fn dilated_forces_of<const FMA: bool>(
     block: &Block,
@@ -147,7 +151,7 @@ fn dilated_forces_of<const FMA: bool>(
     }
 }
 
-/// Coefficients of `w P`.
+/// Computes the coefficients of `w P`.
 #[inline(always)]
 fn neo_hookean_law<const FMA: bool>(
     block: &Block,
@@ -162,7 +166,7 @@ fn neo_hookean_law<const FMA: bool>(
     }
 }
 
-/// Forces of eight elements at the stress of these coefficients.
+/// Computes the forces of eight elements for the stress with these coefficients.
 #[inline(always)]
 fn combined_forces<const FMA: bool>(
     block: &Block,
@@ -177,7 +181,8 @@ fn combined_forces<const FMA: bool>(
     }
 }
 
-/// As [`neo_hookean_law`] with the dilation of the groups. The shared numbers are four times the means of `J_a^(2/3)` and `p_a`.
+/// Computes the coefficients as [`neo_hookean_law`] with the dilation of the groups. The `shared` numbers are
+/// four times the means of `J_a^(2/3)` and `p_a`.
 #[inline(always)]
 fn dilated_neo_hookean_law<const FMA: bool>(
     block: &Block,
@@ -196,7 +201,7 @@ fn dilated_neo_hookean_law<const FMA: bool>(
     }
 }
 
-/// Internal forces of one chunk, added to `f`; false where some `J` is not positive.
+/// Adds internal forces of one chunk to `f`. Returns false if `J` is not positive somewhere.
 pub(super) fn internal(path: LanePath, laws: &[LaneLaw], chunk: &Chunk, u: &[Slot], f: &mut [Slot]) -> bool {
     let mut first = 0;
     let mut good = [1.0; LANES];
@@ -229,7 +234,7 @@ fn neo_hookean_lanes<const FMA: bool, const BITS: usize>(
         check(blocks, u.len().min(f.len()));
         for (block, x) in blocks.iter().zip(&mut x) {
             block.fetch_ahead();
-            // SAFETY: the nodes were checked, and a kernel has the registers of its path.
+            // SAFETY: the nodes were checked, and a kernel runs with the registers of its path.
             strain::<FMA>(&unsafe { gather::<BITS>(block, u) }, &block.grads, x);
             x.check(good);
         }
@@ -245,7 +250,7 @@ fn neo_hookean_lanes<const FMA: bool, const BITS: usize>(
 }
 
 on_path! {
-    /// Any other law.
+    /// Adds the forces of any other law.
     fn other(path: LanePath, blocks: &[Block], law: &Law, u: &[Slot], f: &mut [Slot], good: &mut Lanes) = other_lanes::<BITS>
 }
 
@@ -264,7 +269,7 @@ fn other_lanes<const FMA: bool, const BITS: usize>(
         check(blocks, u.len().min(f.len()));
         for (block, x) in blocks.iter().zip(&mut x) {
             block.fetch_ahead();
-            // SAFETY: the nodes were checked, and a kernel has the registers of its path.
+            // SAFETY: the nodes were checked, and a kernel runs with the registers of its path.
             strain::<FMA>(&unsafe { gather::<BITS>(block, u) }, &block.grads, x);
             x.check(good);
         }
@@ -278,7 +283,8 @@ fn other_lanes<const FMA: bool, const BITS: usize>(
 }
 
 on_path! {
-    /// First pass of the nodal-mean dilation: `sum share w (J - 1)` and `sum share w mu b` added to `sums`.
+    /// Makes the first pass of nodal-mean dilation: adds `sum share w (J - 1)` and `sum share w mu b` to
+    /// `sums`.
     pub(super) fn dilations(laws: &[LaneLaw], chunk: &Chunk, u: &[Slot], sums: &mut [[f64; 2]], not_inverted: &mut bool) = dilations_lanes::<BITS>
 }
 
@@ -293,12 +299,12 @@ fn dilations_lanes<const FMA: bool, const BITS: usize>(
     let mut first = 0;
     let mut good = [1.0; LANES];
     for &(end, region) in &chunk.runs {
-        // Of the other laws the first number alone.
+        // Only the first sum is used for other laws.
         let [mu, ..] = laws[region as usize].of_group();
         for block in &chunk.blocks[first..end] {
             check(std::slice::from_ref(block), u.len());
             block.fetch_ahead();
-            // SAFETY: the nodes were checked, and a kernel has the registers of its path.
+            // SAFETY: the nodes were checked, and a kernel runs with the registers of its path.
             let d = unsafe { gather::<BITS>(block, u) };
             let mut out = [[0.0; LANES]; 2];
             for l in 0..LANES {
@@ -322,7 +328,7 @@ fn dilations_lanes<const FMA: bool, const BITS: usize>(
     *not_inverted = good == [1.0; LANES];
 }
 
-/// Second pass: forces added to `f`; `closed` holds `J_a^(2/3)` and `p_a` of the nodes.
+/// Makes the second pass: adds forces to `f`; `closed` has `J_a^(2/3)` and `p_a` of the nodes.
 pub(super) fn dilated(
     path: LanePath,
     laws: &[LaneLaw],
@@ -360,7 +366,7 @@ fn dilated_neo_hookean_lanes<const FMA: bool, const BITS: usize>(
         check(blocks, u.len().min(f.len()));
         for (block, x) in blocks.iter().zip(&mut x) {
             block.fetch_ahead();
-            // SAFETY: the nodes were checked, and a kernel has the registers of its path.
+            // SAFETY: the nodes were checked, and a kernel runs with the registers of its path.
             strain::<FMA>(&unsafe { gather::<BITS>(block, u) }, &block.grads, x);
         }
         for ((block, x), c) in blocks.iter().zip(&x).zip(&mut c.0) {
@@ -376,7 +382,7 @@ fn dilated_neo_hookean_lanes<const FMA: bool, const BITS: usize>(
 }
 
 on_path! {
-    /// Any other law.
+    /// Adds the forces of any other law.
     fn dilated_other(path: LanePath, blocks: &[Block], law: &Law, u: &[Slot], closed: &[[f64; 2]], f: &mut [Slot]) = dilated_other_lanes::<BITS>
 }
 
@@ -395,7 +401,7 @@ fn dilated_other_lanes<const FMA: bool, const BITS: usize>(
         check(blocks, u.len().min(f.len()));
         for (block, x) in blocks.iter().zip(&mut x) {
             block.fetch_ahead();
-            // SAFETY: the nodes were checked, and a kernel has the registers of its path.
+            // SAFETY: the nodes were checked, and a kernel runs with the registers of its path.
             strain::<FMA>(&unsafe { gather::<BITS>(block, u) }, &block.grads, x);
         }
         stress(path, law, &x[..blocks.len()], &mut p.0);

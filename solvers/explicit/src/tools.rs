@@ -1,66 +1,69 @@
-//! Rigid tools in explicit dynamics: led along a way or driven by a force, touching by penalty with friction.
+//! Rigid tools in explicit dynamics: driven by displacement or force, in contact by penalty with friction.
 
 use super::{ExplicitError, Springs};
 use contact::{ContactCounts, ContactError, ContactHistory, ContactSearch, ContactSurface, Contacts};
 use contact::{Drive, Stand, Tool, ToolState};
 use shape::{Point3, Vector3};
 
-/// A tool, its drive and its ramp.
+/// Tool with its drive and its ramp.
 ///
-/// Every tool stands where it first touches the body at t = 0, its gap closed: a ramp over seconds would otherwise spend
-/// part of itself on the way there. From there a closure grows in proportion to time from that of the touch to the one asked
-/// for, and a force from zero.
+/// At t = 0 every tool is placed at its first contact with the body, with zero gap. A ramp over seconds would
+/// otherwise spend part of its time on the approach. From there a displacement grows in proportion to time,
+/// from that of first contact to the requested value, and a force grows from zero.
 ///
-/// A force needs a mass to act on: `m d'' = F - F_contact - alpha m d'` along the way, by central differences with the
-/// body's time step. The mass is a free parameter where a case gives none. It adds its inertia `m d''` to the
-/// force on the tissue, and swings on the tissue at `sqrt(k / m)`: light against the body (a tenth), heavy against what a
-/// step can resolve (see [`ExplicitError::LightTool`]).
+/// A force needs a mass to act on: `m d'' = F - F_contact - alpha m d'` along the direction, by central
+/// differences with the body's time step. The mass is a free parameter if a case gives none. It adds its
+/// inertia `m d''` to the force on the tissue and oscillates on the tissue at `sqrt(k / m)`. It should be
+/// light compared with the body (a tenth), and heavy enough for the time step (see
+/// [`ExplicitError::LightTool`]).
 #[derive(Clone, Copy, Debug)]
 pub struct MovingTool<'a> {
     /// The tool.
     pub tool: &'a Tool,
-    /// Closure or force at the end of the ramp.
+    /// Displacement or force at the end of the ramp.
     pub drive: Drive,
-    /// Length of the ramp, s; constant from then on.
+    /// Length of the ramp, s; the drive is constant afterwards.
     pub over: f64,
-    /// Mass of a tool that is driven by force, kg.
+    /// Mass of a force-driven tool, kg.
     pub mass: f64,
-    /// Mass-proportional damping of such a tool, 1/s.
+    /// Mass-proportional damping of a force-driven tool, 1/s.
     pub damping: f64,
 }
 
-/// A tool at a step.
+/// Tool at a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ToolMotion {
-    /// Place and forces.
+    /// Displacement and forces.
     pub state: ToolState,
-    /// Speed along its way over the step before, m/s.
+    /// Speed along its direction over the previous step, m/s.
     pub speed: f64,
 }
 
 /// Energies of all tools since the start, J.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ToolEnergies {
-    /// Work of the drives: of a force on its way, of a contact force against a tool led along.
+    /// Work of the drives: of a force along its path, or against the contact force of a displacement-driven
+    /// tool.
     pub work: f64,
     /// Kinetic energy of tools with a mass.
     pub kinetic: f64,
-    /// Stored in penalty and stick: `sum_q w (p^2 / (2 k_n) + k_t |e|^2 / 2)`.
+    /// Energy stored in penalty and stick: `sum_q w (p^2 / (2 k_n) + k_t |e|^2 / 2)`.
     pub stored: f64,
-    /// Lost to friction.
+    /// Energy lost to friction.
     pub friction: f64,
-    /// Lost to the damping of tools with a mass.
+    /// Energy lost to the damping of tools with a mass.
     pub damping: f64,
 }
 
-/// Tools in motion with their contact, as a part of [`super::Dynamics`].
+/// Moving tools with their contact, as a part of [`super::Dynamics`].
 pub struct Tools<'a> {
     surface: &'a ContactSurface<'a>,
     search: ContactSearch<'a>,
     each: Vec<Moving<'a>>,
     forces: Vec<Vector3>,
-    /// Nodes that carry a contact force, each once, and whether a node is one of them.
+    /// Nodes with a contact force, each once.
     loaded: Vec<u32>,
+    /// Whether each node has a contact force.
     is_loaded: Vec<bool>,
     counts: ContactCounts,
 }
@@ -68,24 +71,28 @@ pub struct Tools<'a> {
 struct Moving<'a> {
     of: MovingTool<'a>,
     history: ContactHistory,
-    /// Closure at which it first touches, m.
+    /// Displacement at first contact, m.
     touch: f64,
-    /// Closure at the step to come, m.
+    /// Displacement at the next step, m.
     closure: f64,
-    /// Closure at the step before, m.
+    /// Displacement at the previous step, m.
     before: f64,
-    /// At `n - 1/2`, m/s.
+    /// Speed at `n - 1/2`, m/s.
     speed: f64,
     motion: ToolMotion,
-    /// Drive force or contact force that worked at the step before, N.
+    /// Drive force or contact force at the previous step, for its work, N.
     worked: f64,
     energies: ToolEnergies,
-    /// The half of this step's damping work that belongs after it, J.
+    /// Half of this step's damping work, which belongs to the next step, J.
     pending: f64,
 }
 
 impl<'a> Tools<'a> {
-    /// Tools at their first touch of the body in the state `u` (m).
+    /// Places the tools at their first contact with the body in the state `u` (m).
+    ///
+    /// # Errors
+    ///
+    /// [`ExplicitError::BadParameter`] or [`ExplicitError::Length`] for invalid input.
     pub fn new(
         surface: &'a ContactSurface<'a>,
         tools: &[MovingTool<'a>],
@@ -114,12 +121,12 @@ impl<'a> Tools<'a> {
         Ok(Tools { surface, search, each, forces, loaded, is_loaded, counts: ContactCounts::default() })
     }
 
-    /// Every tool at the last step.
+    /// Iterates over the motions of all tools at the last step.
     pub fn motions(&self) -> impl Iterator<Item = ToolMotion> {
         self.each.iter().map(|tool| tool.motion)
     }
 
-    /// Energies at the last step.
+    /// Returns the energies at the last step.
     pub fn energies(&self) -> ToolEnergies {
         self.each.iter().fold(ToolEnergies::default(), |a, tool| {
             let b = &tool.energies;
@@ -133,12 +140,21 @@ impl<'a> Tools<'a> {
         })
     }
 
-    /// Fails where a tool that touches nothing stands in the body all the same at `step`, with the displacements `u` (m) of then.
+    /// Checks that no tool without contact overlaps the body at `step`, with the displacements `u` (m) of
+    /// that step.
+    ///
+    /// # Errors
+    ///
+    /// [`ExplicitError::ContactAt`] with the first such tool.
     pub fn check_overlap(&self, step: usize, time: f64, u: &[Vector3]) -> Result<(), ExplicitError> {
         self.check(step, time, u, |surface, tool, stand| surface.check_overlap(tool, stand))
     }
 
-    /// As [`Tools::check_overlap`] at the end of the motion, where no way is left to the next point of the surface.
+    /// Checks as [`Tools::check_overlap`] at the end of the motion, when no further contact can follow.
+    ///
+    /// # Errors
+    ///
+    /// [`ExplicitError::ContactAt`] with the first such tool.
     pub fn check_end(&self, step: usize, time: f64, u: &[Vector3]) -> Result<(), ExplicitError> {
         self.check(step, time, u, |surface, tool, stand| surface.check_end(tool, stand))
     }
@@ -162,25 +178,27 @@ impl<'a> Tools<'a> {
         Ok(())
     }
 
-    /// What the contact search did and skipped.
+    /// Counters of the contact search.
     pub fn counts(&self) -> ContactCounts {
         self.counts
     }
 
-    /// The stiffest that contact can be: the largest penalty or stick slope on all of the surface. A point is taken to touch
-    /// one tool at a time.
+    /// Returns the largest possible contact stiffness: the largest penalty or stick slope on the whole
+    /// surface. A point is assumed to touch one tool at a time.
     pub(super) fn springs(&self) -> Option<Springs<'a>> {
         let stiffest = |tool: &Moving| tool.of.tool.law().penalty().max(tool.of.tool.law().stick());
         let modulus = self.each.iter().map(stiffest).reduce(f64::max)?;
         Some(Springs { surface: self.surface.rows(), modulus })
     }
 
-    /// Nodes with a contact force on the tissue at the last step, each once, and that force, N.
+    /// Iterates over the nodes with a contact force on the tissue at the last step, each once, with that
+    /// force, N.
     pub(super) fn forces(&self) -> impl Iterator<Item = (usize, &Vector3)> {
         self.loaded.iter().map(|&node| (node as usize, &self.forces[node as usize]))
     }
 
-    /// Contact at step `n` in the state `u`, committed; then the tools' speeds at `n + 1/2` and their closures at `n + 1`.
+    /// Computes and commits contact at step `n` in the state `u`. Then computes the tools' speeds at
+    /// `n + 1/2` and displacements at `n + 1`.
     pub(super) fn step(
         &mut self,
         step: usize,
@@ -188,7 +206,7 @@ impl<'a> Tools<'a> {
         dt: [f64; 2],
         u: &[Vector3],
     ) -> Result<(), ExplicitError> {
-        // A few dozen nodes carry a force: to clear and to look at all took a fortieth of a step.
+        // A few dozen nodes have a force: clearing and visiting all nodes took a fortieth of a step.
         for node in self.loaded.drain(..) {
             self.forces[node as usize] = Vector3::zeros();
             self.is_loaded[node as usize] = false;
@@ -239,7 +257,7 @@ impl<'a> Moving<'a> {
         };
         moving.closure = match of.drive {
             Drive::Closure(_) => moving.led(0.0),
-            // A force on a tool that will never touch moves it from where it stands.
+            // A force on a tool that never touches moves the tool from its initial position.
             Drive::Force(_) => {
                 if touch.is_finite() {
                     touch
@@ -257,14 +275,14 @@ impl<'a> Moving<'a> {
         if self.of.over > 0.0 { (time / self.of.over).clamp(0.0, 1.0) } else { 1.0 }
     }
 
-    /// Closure of a tool that is led, m.
+    /// Returns the displacement of a displacement-driven tool, m.
     fn led(&self, time: f64) -> f64 {
         let Drive::Closure(full) = self.of.drive else { return self.closure };
         let start = if self.touch < full { self.touch } else { 0.0 };
         start + (full - start) * self.ramp(time)
     }
 
-    /// Force, penetration and stored energy of the contacts found.
+    /// Stores force, penetration and stored energy of the contacts found.
     fn settle(&mut self, contacts: Option<&Contacts>, surface: &ContactSurface) {
         self.motion = ToolMotion { state: ToolState::new(self.closure, contacts), speed: self.speed };
         let law = self.of.tool.law();
@@ -279,7 +297,7 @@ impl<'a> Moving<'a> {
         self.energies.friction += contacts.map_or(0.0, Contacts::dissipated);
     }
 
-    /// A tool's own critical step on its contact must be twice the step or more.
+    /// Checks that the tool's own critical step in contact is at least twice the time step.
     fn check(
         &self,
         index: usize,
@@ -316,7 +334,7 @@ impl<'a> Moving<'a> {
                 let c = 0.5 * self.of.damping * dt;
                 let drive = full * self.ramp(time);
                 if first {
-                    // As the body's: from rest at t = 0.
+                    // From rest at t = 0, like the body.
                     self.speed = -(drive - pushed) * (0.5 * dt / m);
                 }
                 let before = self.speed;
@@ -337,15 +355,15 @@ impl<'a> Moving<'a> {
     }
 }
 
-/// Closure (m) of the first touch, to 1e-9 m or a millionth of the way to the body's far side; infinite if
-/// the tool passes by. The distance to a point changes by no more than the way gone, so going on by the gap
-/// never goes too far.
+/// Returns the displacement (m) of first contact, to 1e-9 m or a millionth of the distance to the body's far
+/// side; infinite if the tool passes by. The distance to a point changes by no more than the tool's travel,
+/// so advancing by the gap never overshoots.
 fn touch(tool: &Tool, surface: &ContactSurface, u: &[Vector3]) -> f64 {
     let points = surface.rows().points();
     if points.is_empty() {
         return f64::INFINITY;
     }
-    // Beyond the body's far side, where the tool's origin stands past every point, there is nothing left to touch.
+    // Beyond the body's far side, when the tool's origin has passed every point, nothing is left to touch.
     let ahead = |x: &Point3| (x - tool.place(0.0)).dot(&tool.along());
     let far = (0..points.len()).map(|q| ahead(&surface.position(q, u))).fold(0.0, f64::max);
     let near = 1e-9f64.min(1e-6 * far);

@@ -1,24 +1,27 @@
-//! The trilinear hexahedron with corners at `xi, eta, zeta = +-1` and 2 x 2 x 2 Gauss points, by its coefficients.
+//! Trilinear hexahedron with corners at `xi, eta, zeta = +-1` and 2 x 2 x 2 Gauss points, in terms of its
+//! coefficients.
 //!
-//! Eight corner values become the coefficients of 1, xi, eta, xi eta, ..., xi eta zeta by sums and differences, 24
-//! operations. A derivative along one axis does not depend on that axis: it takes four values at the eight points, eight
-//! sums for the four. Straight-line code: with a loop inside, one over lanes around it stays scalar.
+//! Sums and differences turn eight corner values into the coefficients of 1, xi, eta, xi eta, ..., xi eta
+//! zeta, in 24 operations. A derivative along one axis does not depend on that axis: it has four values at
+//! the eight points, computed by eight sums. The code has no loops, because a loop over lanes around an inner
+//! loop stays scalar.
 
 use geometry::element::{Element, Hex8};
 use shape::{Matrix3, Vector3};
 
-/// 1 / sqrt 3.
+/// Gauss coordinate 1 / sqrt 3.
 const GAUSS: f64 = 0.577_350_269_189_625_8;
 
-/// Node at the corner of the given index bits: bit 0 for xi, 1 for eta, 2 for zeta. Its own inverse.
+/// Node at the corner with the given index bits: bit 0 for xi, 1 for eta, 2 for zeta. The table is its own
+/// inverse.
 pub(super) const NODE: [usize; 8] = [0, 1, 3, 2, 4, 5, 7, 6];
 
-/// `dN_a/dxi` at the Gauss point of the given signs.
+/// Returns `dN_a/dxi` at the Gauss point with the given signs.
 pub(super) fn reference(signs: &[f64; 3]) -> [Vector3; 8] {
     Hex8::shape_grad(signs.map(|s| s * GAUSS)).map(Vector3::from)
 }
 
-/// The `A` of `grad N_a = A dN_a/dxi` by least squares, if it leaves nothing over.
+/// Returns the `A` of `grad N_a = A dN_a/dxi` by least squares, if the fit has no remainder.
 pub(super) fn fit(grads: &[Vector3], table: &[Vector3; 8]) -> Option<Matrix3> {
     let (mut cross, mut square) = (Matrix3::zeros(), Matrix3::zeros());
     for (g, t) in grads.iter().zip(table) {
@@ -31,7 +34,8 @@ pub(super) fn fit(grads: &[Vector3], table: &[Vector3; 8]) -> Option<Matrix3> {
     fits.then_some(map)
 }
 
-/// Corner values, by index bits, to eight times the coefficients, those of products times their powers of 1 / sqrt 3.
+/// Converts corner values, by index bits, to eight times the coefficients; those of products are multiplied
+/// by their powers of 1 / sqrt 3.
 #[inline(always)]
 fn coefficients(v: [f64; 8]) -> [f64; 8] {
     let pair = |a: f64, b: f64| (b + a, b - a);
@@ -44,8 +48,8 @@ fn coefficients(v: [f64; 8]) -> [f64; 8] {
     [c0, c1, c2, GAUSS * c3, c4, GAUSS * c5, GAUSS * c6, GAUSS * GAUSS * c7]
 }
 
-/// Index 0 to 3 of the value of the derivative along `beta` at the point of index bits `q`: by the signs (low, high) of
-/// the two other axes.
+/// Returns the index 0 to 3 of the value of the derivative along `beta` at the point with index bits `q`, by
+/// the signs (low, high) of the two other axes.
 #[inline(always)]
 pub(super) fn value_at(beta: usize, q: usize) -> usize {
     match beta {
@@ -55,7 +59,7 @@ pub(super) fn value_at(beta: usize, q: usize) -> usize {
     }
 }
 
-/// Eight times the derivatives at the Gauss points, [beta][value], from corner values by index bits.
+/// Returns eight times the derivatives at the Gauss points, [beta][value], from corner values by index bits.
 #[inline(always)]
 pub(super) fn slopes(corners: [f64; 8]) -> [[f64; 4]; 3] {
     let c = coefficients(corners);
@@ -66,7 +70,7 @@ pub(super) fn slopes(corners: [f64; 8]) -> [[f64; 4]; 3] {
     [values(c[1], c[3], c[5], c[7]), values(c[2], c[3], c[6], c[7]), values(c[4], c[5], c[6], c[7])]
 }
 
-/// The transpose of [`slopes`].
+/// Applies the transpose of [`slopes`].
 #[inline(always)]
 pub(super) fn slopes_back(d: &[[f64; 4]; 3]) -> [f64; 8] {
     let sums = |v: &[f64; 4]| {
@@ -98,7 +102,7 @@ mod tests {
             let table = reference(&Hex8::NODES[NODE[q]]);
             let expected: Vector3 = (0..8).map(|k| table[NODE[k]] * v[k]).sum();
             for beta in 0..3 {
-                // Values near 1, eight of them.
+                // Eight values near 1.
                 assert!((0.125 * d[beta][value_at(beta, q)] - expected[beta]).abs() < 1e-15, "{q} {beta}");
             }
         }

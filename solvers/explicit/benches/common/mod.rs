@@ -4,7 +4,7 @@ use geometry::CellKind;
 use geometry::generate::{Jitter, box_mesh};
 use shape::{DilationGroups, GradRows, Point3, Rows, Unity, Vector3, VolumeRows};
 
-/// A box of `cells` cubed cells, its groups of points that share a dilation, and displacements with strains near 0.1.
+/// Returns a box of `cells` cubed cells, its dilation groups, and displacements with strains near 0.1.
 pub fn solid(kind: CellKind, cells: usize) -> (VolumeRows, DilationGroups, Vec<Vector3>) {
     let jitter = Some(Jitter { fraction: 0.1, seed: 1 });
     let max = Point3::new(0.04, 0.04, 0.04);
@@ -20,8 +20,9 @@ pub fn solid(kind: CellKind, cells: usize) -> (VolumeRows, DilationGroups, Vec<V
     (volume, groups, u)
 }
 
-/// Points spread over the cells of a grid, each with its (up to) 31 nearest grid nodes: the counts and the locality of
-/// a meshless cloud. The gradients are smooth nonsense of the right size.
+/// Returns points spread over the cells of a grid, each with its (up to) 31 nearest grid nodes, like the
+/// counts and the locality of a meshless cloud. The gradients are smooth, of realistic size and without
+/// further meaning.
 #[allow(dead_code)] // not of every benchmark
 pub fn cloud(cells: usize, per_cell: usize) -> (VolumeRows, Vec<Vector3>) {
     let (n, h) = (cells + 1, 0.04 / cells as f64);
@@ -57,7 +58,7 @@ pub fn cloud(cells: usize, per_cell: usize) -> (VolumeRows, Vec<Vector3>) {
     let values = vec![0.0; nodes.len()];
     let rows = Rows::new(n * n * n, offsets, nodes, values, Unity::NotPromised).unwrap();
     let volume = VolumeRows::new(GradRows::new(points, rows, grads).unwrap(), vec![1e-9; count]).unwrap();
-    // Of the order of the grid spacing times a strain of 0.01.
+    // Displacements of the order of the grid spacing times a strain of 0.01.
     let wave =
         |i: usize| Vector3::new((i as f64).sin(), 0.3, (0.5 * i as f64).cos()) * (4e-4 / cells as f64 / 31.0);
     (volume, (0..n * n * n).map(wave).collect())

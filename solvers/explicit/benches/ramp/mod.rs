@@ -1,5 +1,5 @@
-//! The published ramp without the harness: the kidney of 1331 nodes held at the top between two jaws of 4 N, as
-//! `cases/scenes/kidney/kidney-paper-explicit.toml` has it.
+//! The published ramp without the harness: the kidney of 1331 nodes, fixed at the top, between two jaws of 4
+//! N, as in `cases/scenes/kidney/kidney-paper-explicit.toml`.
 
 use std::path::Path;
 
@@ -16,7 +16,7 @@ use shape::{Matrix3, Point3, SurfaceRows, Vector3, VolumeRows};
 const LANCZOS: LanczosParams = LanczosParams { steps: 15, safety: 0.95 };
 const PENALTY: f64 = 5e8;
 
-/// Body, surface and jaws.
+/// Body with its surface and jaws.
 pub struct Body {
     volume: VolumeRows,
     surface: SurfaceRows,
@@ -65,7 +65,7 @@ impl Body {
         ContactSurface::new(&self.surface)
     }
 
-    /// From rest, at 0.9 of the critical step.
+    /// Starts from rest, at 0.9 of the critical step.
     pub fn motion<'a, 'b>(
         &'b self,
         force: &'b mut InternalForce<'a>,
