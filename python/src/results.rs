@@ -125,7 +125,7 @@ impl Results {
         Table::of(py, &self.all_records())
     }
 
-    /// Adds a run of the same scene, for example the result of an own solver.
+    /// Adds a run of the same scene, for example the result of the user's own solver.
     fn add(&self, py: Python<'_>, run: &Run) -> PyResult<()> {
         let (case, other) = (case_name(&self.scene), &run.outcome.identity.case);
         if case != *other {

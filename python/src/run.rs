@@ -22,7 +22,7 @@ pub(crate) struct Run {
 }
 
 impl Run {
-    /// Returns the name of the method and, if an own solver solved it, of this solver.
+    /// Returns the name of the method and, if the user's own solver solved it, of that solver.
     pub(crate) fn label(&self) -> String {
         let identity = &self.outcome.identity;
         match &identity.adapter {

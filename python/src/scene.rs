@@ -162,7 +162,7 @@ impl Scene {
         self.ran(py, methods, asked(once, states, frames), progress)
     }
 
-    /// Returns a method's problem with its tables, for an own solver.
+    /// Returns a method's problem with its tables, for the user's own solver.
     fn problem(&self, py: Python<'_>, method: &str) -> PyResult<Problem> {
         Problem::new(py, self.scene.clone(), self.reference.clone(), self.method(py, method)?)
     }

@@ -26,9 +26,9 @@ const CHUNK: usize = 64;
 /// vertex between regions has a point for each region, so every point has a single material. The nodes of the
 /// cloud may differ from the vertices.
 ///
-/// The mean does not see gradients that alternate from cell to cell. In pure bending with 225 nodes at a
-/// Poisson's ratio of 0.3 the tip displacement is 16 % too large and stresses oscillate (error in energy
-/// 0.62); both errors decrease with the square of the spacing.
+/// Gradients that alternate from cell to cell do not contribute to the mean. In pure bending with 225 nodes
+/// at a Poisson's ratio of 0.3 the tip displacement is 16 % too large and stresses oscillate (error in
+/// energy 0.62); both errors decrease with the square of the spacing.
 ///
 /// With `stabilisation` above 0 the points of [`crate::smoothed_rows`] come first, with weights
 /// `stabilisation V_c`. For a quadratic energy `W` the sum is the energy of the mean plus

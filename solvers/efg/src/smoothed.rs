@@ -86,7 +86,7 @@ pub fn smoothed_rows(
 ///
 /// A Nitsche support with `beta = gamma (lambda + 2 mu) / h` is then definite for every `gamma > 1`, for any
 /// overlap of supports and any Poisson's ratio. With gradients of the shape functions themselves no such
-/// factor is known, because smoothing does not see all of them.
+/// factor is known, because smoothing averages a part of them out.
 pub fn smoothed_trace(
     background: &Mesh,
     facets: &[Facet],

@@ -126,7 +126,7 @@ const CONTACT_POINTS: usize = 3;
 /// Shape functions over a background of linear tetrahedra.
 pub struct CloudSource {
     approximation: Approximation,
-    /// Number of nodes of the cloud.
+    /// Number of nodes of the cloud; `spacing` is their mean spacing, m.
     nodes: usize,
     spacing: f64,
     background: Arc<Mesh>,

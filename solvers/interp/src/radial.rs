@@ -15,9 +15,9 @@ use crate::neighbours::{check_count, check_finite};
 use crate::scheme::{SchemeEntry, Source, Transfer, support_scale};
 
 /// Radial functions, positive definite in space together with a linear polynomial (Wendland 2005, theorems
-/// 8.5, 8.16 and 8.17). [`Radial::Gaussian`] and [`Radial::WendlandC2`] are so even without a polynomial
-/// (theorems 6.10 and 9.13). Widths are multiples of the cloud's mean spacing, the mean distance to a node's
-/// 14 nearest neighbours, so units do not matter.
+/// 8.5, 8.16 and 8.17). [`Radial::Gaussian`] and [`Radial::WendlandC2`] are positive definite even without a
+/// polynomial (theorems 6.10 and 9.13). Widths are multiples of the cloud's mean spacing, the mean distance
+/// to a node's 14 nearest neighbours, so units do not matter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Radial {
     /// `r^2 ln r`, commonly called thin plate. This function minimises bending energy in the plane. In space

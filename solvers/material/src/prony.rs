@@ -119,6 +119,7 @@ mod tests {
         })
     }
 
+    /// Returns random steps of 1e-4 to 10 s.
     fn steps() -> impl Strategy<Value = Vec<f64>> {
         prop::collection::vec((-4.0..1.0f64).prop_map(|e| 10.0_f64.powf(e)), 1..40)
     }

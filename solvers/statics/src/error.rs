@@ -70,7 +70,7 @@ pub enum SolveError {
     Inconsistent {
         /// Row index.
         row: usize,
-        /// Value less the sum of fixed terms.
+        /// Value minus the sum of the prescribed terms.
         gap: f64,
     },
     /// A constraint row that depends on the others but prescribes a different value.
@@ -99,7 +99,7 @@ pub enum SolveError {
         /// Its volume.
         volume: f64,
     },
-    /// A node that lies in the support of no integration point and is not fixed along every axis.
+    /// A node to which no integration point contributes and that is not fixed along every axis.
     #[error("node {node} has no stiffness: no integration point sees it")]
     OrphanNode {
         /// The node.

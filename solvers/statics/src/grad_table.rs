@@ -40,9 +40,9 @@ pub(crate) type Pair = [f64; 4 * POINTS];
 pub(crate) struct GradTable {
     offsets: Vec<usize>,
     nodes: Vec<u32>,
-    /// Points of the bundle whose support contains the node, one bit each.
+    /// Points of the bundle whose rows contain the node, one bit each.
     seen_by: Vec<u8>,
-    /// Gradients, 1/m; zero at points whose support does not contain the node.
+    /// Gradients, 1/m; zero at points whose rows do not contain the node.
     grads: Vec<Pair>,
     /// Weight of each point, repeated for every component of its gradients.
     weights: Vec<Pair>,

@@ -39,8 +39,8 @@ pub struct Modes {
     pub squared: Vec<f64>,
     /// Nodal parameters of each mode, with `v^T M v = 1`.
     pub shapes: Vec<Vec<Vector3>>,
-    /// `s = mu / rho (pi / L)^2` with the diagonal `L` of the nodes' box, (rad/s)^2: the frequency of a shear
-    /// wave across the body.
+    /// `s = mu / rho (pi / L)^2` with the diagonal `L` of the nodes' box, (rad/s)^2: the squared frequency
+    /// of a shear wave across the body.
     pub scale: f64,
     /// Largest `|K v - omega^2 M v| / ((omega^2 + s) |M v|)` of all modes.
     pub residual: f64,

@@ -53,9 +53,9 @@ pub struct Assembled<'a> {
 /// The forms point by point, for a residual that does not use the assembled matrix.
 ///
 /// For a wide smooth basis with stiff weak supports, the entries of the matrix are accurate to 1e-16 of the
-/// largest entry. The residual of a solution is then known only to `|K| |u|` times that, and stresses of a
-/// patch test are accurate to 1e-12 to 6e-12. The sum point by point, from differences of displacements,
-/// reduces this error by the ratio of displacement to strain times support radius.
+/// largest entry. The residual of a solution is then known only to 1e-16 `|K| |u|`, and stresses of a patch
+/// test are accurate to 1e-12 to 6e-12. The sum point by point, from differences of displacements, reduces
+/// this error by the ratio of displacement to strain times support radius.
 pub(crate) struct Pointwise {
     volume: Vec<GradTable>,
     weak: Vec<(WeakTable, Incidence)>,

@@ -229,8 +229,8 @@ fn motions(
     Motions { pieces, clusters, free }
 }
 
-/// Marks a node that belongs to no piece because no point has it in its support. Such a node is constrained
-/// along all axes (otherwise it was refused as an orphan).
+/// Marks a node that belongs to no piece because no integration point contributes to it. Such a node is
+/// constrained along all axes (otherwise it was refused as an orphan).
 const NOWHERE: usize = usize::MAX;
 
 /// Returns the connected pieces of the quadrature's node graph, the piece of each node, and the clusters as

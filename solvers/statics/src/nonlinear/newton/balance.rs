@@ -39,8 +39,8 @@ pub(super) struct Balance {
 }
 
 impl Newton<'_> {
-    /// Returns the difference of constrained degrees of freedom from their prescribed values at `time`;
-    /// `None` if all are reached.
+    /// Returns the increments that bring constrained degrees of freedom to their prescribed values at `time`,
+    /// m; `None` if all are reached.
     pub(super) fn prescribed_move(&self, state: &State, time: f64) -> Option<Vec<Vector3>> {
         let scale = self.scales(time).supports;
         let mut lacking = false;

@@ -23,7 +23,7 @@ impl Newton<'_> {
     }
 
     /// Refuses a reported state, after `step`, in which a tool overlaps the body without a force. At the end
-    /// of the loading a state is also refused if a tool has no distance left to the next contact point.
+    /// of the loading the check is stricter, because no further point can come into contact.
     pub fn check_overlap(&self, state: &State, step: &Step, ends: bool) -> Result<(), StaticError> {
         self.each_tool(|surface, k, tool| {
             let stand = Stand { closure: state.closures[k], u: &state.u };
