@@ -222,6 +222,72 @@ fn surfaces_that_enclose_nothing_are_refused_with_triangle_and_place() {
     assert!(inverted.contains("the volume is -1.666667e-1"), "{inverted}");
 }
 
+/// Every mistake that a repair could mend says how many triangles and where, and what to do until then.
+#[test]
+fn what_a_repair_would_have_to_do_is_said() {
+    const EDITOR: &str = "yet: mend the file in a mesh editor";
+    const REGIONS: &str = "yet: take a volume mesh with a region for each";
+    let ball = || sphere_like(2, |n| n);
+    let turn = |soup: &mut Soup, triangle: usize| soup.triangles[triangle].swap(1, 2);
+    let edit = |change: &dyn Fn(&mut Soup)| {
+        let mut soup = ball();
+        change(&mut soup);
+        refused(soup).to_string()
+    };
+    let without = |soup: &mut Soup, triangle: usize| {
+        soup.triangles.remove(triangle);
+        soup.faces.remove(triangle);
+    };
+    let all = ball().triangles.len();
+    let holes = edit(&|soup| [all - 1, 0].iter().for_each(|&triangle| without(soup, triangle)));
+    assert!(
+        holes.contains("at a hole of 3 edges near (") && holes.contains("one of 2 holes of 6 edges"),
+        "{holes}"
+    );
+    let some = edit(&|soup| [3, 7].iter().for_each(|&triangle| turn(soup, triangle)));
+    assert!(some.contains(&format!("2 of {all} are not (4 and 8)")), "{some}");
+    let most = edit(&|soup| (1..all).for_each(|triangle| turn(soup, triangle)));
+    assert!(most.contains(&format!("{} of {all} are not (2, 3, 4, 5, ...)", all - 1)), "{most}");
+    let inwards = edit(&|soup| (0..all).for_each(|triangle| turn(soup, triangle)));
+    assert!(inwards.contains(&format!("{all} of {all} face inwards")), "{inwards}");
+    let twice = edit(&|soup| {
+        soup.triangles.push(soup.triangles[4]);
+        soup.faces.push(all as u32 + 1);
+    });
+    assert!(twice.contains(&format!("5 and {} have the same corners", all + 1)), "{twice}");
+    // A side of one triangle is two of its neighbours'.
+    let split = edit(&|soup| {
+        let [a, b, c] = soup.triangles[0];
+        let middle = nalgebra::center(&soup.points[a as usize], &soup.points[b as usize]);
+        soup.points.push(middle);
+        let new = soup.points.len() as u32 - 1;
+        soup.triangles[0] = [a, new, c];
+        soup.triangles.push([new, b, c]);
+        soup.faces.push(1);
+    });
+    assert!(split.contains("the corner (") && split.contains("which does not end there (3 edges"), "{split}");
+    for said in [holes, some, most, inwards, twice, split] {
+        assert!(said.ends_with(EDITOR), "{said}");
+    }
+    let body_in_body = refused(joined(ball(), sphere_like(2, |n| 0.5 * n))).to_string();
+    let tet = Soup {
+        points: CORNERS.map(Point3::from).to_vec(),
+        triangles: FACES.map(|face| face.map(|corner| corner as u32)).to_vec(),
+        faces: vec![1, 2, 3, 4],
+        ..Soup::default()
+    };
+    let mirrored = Soup {
+        points: tet.points.iter().map(|p| Point3::new(-p.x, p.y, p.z)).collect(),
+        triangles: tet.triangles.iter().map(|&[a, b, c]| [a, c, b]).collect(),
+        ..tet.clone()
+    };
+    let touching = refused(joined(tet, mirrored)).to_string();
+    assert!(touching.contains("closed parts touch there"), "{touching}");
+    for said in [body_in_body, touching] {
+        assert!(said.contains(REGIONS), "{said}");
+    }
+}
+
 #[test]
 fn surfaces_that_cross_are_refused() {
     let crossing = refused(joined(sphere_like(3, |n| n), moved(sphere_like(3, |n| n), [0.7, 0.1, 0.2])));

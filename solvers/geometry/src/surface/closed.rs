@@ -1,6 +1,6 @@
 //! Whether every edge has a triangle on either side, turned the same way.
 
-use super::{Soup, SurfaceProblem};
+use super::{Soup, SurfaceProblem, faults};
 
 /// Corners of a file are one where they are nearer than this part of the surface's diagonal: what single precision leaves.
 pub(super) const WELD: f64 = 1e-6;
@@ -20,14 +20,14 @@ pub(super) fn closed(soup: Soup) -> Result<(Soup, Vec<[u32; 3]>), SurfaceProblem
 
 /// One side of an edge.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-struct Side {
+pub(super) struct Side {
     /// Lower and higher corner.
-    edge: [u32; 2],
-    triangle: u32,
+    pub(super) edge: [u32; 2],
+    pub(super) triangle: u32,
     /// From this corner of the triangle to the next.
     corner: u8,
     /// Whether it goes from the lower corner to the higher.
-    upwards: bool,
+    pub(super) upwards: bool,
 }
 
 /// For each triangle the one across each of its edges.
@@ -45,31 +45,18 @@ pub(super) fn neighbours(soup: &Soup) -> Result<Vec<[u32; 3]>, SurfaceProblem> {
         }
     }
     sides.sort_unstable();
-    let face = |side: &Side| soup.faces[side.triangle as usize];
-    let ends = |side: &Side| side.edge.map(|p| soup.points[p as usize]);
     let mut across = vec![[0; 3]; count];
-    let (mut open, mut first) = (0, None);
+    let mut open = None;
     for around in sides.chunk_by(|a, b| a.edge == b.edge) {
         match around {
             [a, b] if a.upwards != b.upwards => {
                 across[a.triangle as usize][a.corner as usize] = b.triangle;
                 across[b.triangle as usize][b.corner as usize] = a.triangle;
             }
-            [a, b] => {
-                return Err(SurfaceProblem::Turned { triangles: [face(a), face(b)], ends: ends(a) });
-            }
-            [a] => {
-                open += 1;
-                first.get_or_insert((face(a), ends(a)));
-            }
-            several => {
-                let triangles = several.iter().map(face).collect();
-                return Err(SurfaceProblem::Branched { triangles, ends: ends(&several[0]) });
-            }
+            // Edges of more triangles say more.
+            [_] => open = open.or(Some(around)),
+            _ => return Err(faults::of_edge(soup, &sides, around)),
         }
     }
-    match first {
-        Some((triangle, ends)) => Err(SurfaceProblem::Open { triangle, ends, edges: open }),
-        None => Ok(across),
-    }
+    open.map_or(Ok(across), |around| Err(faults::of_edge(soup, &sides, around)))
 }

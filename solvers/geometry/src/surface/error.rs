@@ -36,8 +36,16 @@ pub enum SurfaceProblem {
         triangle: u32,
         /// Its ends.
         ends: [Point3; 2],
+        /// A corner of another triangle on it, between its ends.
+        corner: Option<Point3>,
         /// Number of such edges.
         edges: usize,
+        /// Holes that they enclose.
+        holes: usize,
+        /// Edges of the hole of this one.
+        hole: usize,
+        /// The middle of that hole.
+        at: Point3,
     },
     /// An edge of more than two triangles.
     Branched {
@@ -45,6 +53,8 @@ pub enum SurfaceProblem {
         triangles: Vec<u32>,
         /// Its ends.
         ends: [Point3; 2],
+        /// Two of the triangles that have the same corners.
+        twice: Option<[u32; 2]>,
     },
     /// Neighbours that turn opposite ways.
     Turned {
@@ -52,6 +62,12 @@ pub enum SurfaceProblem {
         triangles: [u32; 2],
         /// Ends of their edge.
         ends: [Point3; 2],
+        /// Triangles that have to turn, so that all are counter-clockwise seen from outside.
+        turned: Vec<u32>,
+        /// Number of all triangles.
+        all: usize,
+        /// Whether turning is enough: a band with a twist has no outside.
+        orientable: bool,
     },
     /// Triangles that cross or touch away from common corners.
     Crossing {
@@ -72,6 +88,8 @@ pub enum SurfaceProblem {
         volume: f64,
         /// How many other parts enclose it.
         within: usize,
+        /// Triangles of the part, and of the whole surface.
+        part: [usize; 2],
     },
     /// More triangles close to each other than a surface has.
     Tangled {
@@ -91,49 +109,93 @@ pub enum SurfaceProblem {
     Flat,
 }
 
+/// Where a surface is mended.
+const EDITOR: &str = "mend the file in a mesh editor";
+
+/// How regions are given without surfaces for them.
+const REGIONS: &str = "take a volume mesh with a region for each (.msh, .inp, .vtu), or the outer surface alone and a region \
+                       of the scene by where";
+
 impl fmt::Display for SurfaceProblem {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             SurfaceProblem::TooFew { triangles } => {
                 write!(f, "{triangles} triangles enclose nothing; a closed surface has 4 or more")
             }
-            SurfaceProblem::Open { triangle, ends, edges } => {
-                let more = if *edges > 1 { format!(" ({edges} such edges)") } else { String::new() };
+            SurfaceProblem::Open { triangle, ends, corner: Some(corner), edges, .. } => {
+                let more = if *edges > 1 {
+                    format!(" ({edges} edges without another triangle)")
+                } else {
+                    String::new()
+                };
                 write!(
                     f,
-                    "the surface is open: the edge {} of triangle {triangle} has no other triangle{more}",
+                    "the surface is open: the corner {} lies on the edge {} of triangle {triangle}, which does not end \
+                     there{more}; this program does not divide triangles yet: {EDITOR}",
+                    point(corner),
                     line(ends)
                 )
             }
-            SurfaceProblem::Branched { triangles, ends } => {
+            SurfaceProblem::Open { triangle, ends, edges, holes, hole, at, .. } => {
+                let more = if *holes > 1 {
+                    format!(", one of {holes} holes of {edges} edges")
+                } else {
+                    String::new()
+                };
                 write!(
                     f,
-                    "triangles {} meet at one edge, {}; two do in a closed surface",
+                    "the surface is open: the edge {} of triangle {triangle} has no other triangle, at a hole of {hole} \
+                     edges near {}{more}; this program does not close holes yet: {EDITOR}",
+                    line(ends),
+                    point(at)
+                )
+            }
+            SurfaceProblem::Branched { triangles, ends, twice } => {
+                branched(f, triangles, ends, twice.as_ref())
+            }
+            SurfaceProblem::Turned { triangles, ends, turned, all, orientable } => {
+                write!(
+                    f,
+                    "triangles {} turn opposite ways along their edge {}; all have to be counter-clockwise seen from outside: ",
                     list(triangles),
                     line(ends)
+                )?;
+                if !orientable {
+                    return write!(f, "no turning does that, so the surface has no outside");
+                }
+                let (count, numbers) = (turned.len(), list(turned));
+                write!(
+                    f,
+                    "{count} of {all} are not ({numbers}), and this program does not turn them yet: {EDITOR}"
                 )
             }
-            SurfaceProblem::Turned { triangles, ends } => write!(
-                f,
-                "triangles {} turn opposite ways along their edge {}; all have to be counter-clockwise seen from outside",
-                list(triangles),
-                line(ends)
-            ),
             SurfaceProblem::Crossing { triangles, at, places } => {
                 let more = if *places > 1 { format!(" ({places} such places)") } else { String::new() };
                 let triangles = list(triangles);
                 write!(f, "the surface crosses itself: triangles {triangles} do, near {}{more}", point(at))
             }
-            SurfaceProblem::InsideOut { triangle, at, volume, within: 0 } => write!(
+            SurfaceProblem::InsideOut { triangle, at, volume, within: 0, part: [part, all] } => write!(
                 f,
-                "the surface is inside out at triangle {triangle}, {}: its triangles turn clockwise seen from outside, the volume is {volume:.6e}",
+                "the surface is inside out at triangle {triangle}, {}: its triangles turn clockwise seen from outside, the \
+                 volume is {volume:.6e}; {part} of {all} face inwards, and this program does not turn them yet: {EDITOR}",
                 point(at)
             ),
-            SurfaceProblem::InsideOut { triangle, at, within, .. } => write!(
-                f,
-                "the part with triangle {triangle}, {}, lies within {within} others and turns the wrong way: a cavity is clockwise seen from outside of it, what is outside or within a cavity counter-clockwise",
-                point(at)
-            ),
+            SurfaceProblem::InsideOut { triangle, at, within, .. } => {
+                let at = point(at);
+                write!(
+                    f,
+                    "the part with triangle {triangle}, {at}, lies within {within} others and turns the wrong way: a \
+                     cavity is clockwise seen from outside of it, what is outside or within a cavity counter-clockwise"
+                )?;
+                if within.is_multiple_of(2) {
+                    return Ok(());
+                }
+                write!(
+                    f,
+                    "; if it is a body in a body, such as a tumour in an organ, this program does not make regions of the \
+                     two yet: {REGIONS}"
+                )
+            }
             SurfaceProblem::Tangled { triangles, pairs } => {
                 write!(
                     f,
@@ -149,6 +211,31 @@ impl fmt::Display for SurfaceProblem {
 }
 
 impl std::error::Error for SurfaceProblem {}
+
+fn branched(
+    f: &mut fmt::Formatter<'_>,
+    triangles: &[u32],
+    ends: &[Point3; 2],
+    twice: Option<&[u32; 2]>,
+) -> fmt::Result {
+    let (all, ends) = (list(triangles), line(ends));
+    write!(f, "triangles {all} meet at one edge, {ends}; two do in a closed surface: ")?;
+    match twice {
+        Some(pair) => {
+            let pair = list(pair);
+            write!(f, "{pair} have the same corners, and this program does not remove one yet: {EDITOR}")
+        }
+        None if triangles.len().is_multiple_of(2) => {
+            write!(
+                f,
+                "closed parts touch there, and this program does not make regions of them yet: {REGIONS}"
+            )
+        }
+        None => {
+            write!(f, "a wall ends there, and this program does not make regions of its sides yet: {REGIONS}")
+        }
+    }
+}
 
 fn point(p: &Point3) -> String {
     format!("({}, {}, {})", short(p.x), short(p.y), short(p.z))

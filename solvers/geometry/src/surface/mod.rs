@@ -6,6 +6,7 @@
 mod closed;
 mod crossing;
 mod error;
+mod faults;
 mod groups;
 mod needles;
 mod nested;

@@ -38,7 +38,8 @@ pub(super) fn refuse(soup: &Soup, neighbours: &[[u32; 3]]) -> Result<(), Surface
         if (volume > 0.0) != within.is_multiple_of(2) {
             let triangle = soup.faces[first[part]];
             let at = soup.middle(first[part]);
-            return Err(SurfaceProblem::InsideOut { triangle, at, volume, within });
+            let part = [list.len(), soup.triangles.len()];
+            return Err(SurfaceProblem::InsideOut { triangle, at, volume, within, part });
         }
     }
     Ok(())

@@ -1,0 +1,128 @@
+//! Reasons why an edge does not have two triangles that turn the same way, with what a repair has to do.
+
+use std::collections::HashMap;
+
+use super::closed::{Side, WELD};
+use super::{Soup, SurfaceProblem};
+use crate::{Point3, Vector3};
+
+/// Edges of a hole that are searched for corners on them.
+const SEARCHED: usize = 1000;
+
+/// The problem of an edge with these sides, which are not two that turn the same way.
+pub(super) fn of_edge(soup: &Soup, sides: &[Side], around: &[Side]) -> SurfaceProblem {
+    let triangles: Vec<u32> = around.iter().map(|side| soup.faces[side.triangle as usize]).collect();
+    let ends = around[0].edge.map(|p| soup.points[p as usize]);
+    match triangles[..] {
+        [_] => open(soup, sides),
+        [a, b] => {
+            let (turned, orientable) = turned(soup, sides);
+            let all = soup.triangles.len();
+            SurfaceProblem::Turned { triangles: [a, b], ends, turned, all, orientable }
+        }
+        _ => {
+            let corners = |side: &Side| {
+                let corners = soup.triangles[side.triangle as usize];
+                // From the lowest on: a face that two parts share turns the other way in each.
+                let first = (0..3).min_by_key(|&k| corners[k]).unwrap_or(0);
+                [0, 1, 2].map(|k| corners[(first + k) % 3])
+            };
+            let pairs = (1..around.len()).flat_map(|b| (0..b).map(move |a| [a, b]));
+            let twice = pairs.clone().find(|&[a, b]| corners(&around[a]) == corners(&around[b]));
+            let twice = twice.map(|pair| pair.map(|k| triangles[k]));
+            SurfaceProblem::Branched { triangles, ends, twice }
+        }
+    }
+}
+
+/// The first of the holes of a surface whose edges have two triangles or one.
+fn open(soup: &Soup, sides: &[Side]) -> SurfaceProblem {
+    let alone = |around: &[Side]| (around.len() == 1).then(|| around[0]);
+    let edges: Vec<Side> = sides.chunk_by(|a, b| a.edge == b.edge).filter_map(alone).collect();
+    let mut at_corner: HashMap<u32, Vec<usize>> = HashMap::new();
+    for (k, side) in edges.iter().enumerate() {
+        side.edge.iter().for_each(|&corner| at_corner.entry(corner).or_default().push(k));
+    }
+    let mut hole_of = vec![usize::MAX; edges.len()];
+    let mut holes = 0;
+    for start in 0..edges.len() {
+        let mut next = if hole_of[start] == usize::MAX { vec![start] } else { continue };
+        while let Some(k) = next.pop() {
+            if std::mem::replace(&mut hole_of[k], holes) == usize::MAX {
+                next.extend(edges[k].edge.iter().flat_map(|corner| &at_corner[corner]));
+                next.retain(|&k| hole_of[k] == usize::MAX);
+            }
+        }
+        holes += 1;
+    }
+    let place = |corner: u32| soup.points[corner as usize];
+    let hole: Vec<Side> =
+        edges.iter().zip(&hole_of).filter(|(_, hole)| **hole == 0).map(|(s, _)| *s).collect();
+    let middle = hole.iter().flat_map(|side| side.edge).map(|corner| place(corner).coords).sum::<Vector3>();
+    let tolerance = WELD * soup.diagonal();
+    let ends = |side: &Side| side.edge.map(place);
+    let corners = || hole.iter().flat_map(|side| side.edge).take(2 * SEARCHED).map(place);
+    let passed = |side: &&Side| corners().any(|corner| lies_on(&corner, &ends(side), tolerance));
+    let first = hole.iter().take(SEARCHED).find(passed).unwrap_or(&hole[0]);
+    SurfaceProblem::Open {
+        triangle: soup.faces[first.triangle as usize],
+        ends: ends(first),
+        corner: corners().find(|corner| lies_on(corner, &ends(first), tolerance)),
+        edges: edges.len(),
+        holes,
+        hole: hole.len(),
+        at: Point3::from(middle / (2 * hole.len()) as f64),
+    }
+}
+
+/// Whether a point lies on a line between its ends.
+fn lies_on(p: &Point3, [a, b]: &[Point3; 2], tolerance: f64) -> bool {
+    let (along, from) = (b - a, p - a);
+    let part = from.dot(&along) / along.norm_squared();
+    let between = part * along.norm() > tolerance && (1.0 - part) * along.norm() > tolerance;
+    between && (from - along * part).norm() <= tolerance
+}
+
+/// Faces of the file that turn the other way than their neighbours do once the volume is positive; and whether
+/// there is a way for all to turn the same way.
+fn turned(soup: &Soup, sides: &[Side]) -> (Vec<u32>, bool) {
+    let mut near: Vec<Vec<(u32, bool)>> = vec![Vec::new(); soup.triangles.len()];
+    for around in sides.chunk_by(|a, b| a.edge == b.edge) {
+        if let [a, b] = around {
+            let same = a.upwards != b.upwards;
+            near[a.triangle as usize].push((b.triangle, same));
+            near[b.triangle as usize].push((a.triangle, same));
+        }
+    }
+    let origin = soup.points[soup.triangles[0][0] as usize];
+    let mut sign = vec![0i8; near.len()];
+    let (mut faces, mut orientable) = (Vec::new(), true);
+    for start in 0..near.len() {
+        if sign[start] != 0 {
+            continue;
+        }
+        sign[start] = 1;
+        let (mut part, mut volume, mut next) = (Vec::new(), 0.0, vec![start as u32]);
+        while let Some(triangle) = next.pop() {
+            let own = sign[triangle as usize];
+            let [a, b, c] = soup.corners(triangle as usize).map(|p| p - origin);
+            volume += f64::from(own) * a.dot(&b.cross(&c));
+            part.push(triangle);
+            for &(other, same) in &near[triangle as usize] {
+                let wanted = if same { own } else { -own };
+                match &mut sign[other as usize] {
+                    free @ 0 => {
+                        *free = wanted;
+                        next.push(other);
+                    }
+                    found => orientable &= *found == wanted,
+                }
+            }
+        }
+        let right = if volume < 0.0 { -1 } else { 1 };
+        let wrong = part.into_iter().filter(|&t| sign[t as usize] != right);
+        faces.extend(wrong.map(|t| soup.faces[t as usize]));
+    }
+    faces.sort_unstable();
+    (faces, orientable)
+}
