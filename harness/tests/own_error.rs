@@ -106,9 +106,8 @@ fn warnings_of_a_reference_are_shown_with_it() {
     );
 }
 
-#[test]
-fn nodes_of_a_file_have_no_coarser_ones_and_an_exact_solution_needs_none() {
-    let dir = tempfile::tempdir().unwrap();
+/// A column of 20 x 20 mm, 20 mm high, of two cells in a file.
+fn column(dir: &TempDir, reference: &str, check: &str) -> String {
     let corners = [[0, 0], [20, 0], [20, 20], [0, 20]];
     let nodes: String = (0..12)
         .map(|k| format!("{} {} {} {}\n", k + 1, corners[k % 4][0], corners[k % 4][1], k / 4 * 10))
@@ -117,21 +116,66 @@ fn nodes_of_a_file_have_no_coarser_ones_and_an_exact_solution_needs_none() {
         "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n12\n{nodes}$EndNodes\n$Elements\n2\n1 5 0 1 2 3 4 5 6 7 8\n2 5 0 5 6 7 8 9 10 11 12\n\
          $EndElements\n"
     );
-    write(&dir, "column.msh", &mesh);
-    let column = r#"title = "A column of two cells"
-body = { shape = "file", path = "column.msh", unit = "mm" }
-material = { law = "linear", young = "20 kPa", poisson = 0.3 }
-support = [{ where = "z <= 0 mm", fix = "xyz" }]
-load = [{ where = "z >= 20 mm", pressure = "100 Pa" }]
-reference = { method = "hex8" }
-method = [{ id = "hex8", family = "fem", element = "hex8", size = { file = "column.msh" } }]
-"#;
-    let unknown = &objects(&dir, column)[0]["reference"];
-    assert_eq!(
-        unknown["unknown"], "its nodes are of the file column.msh, and no coarser ones are known",
-        "{unknown}"
+    write(dir, "column.msh", &mesh);
+    format!(
+        r#"title = "A column of two cells"
+body = {{ shape = "file", path = "column.msh", unit = "mm" }}
+material = {{ law = "linear", young = "20 kPa", poisson = 0.3 }}
+support = [{{ where = "z <= 0 mm", fix = "xyz" }}]
+load = [{{ where = "z >= 20 mm", pressure = "100 Pa" }}]
+reference = {{ method = "{reference}" }}
+method = [
+    {{ id = "hex8", family = "fem", element = "hex8", size = {{ file = "column.msh" }} }},
+    {{ id = "hex20", family = "fem", element = "hex20", size = {{ file = "column.msh" }} }},
+]
+{check}"#
+    )
+}
+
+/// Cells of a file are not made coarser, but they take nodes on their edges.
+#[test]
+fn a_reference_on_cells_of_a_file_is_held_against_second_order_on_them() {
+    let dir = tempfile::tempdir().unwrap();
+    let runs = objects(&dir, &column(&dir, "hex8", ""));
+    // The other method of the scene is what the reference is held against.
+    assert_eq!(runs[0]["reference"]["by"][0], "hex20 with 32 nodes", "{}", runs[0]);
+    assert!(
+        (own(&runs[0], "relative-rms") / error(&runs[1], "relative-rms") - 1.0).abs() < 1e-9,
+        "{}",
+        runs[1]
     );
+    let unknown = &objects(&dir, &column(&dir, "hex20", ""))[0]["reference"];
+    let why = "its mesh is the file column.msh, which has no coarser one, and no method here is of higher order: solve it \
+               on a finer mesh, too";
+    assert_eq!(unknown["unknown"], why, "{unknown}");
     assert!(unknown["band"].as_object().unwrap().is_empty(), "{unknown}");
+}
+
+/// A bound below the reference's own error passes and proves nothing, in one run and in a study.
+#[test]
+fn a_bound_below_the_own_error_of_the_reference_is_told() {
+    const TOLD: &str = "the bound is below the own error of the reference";
+    let dir = tempfile::tempdir().unwrap();
+    let check = |most: f64| {
+        let check = format!("[[check]]\nmethod = \"hex8\"\nmetric = \"relative-rms\"\nat_most = {most}\n");
+        write(&dir, "column.toml", &column(&dir, "hex8", &check))
+    };
+    write(&dir, "study.toml", "title = \"A column\"\n[[run]]\nscene = \"column.toml\"\ntags = [\"quick\"]\n");
+    for (most, told) in [(1e-3, true), (0.9, false)] {
+        let scene = check(most);
+        let run = tissuebench(&["run", &scene, "--once"]);
+        assert_eq!((run.code, run.stderr.contains(TOLD)), (0, told), "{}", run.stderr);
+        let out = inside(&dir, &format!("out-{most}"));
+        let study = tissuebench(&["verify", &inside(&dir, "study.toml"), "--out", &out]);
+        assert_eq!((study.code, study.stderr.contains(TOLD)), (0, told), "{}", study.stderr);
+        let page = std::fs::read_to_string(Path::new(&out).join("report/report.html")).unwrap();
+        assert_eq!(page.contains(TOLD), told);
+    }
+}
+
+#[test]
+fn an_exact_solution_has_no_own_error() {
+    let dir = tempfile::tempdir().unwrap();
     let exact = r#"title = "A block in a linear field"
 body = { shape = "box", size = ["30 mm", "20 mm", "20 mm"] }
 material = { law = "linear", young = "20 kPa", poisson = 0.3 }

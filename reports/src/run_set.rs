@@ -58,7 +58,8 @@ pub struct Check {
     pub bound: String,
     /// Outcome of the check.
     pub status: Status,
-    /// Reason for which the check failed, is known to fail, or was not run; empty for a pass.
+    /// Reason for a failure, a known failure or a check that did not run, or why the bound of a passed check
+    /// proves nothing; else empty.
     pub reason: String,
     /// Place of the check, as `file:line` with the file name as given. It is not stored, so that results do
     /// not depend on the location of a study.

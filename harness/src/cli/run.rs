@@ -168,8 +168,9 @@ impl Made {
         for check in &self.scene.checks {
             let own = check.methods.is_empty() || check.methods.contains(&method.id);
             if own && !check::is_of_many(check) {
-                let value = check::value(check.metric.name, &records);
-                self.set.checks.push(check::judge(check, &self.case, &method.id, value));
+                let (value, band) =
+                    (check::value(check.metric.name, &records), check::band(check.metric.name, &records));
+                self.set.checks.push(check::judge(check, &self.case, &method.id, value, band));
             }
         }
         self.set.records.extend(records);
@@ -236,9 +237,9 @@ impl Made {
             let compared = self.set.references.iter().map(text::compared_with).collect::<String>();
             print!("{}{compared}{}", text::places(&self.outcomes), text::warnings(&self.set.warnings));
         }
-        for check in self.set.checks.iter().filter(|c| matches!(c.status, Status::Fail | Status::NotRun)) {
+        for check in self.set.checks.iter().filter(|check| text::is_told(check)) {
             eprintln!("{}", text::painted_verdict(check));
-            self.code = self.code.max(1);
+            self.code = self.code.max(u8::from(check.status != Status::Pass));
         }
         let Some(out) = &self.args.out else { return self.code };
         self.set.records.extend(study::reference_records(&self.scene));

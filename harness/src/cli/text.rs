@@ -63,6 +63,15 @@ pub fn painted_verdict(check: &Check) -> String {
     format!("{}: {}", colour::err(style, word(check.status)), judged(check))
 }
 
+/// Whether a verdict is printed: what does not hold, and what holds and proves nothing.
+pub fn is_told(check: &Check) -> bool {
+    match check.status {
+        Status::Fail | Status::NotRun => true,
+        Status::Pass => !check.reason.is_empty(),
+        Status::KnownFailure => false,
+    }
+}
+
 fn word(status: Status) -> &'static str {
     match status {
         Status::Fail => "FAILED",

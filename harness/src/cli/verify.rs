@@ -149,7 +149,7 @@ pub(super) fn write(finished: &Finished, folder: &Folder, args: &VerifyArgs) -> 
         let word = colour::err(colour::DOUBTFUL, &word);
         eprintln!("{word}: {} {}: {}", failure.case, failure.method, failure.reason);
     }
-    for check in set.checks.iter().filter(|c| matches!(c.status, Status::Fail | Status::NotRun)) {
+    for check in set.checks.iter().filter(|check| text::is_told(check)) {
         eprintln!("{}", text::painted_verdict(check));
     }
     let busy: Vec<_> =

@@ -1,5 +1,6 @@
 //! The own error of a reference that is a method: its distance to the same method on a coarser mesh, and of a
-//! method of first order also to elements of second order.
+//! method of first order also to elements of second order. A mesh from a file has no coarser one: a method of
+//! first order is compared with elements of second order on the same cells, one of second order with none.
 //!
 //! The distance to a mesh of twice the spacing is what is left where errors fall with the spacing
 //! (Richardson's extrapolation at first order): slower orders are those of methods that lock. A method that
@@ -81,25 +82,46 @@ fn is_error(metric: &Metric) -> bool {
 
 /// The methods that a reference of so many nodes is held against, or why there are none.
 fn witnesses(reference: &Method, nodes: usize) -> Result<Vec<Method>, String> {
-    let size = coarser(&fineness(reference), nodes)?;
+    let size = fineness(reference);
+    let second = is_first_order(&reference.family).then(|| match elements(&reference.family) {
+        Some(fem) if fem.element == Element::Hex8 => Element::Hex20,
+        _ => Element::Tet10,
+    });
+    let of_second = |element: Element, size: Size| {
+        let fem = Fem { element, dilation: Dilation::Standard, reduced: false, size, jitter: None };
+        let (id, family) = (element.name().to_string(), Family::Fem(fem));
+        Method { series: id.clone(), id, family, mass: reference.mass }
+    };
+    if let Size::File(file) = &size {
+        let name = file.path.file_name().unwrap_or_default().to_string_lossy();
+        return match second {
+            // The cells of the file with nodes on their edges: an error of first order is nearly all of the distance.
+            Some(element) if !has_nodes_alone(&reference.family) => Ok(vec![of_second(element, size)]),
+            Some(_) => Err(format!("its nodes are of the file {name}, and no coarser ones are known")),
+            None => Err(format!(
+                "its mesh is the file {name}, which has no coarser one, and no method here is of higher order: solve it \
+                 on a finer mesh, too"
+            )),
+        };
+    }
+    let size = coarser(size, nodes)?;
     let mut same = reference.clone();
     if let Family::External(external) = &reference.family {
         same.family = Family::Fem(external.elements.clone());
     }
     same.resize(&size);
     let mut all = vec![same];
-    if is_first_order(&reference.family) {
-        let element = match elements(&reference.family) {
-            Some(fem) if fem.element == Element::Hex8 => Element::Hex20,
-            _ => Element::Tet10,
-        };
+    if let Some(element) = second {
         // As many nodes as the reference has.
         let size = if let Size::Nodes(_) = size { Size::Nodes(nodes) } else { size };
-        let fem = Fem { element, dilation: Dilation::Standard, reduced: false, size, jitter: None };
-        let (id, family) = (element.name().to_string(), Family::Fem(fem));
-        all.push(Method { series: id.clone(), id, family, mass: reference.mass });
+        all.push(of_second(element, size));
     }
     Ok(all)
+}
+
+/// Whether the size is a file of nodes, which has no cells.
+fn has_nodes_alone(family: &Family) -> bool {
+    matches!(family, Family::Efg(efg) if matches!(efg.cloud, Cloud::File { .. }))
 }
 
 fn elements(family: &Family) -> Option<&Fem> {
@@ -133,19 +155,14 @@ fn fineness(method: &Method) -> Size {
 }
 
 /// Twice as coarse as a size that gave so many nodes, or why there is no such size.
-fn coarser(size: &Size, nodes: usize) -> Result<Size, String> {
+fn coarser(size: Size, nodes: usize) -> Result<Size, String> {
     match size {
         Size::Nodes(_) | Size::Level(1) => Ok(Size::Nodes(nodes.div_ceil(COARSER))),
         Size::Level(level) => Ok(Size::Level(level - 1)),
         Size::Spacing(spacing) => Ok(Size::Spacing(2.0 * spacing)),
         Size::Cells { cells: [1, 1, 1], .. } => Err("its mesh is of one cell, and none is coarser".into()),
-        Size::Cells { cells, grading } => {
-            Ok(Size::Cells { cells: cells.map(|n| n.div_ceil(2)), grading: *grading })
-        }
-        Size::File(file) => {
-            let name = file.path.file_name().unwrap_or_default().to_string_lossy();
-            Err(format!("its nodes are of the file {name}, and no coarser ones are known"))
-        }
+        Size::Cells { cells, grading } => Ok(Size::Cells { cells: cells.map(|n| n.div_ceil(2)), grading }),
+        Size::File(_) => Err("its nodes are of a file, and no coarser ones are known".into()),
     }
 }
 

@@ -23,6 +23,11 @@ pub fn value(metric: &str, records: &[Record]) -> Option<f64> {
     records.iter().filter(own).find(plain).map(|r| r.value)
 }
 
+/// The own error of the reference that a check's metric is an error against, among the records of one run.
+pub fn band(metric: &str, records: &[Record]) -> Option<f64> {
+    records.iter().find(|r| r.quantity == metric && r.statistic == "band").map(|r| r.value)
+}
+
 /// The observed order between the two finest levels of a family of runs, each given by its records; the quantity is
 /// the metric without its prefix `order-`.
 pub fn order(metric: &str, family: &[&[Record]]) -> Option<f64> {
@@ -52,14 +57,21 @@ pub fn is_of_many(check: &Check) -> bool {
     matches!(check.metric.needs, Needs::Levels | Needs::Seeds)
 }
 
-/// The verdict on one value. No value is a failure: what was to be guarded is gone.
-pub fn judge(check: &Check, case: &str, method: &str, value: Option<f64>) -> Verdict {
+/// The verdict on one value. No value is a failure: what was to be guarded is gone. `band` is the own error of the
+/// reference that the value is an error against: below that, a bound proves nothing.
+pub fn judge(check: &Check, case: &str, method: &str, value: Option<f64>, band: Option<f64>) -> Verdict {
     let (bound, status, reason) = match (&check.bound, value) {
         (bound, None) => (text(bound), Status::Fail, "this run gives no such number".to_string()),
         (Bound::Within { at_least, at_most }, Some(v)) => {
             // Written so that a NaN fails.
             let holds = at_least.is_none_or(|low| v >= low) && at_most.is_none_or(|high| v <= high);
-            let reason = if holds { String::new() } else { format!("{v:.6e} is not {}", text(&check.bound)) };
+            let off = (!holds).then(|| format!("{v:.6e} is not {}", text(&check.bound)));
+            let unproven = band.filter(|band| at_most.is_some_and(|high| high < *band)).map(|band| {
+                format!(
+                    "the bound is below the own error of the reference, about {band:.2e}, and proves nothing"
+                )
+            });
+            let reason = [off, unproven].into_iter().flatten().collect::<Vec<_>>().join("; ");
             (text(&check.bound), if holds { Status::Pass } else { Status::Fail }, reason)
         }
         (Bound::KnownBand { low, high, reason }, Some(v)) => {
@@ -86,7 +98,7 @@ pub fn judge(check: &Check, case: &str, method: &str, value: Option<f64>) -> Ver
 
 /// The verdict on a check of a run that failed: the failure is counted by itself.
 pub fn not_run(check: &Check, case: &str, method: &str, failure: &str) -> Verdict {
-    Verdict { status: Status::NotRun, reason: failure.into(), ..judge(check, case, method, None) }
+    Verdict { status: Status::NotRun, reason: failure.into(), ..judge(check, case, method, None, None) }
 }
 
 fn text(bound: &Bound) -> String {
@@ -105,7 +117,7 @@ mod tests {
 
     fn status(bound: Bound, value: Option<f64>) -> Status {
         let check = Check { metric: &metric::L2, methods: vec![], bound, at: String::new() };
-        let verdict = judge(&check, "block", "tet4", value);
+        let verdict = judge(&check, "block", "tet4", value, None);
         assert_eq!(verdict.reason.is_empty(), verdict.status == Status::Pass, "{}", verdict.reason);
         assert!(verdict.value.is_none_or(f64::is_finite));
         verdict.status
@@ -127,6 +139,30 @@ mod tests {
             let found = [least(value), most(value), both(value)].map(|status| status == Status::Pass);
             assert_eq!(found, expected, "{value:?}");
         }
+    }
+
+    #[test]
+    fn a_bound_below_the_own_error_of_the_reference_is_said_to_prove_nothing() {
+        let bound = Bound::Within { at_least: None, at_most: Some(0.02) };
+        let check = Check { metric: &metric::RELATIVE_RMS, methods: vec![], bound, at: String::new() };
+        for (value, own, status) in [
+            (0.01, None, Status::Pass),
+            (0.01, Some(0.02), Status::Pass),
+            (0.01, Some(0.05), Status::Pass),
+            (0.03, Some(0.05), Status::Fail),
+        ] {
+            let verdict = judge(&check, "block", "tet4", Some(value), own);
+            let unproven = verdict.reason.contains("own error of the reference, about 5.00e-2");
+            assert_eq!((verdict.status, unproven), (status, own == Some(0.05)), "{}", verdict.reason);
+        }
+        let record = |statistic: &str, value| {
+            let (quantity, statistic) = ("relative-rms".to_string(), statistic.to_string());
+            Record { quantity, statistic, value, ..Record::default() }
+        };
+        let records = [record("value", 0.01), record("band", 0.05)];
+        let found =
+            (value("relative-rms", &records), band("relative-rms", &records), band("peak-error", &records));
+        assert_eq!(found, (Some(0.01), Some(0.05), None));
     }
 
     #[test]

@@ -368,7 +368,10 @@ impl Plan {
                 (None, Some((failure, _))) => {
                     check::not_run(check, &case_name(scene), &label, &failure.reason)
                 }
-                (value, _) => check::judge(check, &case_name(scene), &label, value),
+                (value, _) => {
+                    let band = check::band(check.metric.name, &result.records);
+                    check::judge(check, &case_name(scene), &label, value, band)
+                }
             })
             .collect()
     }
@@ -413,7 +416,7 @@ impl Plan {
                 let failed = members.iter().find_map(|member| member.failure.as_ref());
                 verdicts.push(match (value, failed) {
                     (None, Some((failure, _))) => check::not_run(check, &case, &label, &failure.reason),
-                    (value, _) => check::judge(check, &case, &label, value),
+                    (value, _) => check::judge(check, &case, &label, value, None),
                 });
             }
         }

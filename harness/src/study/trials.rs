@@ -68,7 +68,7 @@ pub(super) fn verdicts(axis: &Axis) -> Vec<Verdict> {
     };
     let each = axis.methods().into_iter().map(|method| {
         let case = format!("{} along {}", axis.case, axis.name);
-        let mut verdict = check::judge(&check, &case, method, Some(axis.silent(method) as f64));
+        let mut verdict = check::judge(&check, &case, method, Some(axis.silent(method) as f64), None);
         let silent = |t: &&Trial| t.method == method && axis.verdict(t) == reports::AxisVerdict::Silent;
         if let Some(first) = axis.trials.iter().find(silent) {
             let error = first.error.map_or("no".into(), |e| format!("{e:.3}"));
