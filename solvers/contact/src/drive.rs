@@ -42,7 +42,7 @@ pub struct ToolState {
 }
 
 impl ToolState {
-    /// Collects the state at a closure (m) with these contacts; `None` if no point is near the tool.
+    /// Collects the state at a closure (m). `contacts` is `None` if no point is near the tool.
     pub fn new(closure: f64, contacts: Option<&Contacts>) -> ToolState {
         let zero = Vector3::zeros;
         ToolState {

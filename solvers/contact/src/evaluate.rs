@@ -47,7 +47,8 @@ impl ContactSurface<'_> {
     ///
     /// # Errors
     ///
-    /// [`ContactError::PassedThrough`] if a point is too deep in the tool, and errors of the input.
+    /// [`ContactError::PassedThrough`] if a point is too deep in the tool. [`ContactError::Length`],
+    /// [`ContactError::Place`] or [`ContactError::NotFinite`] for invalid input.
     pub fn evaluate(
         &self,
         tool: &Tool,
@@ -69,6 +70,10 @@ impl ContactSurface<'_> {
 
     /// Evaluates as [`ContactSurface::evaluate`], but without tangents: for explicit dynamics, line searches
     /// and reactions.
+    ///
+    /// # Errors
+    ///
+    /// As [`ContactSurface::evaluate`].
     pub fn tractions(
         &self,
         tool: &Tool,
@@ -217,7 +222,7 @@ impl Contacts {
         &self.tractions
     }
 
-    /// `dt/dx` (3, 3), Pa/m, unsymmetric in slip; empty from [`ContactSurface::tractions`].
+    /// Contact tangents `dt/dx` (3, 3), Pa/m, unsymmetric in slip; empty from [`ContactSurface::tractions`].
     /// `dt/dclosure = -(dt/dx) along`.
     pub fn stiffness(&self) -> &[Matrix3] {
         &self.stiffness

@@ -112,6 +112,10 @@ pub struct SearchAt<'s, 'a> {
 impl SearchAt<'_, '_> {
     /// Evaluates as [`ContactSurface::tractions`], for the tool with this number. The number must be the same
     /// in every state.
+    ///
+    /// # Errors
+    ///
+    /// As [`ContactSurface::evaluate`].
     pub fn tractions(
         &mut self,
         number: usize,

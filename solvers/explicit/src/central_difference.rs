@@ -207,6 +207,10 @@ impl<'a, 'b> Dynamics<'a, 'b> {
     /// Returns the critical step at the current displacements, or the last estimate if the body has hardly
     /// changed its shape since. An estimate takes thirty evaluations of the internal forces, the comparison
     /// of shapes about one.
+    ///
+    /// # Errors
+    ///
+    /// [`ExplicitError::InvertedAt`] if a point is inverted.
     pub fn critical_step(&mut self) -> Result<CriticalStep, ExplicitError> {
         let gradients = self.gradients();
         if let Some(last) = self.estimate.as_ref().filter(|last| last.serves(&gradients)) {
@@ -262,6 +266,11 @@ impl<'a, 'b> Dynamics<'a, 'b> {
 
     /// Makes `steps` steps. `record` is called with the balance and the displacements at every step whose
     /// number is a multiple of `every` (0: never), before the displacements advance.
+    ///
+    /// # Errors
+    ///
+    /// [`ExplicitError::InvertedAt`], [`ExplicitError::NotFinite`], [`ExplicitError::StepTooLarge`],
+    /// [`ExplicitError::ContactAt`] or [`ExplicitError::LightTool`], with the step and the time.
     pub fn run(
         &mut self,
         steps: usize,

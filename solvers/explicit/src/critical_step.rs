@@ -94,6 +94,10 @@ pub fn critical_step(
 }
 
 /// Estimates the critical step as [`critical_step`], for the body with springs on its surface.
+///
+/// # Errors
+///
+/// As [`critical_step`].
 pub fn critical_step_touching(
     force: &mut InternalForce,
     mass: &[f64],

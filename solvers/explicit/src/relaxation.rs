@@ -58,6 +58,10 @@ const CONFIRM: usize = 10;
 pub type StaticLoad<'a> = dyn FnMut(&[Vector3], &mut [Vector3]) + 'a;
 
 /// Finds static displacements as [`relax_under`], without tools.
+///
+/// # Errors
+///
+/// As [`relax_under`].
 pub fn relax(
     force: &mut InternalForce,
     mass: &[f64],

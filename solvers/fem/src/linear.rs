@@ -7,6 +7,10 @@ use crate::FemError;
 
 /// Returns the corners of all cells with the values of their linear functions at every node: 1 at a corner,
 /// 1/2 at the middle of an edge. Returns `None` for a mesh of linear cells alone.
+///
+/// # Errors
+///
+/// [`FemError::Shape`] if the rows fail their checks.
 pub fn linear_nodes(mesh: &Mesh) -> Result<Option<Coarser>, FemError> {
     const NONE: u32 = u32::MAX;
     let nodes = mesh.points().len();

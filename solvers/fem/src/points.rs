@@ -37,12 +37,20 @@ pub fn point_rows(mesh: &Mesh, points: &[Point3]) -> Result<PointRows, FemError>
 
 /// Returns shape values and gradients (1/m) at points of the mesh, as [`point_rows`]. On a face, the
 /// gradients are those of the cell of lowest index.
+///
+/// # Errors
+///
+/// As [`point_rows`], and [`FemError::InvertedElement`] if a cell is inverted at a point.
 pub fn grad_rows(mesh: &Mesh, points: &[Point3]) -> Result<GradRows, FemError> {
     gradients(mesh, points, &inside(mesh, points)?)
 }
 
 /// Returns rows as [`point_rows`], but points outside take the values at the nearest point of the mesh
 /// surface and are listed.
+///
+/// # Errors
+///
+/// [`FemError::NotFinite`] if a point has a coordinate that is not finite.
 pub fn nearest_point_rows(mesh: &Mesh, points: &[Point3]) -> Result<(PointRows, Outside), FemError> {
     let (places, outside) = nearest(mesh, points)?;
     Ok((values(mesh, points, &places)?, outside))
@@ -50,6 +58,10 @@ pub fn nearest_point_rows(mesh: &Mesh, points: &[Point3]) -> Result<(PointRows, 
 
 /// Returns rows as [`grad_rows`], but points outside take values and gradients at the nearest point of the
 /// mesh surface and are listed.
+///
+/// # Errors
+///
+/// As [`nearest_point_rows`], and [`FemError::InvertedElement`] if a cell is inverted at a point.
 pub fn nearest_grad_rows(mesh: &Mesh, points: &[Point3]) -> Result<(GradRows, Outside), FemError> {
     let (places, outside) = nearest(mesh, points)?;
     Ok((gradients(mesh, points, &places)?, outside))
@@ -57,6 +69,10 @@ pub fn nearest_grad_rows(mesh: &Mesh, points: &[Point3]) -> Result<(GradRows, Ou
 
 /// Returns the cell that contains each point, or the cell at the nearest point of the surface, with the
 /// distance to the mesh (m, 0 inside).
+///
+/// # Errors
+///
+/// [`FemError::NotFinite`] if a point has a coordinate that is not finite.
 pub fn nearest_cells(mesh: &Mesh, points: &[Point3]) -> Result<Vec<(usize, f64)>, FemError> {
     let (places, outside) = nearest(mesh, points)?;
     let mut found: Vec<(usize, f64)> = places.iter().map(|place| (place.cell, 0.0)).collect();

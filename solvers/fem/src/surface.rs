@@ -23,6 +23,10 @@ pub fn surface_rows(mesh: &Mesh, facets: &[Facet], rule: &SurfaceRule) -> Result
 
 /// Returns rows as [`surface_rows`], with points on parts of the facets: `parts` for each facet, or empty for
 /// whole facets.
+///
+/// # Errors
+///
+/// As [`surface_rows`].
 pub fn divided_surface_rows(
     mesh: &Mesh,
     facets: &[Facet],
@@ -53,6 +57,10 @@ pub fn divided_surface_rows(
 }
 
 /// Returns shape values at the nodes of the facets, in ascending order, and then at the middle of each facet.
+///
+/// # Errors
+///
+/// [`FemError::NoSuchFacet`] if the mesh does not have a facet.
 pub fn outline_rows(mesh: &Mesh, facets: &[Facet]) -> Result<PointRows, FemError> {
     let mut table = Table::new();
     for node in mesh.facet_group_nodes(facets) {
@@ -73,6 +81,10 @@ pub fn outline_rows(mesh: &Mesh, facets: &[Facet]) -> Result<PointRows, FemError
 
 /// Returns rows as [`surface_rows`], but each row has all nodes of the facet's cell, in the cell's order,
 /// with gradients (1/m), because the boundary stress depends on all of them.
+///
+/// # Errors
+///
+/// As [`surface_rows`], and [`FemError::InvertedElement`] if a cell is inverted at a point.
 pub fn flux_rows(mesh: &Mesh, facets: &[Facet], rule: &SurfaceRule) -> Result<FluxRows, FemError> {
     let rules = rules(rule)?;
     let mut table = Table::new();

@@ -98,6 +98,10 @@ pub fn regions(mesh: &Mesh, rule: &VolumeRule) -> Vec<u16> {
 
 /// Returns one dilation group per cell, for [`volume_rows`] with the same rule: mean dilation (B-bar with one
 /// constant volume change per element; Nagtegaal, Parks & Rice 1974, Hughes 1980).
+///
+/// # Errors
+///
+/// [`FemError::Shape`] if the groups fail their checks.
 pub fn element_dilation(mesh: &Mesh, rule: &VolumeRule) -> Result<DilationGroups, FemError> {
     let points = (0..mesh.cell_count()).map(|cell| rule.points(mesh.kind(cell)));
     Ok(DilationGroups::of_cells(points)?)
@@ -109,6 +113,10 @@ pub fn element_dilation(mesh: &Mesh, rule: &VolumeRule) -> Result<DilationGroups
 /// with the same rule. Their nodes are the corner nodes only, numbered in the order of the mesh. A corner
 /// between several materials has a pressure in each; `alike` gives the material of each region, and is empty
 /// if all regions have the same material.
+///
+/// # Errors
+///
+/// [`FemError::Shape`] if the rows fail their checks.
 pub fn pressure_rows(mesh: &Mesh, rule: &VolumeRule, alike: &[u16]) -> Result<Rows, FemError> {
     let materials = alike.iter().max().map_or(1, |&material| usize::from(material) + 1);
     let place = |cell: usize, node: u32| {

@@ -60,6 +60,10 @@ impl Factorization {
     }
 
     /// Estimates the condition number `|A| |A^-1|` from below, as a rule within a factor of three.
+    ///
+    /// # Errors
+    ///
+    /// [`AlgebraError::TooLarge`] if there is no memory for a solve.
     pub fn condition(&self) -> Result<f64, AlgebraError> {
         let n = self.dim();
         if n == 0 {
@@ -79,6 +83,10 @@ impl Factorization {
     /// This is a bound for the worst rounding; on beams and membranes two or three more digits are right. The
     /// entries of the matrix are rounded themselves, so the backward error counts as at least half a unit in
     /// the last place.
+    ///
+    /// # Errors
+    ///
+    /// [`AlgebraError::TooLarge`] if there is no memory for a solve.
     pub fn digits(&self, solved: &Solved) -> Result<f64, AlgebraError> {
         let error = self.backward_error(solved).max(0.5 * f64::EPSILON);
         Ok(-(self.condition()? * error).log10())

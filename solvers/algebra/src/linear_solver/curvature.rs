@@ -70,6 +70,10 @@ impl Curvature {
     /// `factor` belongs to a matrix near K and preconditions the search (locally optimal conjugate gradients,
     /// Knyazev 2001). With `sure` the search starts afresh and does not give up early. The shift is infinite
     /// if `diagonal` has an entry that is not positive.
+    ///
+    /// # Errors
+    ///
+    /// [`AlgebraError::TooLarge`] if there is no memory for a solve.
     pub fn shift(
         &mut self,
         matrix: &Symmetric,

@@ -187,6 +187,10 @@ impl From<AlgebraError> for FactorError {
 }
 
 /// Factors a matrix: dense up to `dense_limit` unknowns, sparse above.
+///
+/// # Errors
+///
+/// As [`analyse`] and [`factor_as`].
 pub fn factor(matrix: Symmetric, dense_limit: usize) -> Result<Factorization, FactorError> {
     let kind = matrix.kind();
     let symbolic = analyse(&matrix, dense_limit)?;
@@ -195,11 +199,20 @@ pub fn factor(matrix: Symmetric, dense_limit: usize) -> Result<Factorization, Fa
 }
 
 /// Returns the symbolic analysis shared by all matrices of one pattern; `None` for a dense factorisation.
+///
+/// # Errors
+///
+/// [`AlgebraError::Ordering`] if METIS fails, [`AlgebraError::TooLarge`] if the factor cannot be indexed.
 pub fn analyse(matrix: &Symmetric, dense_limit: usize) -> Result<Option<Arc<Symbolic>>, AlgebraError> {
     if matrix.dim() <= dense_limit { Ok(None) } else { Ok(Some(Arc::new(Symbolic::new(matrix)?))) }
 }
 
 /// Factors a matrix that has the analysed pattern.
+///
+/// # Errors
+///
+/// [`FactorError::NotDefinite`] or [`AlgebraError::NearlySingular`] for a matrix of kind [`Kind::Definite`],
+/// [`AlgebraError::ZeroPivot`] for another kind. [`AlgebraError::TooLarge`] if there is no memory.
 pub fn factor_as(
     symbolic: Option<&Arc<Symbolic>>,
     matrix: &Symmetric,
@@ -216,6 +229,10 @@ pub fn factor_as(
 /// memory.
 ///
 /// Dense factors, which are small, and factors with multipliers stay in double precision.
+///
+/// # Errors
+///
+/// As [`factor_as`], but small pivots are accepted in single precision; see [`Factor::is_clear`].
 pub fn factor_roughly(
     symbolic: Option<&Arc<Symbolic>>,
     matrix: &Symmetric,
@@ -351,6 +368,10 @@ impl Factorization {
     }
 
     /// Solves in place by the factor alone, without refinement or residual.
+    ///
+    /// # Errors
+    ///
+    /// [`AlgebraError::TooLarge`] if there is no memory for the solve.
     pub fn solve_once(&self, b: &mut [f64]) -> Result<(), AlgebraError> {
         self.factor.solve(b)
     }

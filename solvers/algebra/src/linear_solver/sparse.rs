@@ -36,6 +36,10 @@ pub struct Symbolic {
 
 impl Symbolic {
     /// Orders a matrix by nested dissection and finds where its factor has entries.
+    ///
+    /// # Errors
+    ///
+    /// [`AlgebraError::Ordering`] if METIS fails, [`AlgebraError::TooLarge`] if the factor cannot be indexed.
     pub fn new(matrix: &Symmetric) -> Result<Symbolic, AlgebraError> {
         let n = matrix.dim();
         let (forward, inverse) = ordering::nested_dissection(matrix)?;

@@ -45,6 +45,10 @@ pub struct Unsymmetric {
 
 impl Unsymmetric {
     /// Builds the system. Entries of `extra` with the same row and column add up.
+    ///
+    /// # Errors
+    ///
+    /// [`AlgebraError::TooLarge`] if there is no memory for a solve.
     pub fn new(
         symmetric: Factorization,
         extra: Vec<(usize, usize, f64)>,
@@ -117,6 +121,10 @@ impl Unsymmetric {
     ///
     /// Returns the number of iterations and whether the system is solved; `b` is unchanged if not. The solve
     /// ends early as soon as the convergence rate shows that `most` iterations do not suffice.
+    ///
+    /// # Errors
+    ///
+    /// [`AlgebraError::ZeroPivot`] if the borders make the preconditioner singular.
     pub fn solve_within(&self, b: &mut [f64], goal: f64, most: usize) -> Result<(usize, bool), AlgebraError> {
         let size = norm(b);
         if size == 0.0 {
@@ -137,6 +145,11 @@ impl Unsymmetric {
     ///
     /// If this fails with a factor in single precision, the matrix is factored in double precision. If that
     /// fails too, the system is solved by LU.
+    ///
+    /// # Errors
+    ///
+    /// [`AlgebraError::Residual`] or [`AlgebraError::ZeroPivot`] if LU fails too, [`AlgebraError::TooLarge`]
+    /// if there is no memory.
     pub fn solve(&self, b: &mut [f64], goal: f64) -> Result<usize, AlgebraError> {
         let factor = &self.symmetric.factor;
         let (mut iterations, mut solved) = self.cycles(factor, b, goal)?;

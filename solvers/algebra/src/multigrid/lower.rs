@@ -86,7 +86,7 @@ impl<const B: usize> Lower<B> {
         Lower { offsets, columns, blocks, unit }
     }
 
-    /// Gives a unit stiffness to degrees of freedom that no function of the finer level sees.
+    /// Gives the stiffness `unit` to degrees of freedom that no function of the finer level sees.
     pub fn fill_empty(&mut self) {
         for end in &self.offsets[1..] {
             let diagonal = &mut self.blocks[end - 1];

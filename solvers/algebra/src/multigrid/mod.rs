@@ -56,6 +56,10 @@ impl Multigrid {
     ///
     /// `nodes` are the node positions, m. `held` marks the constrained degrees of freedom `3 node + axis`.
     /// `linear` is the mesh of the next level, if there is one.
+    ///
+    /// # Errors
+    ///
+    /// [`FactorError`] if the coarsest matrix cannot be factored.
     pub fn new(
         stiffness: &Stiffness,
         nodes: &[Point3],

@@ -129,6 +129,10 @@ impl Pressures {
 
     /// Solves `K x = b` in place to a residual of `tolerance |b|` or of rounding. `b` must be zero at
     /// constrained degrees of freedom. A failure leaves `b` as it is.
+    ///
+    /// # Errors
+    ///
+    /// [`AlgebraError::Residual`] if the iteration does not reach the tolerance.
     pub fn solve(
         &self,
         multigrid: &Multigrid,
