@@ -5,8 +5,8 @@
 //!
 //! ```text
 //! p   = max(0, l - k_n g)                          normal pressure; the point touches while p > 0
-//! e*  = (I - n n^T)(e_n + x - x_n)                 trial elastic slip: committed one and motion since, made
-//! tangent t_t = -k_t e*                if k_t |e*| <= mu p (stick)
+//! e*  = (I - n n^T)(e_n + x - x_n)                 trial elastic slip: committed slip plus motion, projected
+//! t_t = -k_t e*                if k_t |e*| <= mu p (stick)
 //!     = -mu p e* / |e*|        otherwise           (slip: radial return)
 //! t   = p n + t_t,             e = -t_t / k_t
 //! ```

@@ -3,10 +3,10 @@
 //! The residual relative to the right-hand side says little if a solution is large for its load, as for a
 //! slender beam or nearly incompressible tissue. Rounding alone then leaves 1e-7 of the load, although the
 //! solution is as good as the matrix allows. A solution is therefore judged by the smallest relative change
-//! of matrix and right-hand side that makes it exact. This is the normwise backward error `|b - A x| / (|A|
-//! |x| + |b|)` (Rigal & Gaches, J. ACM 14 (1967) 543-548; Higham, Accuracy and Stability of Numerical
-//! Algorithms, 2nd ed. 2002, theorem 7.1). The number of correct digits follows from the backward error times
-//! the condition number. All norms are maximum norms.
+//! of matrix and right-hand side that makes it exact. This is the normwise backward error
+//! `|b - A x| / (|A| |x| + |b|)` (Rigal & Gaches, J. ACM 14 (1967) 543-548; Higham, Accuracy and Stability of
+//! Numerical Algorithms, 2nd ed. 2002, theorem 7.1). The number of correct digits follows from the backward
+//! error times the condition number. All norms are maximum norms.
 
 use super::{Factorization, Kind, Symmetric};
 use crate::AlgebraError;
