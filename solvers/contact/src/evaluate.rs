@@ -7,8 +7,8 @@ use shape::{Matrix3, Vector3};
 use super::law::Response;
 use super::{ContactError, ContactHistory, ContactSurface, Slip, Tool};
 
-/// Clusters per task, and half the number from which several tasks are used. With fewer clusters,
-/// distribution to other threads costs more than the points.
+/// Clusters per task. Several tasks are used from twice this number of clusters; with fewer, handing work to
+/// other threads costs more than the points.
 const CHUNK: usize = 16;
 
 /// Points in contact with one tool, in ascending order, with their resultants.

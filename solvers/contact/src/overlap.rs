@@ -50,8 +50,8 @@ impl<'a> Outline<'a> {
 }
 
 impl ContactSurface<'_> {
-    /// Checks that no corner of the outline is too deep in a tool that touches no point. For reported states:
-    /// a depth at which the next point is about to touch is allowed.
+    /// Checks that no corner of the outline is too deep in a tool that touches no point. The check is for
+    /// reported states during the loading: a depth at which the next point may be about to touch is allowed.
     ///
     /// # Errors
     ///

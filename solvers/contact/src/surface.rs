@@ -125,8 +125,8 @@ impl<'a> ContactSurface<'a> {
     /// tool has slipped through between points and lifts them from within.
     ///
     /// The deformed normal `(x_b - x_a) x (x_c - x_a)` is computed from two neighbouring points, which
-    /// ignores any bending between them. A push that leaves the surface by less than 12 degrees is therefore
-    /// accepted, and so are a few points on a crease.
+    /// ignores any bending between them. A push that points out of the surface by less than 12 degrees is
+    /// therefore accepted, and so are a few points on a crease.
     ///
     /// # Errors
     ///

@@ -19,8 +19,8 @@
 //! - hex8: products, sums and copies. Its 950 product vectors of eight elements (mean dilation 1200) at one
 //!   per cycle of 3.7 GHz take 32 ns (40). Sums and differences and the scatter of its nodes take 20 ns.
 //!   Copies of nodes and their sums, outside the kernel, take 5 ns. The kernel alone takes 52 ns (62), a
-//!   whole evaluation 58 ns (68), the best of 20 samples next to busy neighbours. Out of cache, hex8 waits for
-//!   memory: 130 ns (130).
+//!   whole evaluation 58 ns (68), the best of 20 samples next to busy neighbours. Out of cache, hex8 waits
+//!   for memory: 130 ns (130).
 //! - EFG: loads, eight per neighbour (53 ns in cache, 90 ns out of cache).
 //!
 //! Other laws are covered by the benchmark `laws`. Quadratic elements, which use the EFG kernel, are not

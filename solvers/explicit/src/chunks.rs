@@ -99,8 +99,8 @@ impl Border {
         tasks.into_par_iter().map(run).reduce(|| true, |x, y| x & y)
     }
 
-    /// Writes `finish` of the sum of the copies of every node to `out`. Summing a whole task before the first
-    /// `finish` would pass through memory once more (without this 0.97 of the time of tet4 and hex8).
+    /// Writes `finish` of the sum of the copies of every node to `out`, node by node. Summing a whole task
+    /// first would pass through memory once more; avoiding this takes 0.97 of the time of tet4 and hex8.
     pub fn sum<const W: usize, T: Send>(
         &self,
         copy: impl Fn(usize) -> [f64; W] + Sync,

@@ -34,7 +34,7 @@ impl RowSource for Elements {
 
     /// Returns the edge of a cube with the mean cell's volume, counting six tetrahedra to a cube, m. A size
     /// derived from the number of nodes is not suitable: on coarse meshes it decreases more slowly than the
-    /// cells and improves the observed order by up to 15 %.
+    /// cells and overstates the observed order by up to 15 %.
     fn spacing(&self, volume: &VolumeRows) -> f64 {
         let cubes: f64 = (0..self.mesh.cell_count())
             .map(|c| if self.mesh.kind(c).is_tet() { 1.0 / 6.0 } else { 1.0 })
