@@ -13,10 +13,10 @@ pub enum AlgebraError {
         /// Smallest admissible ratio.
         limit: f64,
     },
-    /// A zero pivot in the indefinite factorisation, even with its regularisation.
+    /// The indefinite factorisation met a zero pivot, even with its regularisation.
     #[error("zero pivot in the factorisation of the system with constraint rows")]
     ZeroPivot,
-    /// The solution does not satisfy its equations: dependent, contradictory or badly scaled constraints.
+    /// The solution does not satisfy its equations: constraints are dependent, contradictory or badly scaled.
     #[error("relative residual {residual:e} after the solve (limit {limit:e})")]
     Residual {
         /// Relative residual found.

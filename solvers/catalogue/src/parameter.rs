@@ -49,9 +49,9 @@ pub enum Range {
     NotNegative,
     /// The given number or more.
     AtLeast(f64),
-    /// From the first to the second, ends included.
+    /// From the first number to the second, ends included.
     Within(f64, f64),
-    /// Above the first and below the second.
+    /// Above the first number and below the second.
     Between(f64, f64),
 }
 

@@ -104,7 +104,7 @@ const PLAIN: [Named; 9] = [
 pub struct UnitWord {
     /// The word.
     pub name: &'static str,
-    /// Whether it takes the prefixes G, M, k, h, c, m, u and n.
+    /// Whether the unit takes the prefixes G, M, k, h, c, m, u and n.
     pub prefixed: bool,
     /// Size of the unit in SI base units.
     pub si: f64,

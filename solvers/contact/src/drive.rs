@@ -18,7 +18,7 @@ pub enum Drive {
 pub struct DrivenTool<'a> {
     /// The tool.
     pub tool: &'a Tool,
-    /// Its drive.
+    /// Drive of the tool.
     pub drive: Drive,
 }
 

@@ -10,7 +10,7 @@ pub enum ContactError {
     Size {
         /// Name of the length.
         what: &'static str,
-        /// Its value, m.
+        /// Value of the length, m.
         value: f64,
     },
     /// The rounding radius of a box is negative or too large for the box.
@@ -48,7 +48,7 @@ pub enum ContactError {
     Modulus {
         /// Penalty or stick slope.
         what: &'static str,
-        /// Its value, Pa/m.
+        /// Value of the modulus, Pa/m.
         value: f64,
     },
     /// The coefficient of friction is negative, zero or not finite.
@@ -83,7 +83,7 @@ pub enum ContactError {
     PassedThrough {
         /// The point (the lowest, if there are several).
         point: usize,
-        /// Its penetration, m.
+        /// Penetration of the point, m.
         penetration: f64,
         /// The limit, m.
         limit: f64,

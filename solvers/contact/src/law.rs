@@ -216,11 +216,11 @@ pub(super) struct Response {
     pub slip: Slip,
     /// Frictional work since the last commit, J/m^2: `mu p (|e*| - mu p / k_t)` in slip.
     pub dissipated: f64,
-    /// `v = e_n + c (x - x_n)`, m.
+    /// Trial slip before projection, `v = e_n + c (x - x_n)`, m.
     drift: Vector3,
     /// Factor `c`: the part of the motion that friction sees.
     after: f64,
-    /// `(x - x_n) dc/dg`.
+    /// Derivative of the trial slip by the gap, `(x - x_n) dc/dg`.
     speed: Vector3,
     state: State,
 }

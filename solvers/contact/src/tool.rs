@@ -21,7 +21,7 @@ pub struct Tool {
 pub struct PointContact {
     /// Traction on the tissue, per undeformed area, Pa.
     pub traction: Vector3,
-    /// `dt/dx` (3, 3), Pa/m; unsymmetric in slip. `dt/dclosure = -(dt/dx) along`.
+    /// Tangent `dt/dx` (3, 3), Pa/m; unsymmetric in slip. `dt/dclosure = -(dt/dx) along`.
     pub stiffness: Matrix3,
     /// History to commit if the step converges here.
     pub slip: Slip,

@@ -23,7 +23,7 @@ impl Kind {
     pub const MESH: Kind = Kind::input("a mesh or a list of points", 1_000_000_000);
     /// Stored references.
     pub const REFERENCE: Kind = Kind::input("a reference", 128 * MIB);
-    /// The files of an adapter, together.
+    /// Files of an adapter, together.
     pub const ADAPTER: Kind = Kind::input("the files of an adapter", 256 * MIB);
     /// Text of a problem for another solver, or of its answer.
     pub const MESSAGE: Kind = Kind { name: "a problem or an answer", most: MIB, input: false };

@@ -1,6 +1,6 @@
 //! Galerkin product `P^T A P`, the matrix of the next level.
 //!
-//! It is formed in double precision, because the softest motions of a slender body have 1e-10 of its
+//! The product is formed in double precision, because the softest motions of a slender body have 1e-10 of its
 //! stiffness. With `S = P^T (L + D/2) P` the product is `S + S^T`, so that only the lower triangle of A is
 //! read and half of the products are made.
 

@@ -9,7 +9,7 @@
 //! [ B  -V / k ] [p] = [0]
 //! ```
 //!
-//! Its coefficients are no longer large in k, so that the number of iterations hardly grows with k. The
+//! The coefficients are no longer large in k, so that the number of iterations hardly grows with k. The
 //! preconditioner approximates A by a cycle, then the Schur complement of the pressures by a diagonal (Elman,
 //! Silvester and Wathen 2014, Finite Elements and Fast Iterative Solvers, section 4.2). The iteration is GCR,
 //! with directions orthogonal to the last few (Eisenstat, Elman and Schultz 1983, SIAM J. Numer. Anal. 20,
