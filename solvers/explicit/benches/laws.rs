@@ -75,7 +75,7 @@ impl Bodies {
     }
 }
 
-/// Returns the kernels of one table with each law, except those that use the plain loop.
+/// Returns the kernels of one table with each law, without laws that need the plain loop.
 fn forces<'a>(
     laws: &'a [Law],
     (volume, groups): (&'a VolumeRows, Option<&'a DilationGroups>),
