@@ -1,13 +1,15 @@
-//! Whether every edge has a triangle on either side, turned the same way.
+//! Checks that every edge has a triangle on either side, with consistent orientation.
 
 use super::{Soup, SurfaceProblem, faults};
 
-/// Corners of a file are one where they are nearer than this part of the surface's diagonal: what single precision leaves.
+/// Fraction of the surface's diagonal below which corners of a file coincide, from the rounding of single
+/// precision.
 pub(super) const WELD: f64 = 1e-6;
-/// A surface of fewer triangles encloses nothing.
+/// Smallest number of triangles that enclose a volume.
 const FEWEST: usize = 4;
 
-/// The triangles with their corners joined, and for each the triangle across its edges.
+/// Returns the triangles with coinciding corners merged, and the neighbours of each triangle across its
+/// edges.
 pub(super) fn closed(soup: Soup) -> Result<(Soup, Vec<[u32; 3]>), SurfaceProblem> {
     let same = soup.welded(0.0);
     if let Ok(neighbours) = neighbours(&same) {
@@ -18,19 +20,19 @@ pub(super) fn closed(soup: Soup) -> Result<(Soup, Vec<[u32; 3]>), SurfaceProblem
     Ok((near, neighbours))
 }
 
-/// One side of an edge.
+/// An edge of one triangle.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Side {
     /// Lower and higher corner.
     pub(super) edge: [u32; 2],
     pub(super) triangle: u32,
-    /// From this corner of the triangle to the next.
+    /// Corner of the triangle at which the edge begins.
     corner: u8,
-    /// Whether it goes from the lower corner to the higher.
+    /// Whether the edge goes from the lower corner to the higher.
     pub(super) upwards: bool,
 }
 
-/// For each triangle the one across each of its edges.
+/// Finds the neighbours of each triangle across its edges.
 pub(super) fn neighbours(soup: &Soup) -> Result<Vec<[u32; 3]>, SurfaceProblem> {
     let count = soup.triangles.len();
     if count < FEWEST {

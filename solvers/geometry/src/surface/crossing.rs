@@ -1,4 +1,4 @@
-//! Whether triangles cross or touch away from their common corners, by exact signs (Shewchuk 1997).
+//! Checks whether triangles cross or touch away from their common corners, with exact signs (Shewchuk 1997).
 
 use std::cmp::Ordering;
 
@@ -9,14 +9,15 @@ use super::tree::{Tree, bounds};
 use super::{Soup, SurfaceProblem};
 use crate::Point3;
 
-/// Triangles per parallel task at least.
+/// Smallest number of triangles per parallel task.
 const CHUNK: usize = 256;
 
-/// Pairs of triangles whose boxes touch at most: of a surface each touches 20 or so, of triangles that lie about anyhow all others.
+/// Limits on the pairs of triangles whose boxes touch: in total, and per triangle. In a surface, each
+/// triangle touches about 20 others; in a random arrangement, all others.
 const FEW: u64 = 1_000_000;
 const MANY: u64 = 100;
 
-/// Refuses triangles that cross.
+/// Rejects triangles that cross.
 pub(super) fn refuse(soup: &Soup) -> Result<(), SurfaceProblem> {
     let tree = Tree::new(&soup.points, &soup.triangles);
     let count = soup.triangles.len();
@@ -37,7 +38,7 @@ pub(super) fn refuse(soup: &Soup) -> Result<(), SurfaceProblem> {
     if all > FEW + MANY * count as u64 {
         return Err(SurfaceProblem::Tangled { triangles: count, pairs: all });
     }
-    // One crossing of each triangle is enough: 300 bodies at one place cross 400,000 times.
+    // One crossing per triangle suffices: 300 bodies in one place cross 400,000 times.
     let crosses = |first: &usize| {
         let mut crossed = false;
         near(*first, &mut |second| crossed = crossed || cross(soup, *first, second));
@@ -58,7 +59,7 @@ pub(super) fn refuse(soup: &Soup) -> Result<(), SurfaceProblem> {
     })
 }
 
-/// Whether two triangles have a point in common beside their common corners.
+/// Whether two triangles share a point other than their common corners.
 fn cross(soup: &Soup, first: usize, second: usize) -> bool {
     let (a, b) = (soup.triangles[first], soup.triangles[second]);
     let position = |p: u32| soup.points[p as usize];
@@ -70,7 +71,7 @@ fn cross(soup: &Soup, first: usize, second: usize) -> bool {
             (0..3).any(|i| pierces(edge(a, i), corners_b) || pierces(edge(b, i), corners_a))
                 || overlap(corners_a, corners_b)
         }
-        // Each may cross the other by the edge opposite to the common corner.
+        // Each triangle may cross the other with the edge opposite to the common corner.
         1 => {
             let opposite = |t: [u32; 3], other: [u32; 3]| {
                 let common = (0..3).find(|&i| other.contains(&t[i])).unwrap_or(0);
@@ -80,7 +81,7 @@ fn cross(soup: &Soup, first: usize, second: usize) -> bool {
                 || pierces(opposite(b, a), corners_a)
                 || overlap(corners_a, corners_b)
         }
-        // Neighbours only if one is folded onto the other.
+        // Neighbours cross only if one is folded onto the other.
         2 => match (own(a, b), own(b, a)) {
             (Some(i), Some(j)) => {
                 folded(position(a[(i + 1) % 3]), position(a[(i + 2) % 3]), corners_a[i], corners_b[j])
@@ -104,7 +105,7 @@ fn side(a: Point3, b: Point3, c: Point3, d: Point3) -> i32 {
     sign(orient3d(a, b, c, d))
 }
 
-/// Whether a line meets a triangle in whose plane it does not lie.
+/// Whether a line segment meets a triangle without lying in its plane.
 fn pierces([p, q]: [Point3; 2], [a, b, c]: [Point3; 3]) -> bool {
     let (above, below) = (side(a, b, c, p), side(a, b, c, q));
     if above * below > 0 || (above == 0 && below == 0) {
@@ -114,7 +115,7 @@ fn pierces([p, q]: [Point3; 2], [a, b, c]: [Point3; 3]) -> bool {
     around.iter().all(|&s| s >= 0) || around.iter().all(|&s| s <= 0)
 }
 
-/// The axis along which three points look largest; `None` if they are on a line.
+/// Axis along which the projected area of three points is largest; `None` for collinear points.
 fn widest([a, b, c]: [Point3; 3]) -> Option<usize> {
     let normal = (b - a).cross(&(c - a)).abs();
     (normal.amax() > 0.0).then(|| normal.imax())
@@ -124,7 +125,7 @@ fn flat(p: Point3, axis: usize) -> Coord<f64> {
     Coord { x: p[(axis + 1) % 3], y: p[(axis + 2) % 3] }
 }
 
-/// Whether two triangles of one plane overlap: edges cross, or a corner lies within.
+/// Whether two coplanar triangles overlap: edges cross, or a corner lies inside.
 fn overlap(a: [Point3; 3], b: [Point3; 3]) -> bool {
     if b.iter().any(|&p| side(a[0], a[1], a[2], p) != 0) {
         return false;
@@ -145,12 +146,12 @@ fn overlap(a: [Point3; 3], b: [Point3; 3]) -> bool {
     crossed || b.iter().any(|&p| within(a, p)) || a.iter().any(|&p| within(b, p))
 }
 
-/// Whether two triangles at the edge from p to q lie on one another.
+/// Whether two triangles at the edge from p to q overlap in one plane.
 fn folded(p: Point3, q: Point3, a: Point3, b: Point3) -> bool {
     if side(p, q, a, b) != 0 {
         return false;
     }
-    // Slivers without an area lie on everything.
+    // Slivers without area overlap with everything and are exempt.
     let (Some(axis), Some(_)) = (widest([p, q, a]), widest([p, q, b])) else { return false };
     let turn = |r| sign(orient2d(flat(p, axis), flat(q, axis), flat(r, axis)));
     turn(a) * turn(b) > 0

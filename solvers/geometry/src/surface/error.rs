@@ -1,4 +1,4 @@
-//! Why triangles are no closed surface, and where.
+//! Errors of surfaces that are not closed, with their positions.
 
 use std::fmt;
 use std::path::PathBuf;
@@ -6,35 +6,36 @@ use std::path::PathBuf;
 use crate::Point3;
 use crate::files::FileError;
 
-/// A surface file that can't be used.
+/// Error of reading a surface file.
 #[derive(Debug, thiserror::Error)]
 pub enum SurfaceError {
-    /// It can't be read.
+    /// A file that cannot be read.
     #[error(transparent)]
     File(#[from] FileError),
-    /// It is read, but is no closed surface.
+    /// A file whose triangles do not form a closed surface.
     #[error("{file}: {problem}", file = file.display())]
     Surface {
         /// The file.
         file: PathBuf,
-        /// Why not.
+        /// Problem of the surface.
         problem: SurfaceProblem,
     },
 }
 
-/// Why triangles are no closed surface. Triangles are numbered from 1 as the faces in the file; positions are in its unit.
+/// Problem of triangles that do not form a closed surface. Triangles have the numbers of their faces in the
+/// file, from 1; positions are in the unit of the file.
 #[derive(Clone, Debug, PartialEq)]
 pub enum SurfaceProblem {
     /// Fewer triangles than a tetrahedron has.
     TooFew {
-        /// Triangles with an area.
+        /// Number of triangles with an area.
         triangles: usize,
     },
-    /// An edge of one triangle alone.
+    /// An edge that belongs to only one triangle.
     Open {
-        /// Its triangle.
+        /// Number of the triangle.
         triangle: u32,
-        /// Its ends.
+        /// Ends of the edge.
         ends: [Point3; 2],
         /// A corner of another triangle on it, between its ends.
         corner: Option<Point3>,
@@ -49,18 +50,18 @@ pub enum SurfaceProblem {
     },
     /// An edge of more than two triangles.
     Branched {
-        /// Its triangles.
+        /// Numbers of the triangles.
         triangles: Vec<u32>,
-        /// Its ends.
+        /// Ends of the edge.
         ends: [Point3; 2],
         /// Two of the triangles that have the same corners.
         twice: Option<[u32; 2]>,
     },
-    /// Neighbours that turn opposite ways.
+    /// Neighbours with opposite orientations.
     Turned {
-        /// The two.
+        /// Numbers of the two triangles.
         triangles: [u32; 2],
-        /// Ends of their edge.
+        /// Ends of the common edge.
         ends: [Point3; 2],
         /// Triangles that have to turn, so that all are counter-clockwise seen from outside.
         turned: Vec<u32>,
@@ -71,41 +72,41 @@ pub enum SurfaceProblem {
     },
     /// Triangles that cross or touch away from common corners.
     Crossing {
-        /// The first two.
+        /// Numbers of the first two triangles.
         triangles: [u32; 2],
-        /// The middle of the first.
+        /// Centre of the first triangle.
         at: Point3,
         /// Number of triangles that cross a later one.
         places: usize,
     },
-    /// A part whose triangles turn the wrong way: clockwise seen from outside, or of a cavity counter-clockwise.
+    /// A part with the wrong orientation: clockwise as seen from outside, or counter-clockwise for a cavity.
     InsideOut {
-        /// A triangle of it.
+        /// Number of a triangle of the part.
         triangle: u32,
-        /// The middle of that.
+        /// Centre of this triangle.
         at: Point3,
-        /// Volume enclosed, of wrong sign, in the unit of the file.
+        /// Enclosed volume with the wrong sign, in the unit of the file cubed.
         volume: f64,
-        /// How many other parts enclose it.
+        /// Number of other parts that enclose the part.
         within: usize,
         /// Triangles of the part, and of the whole surface.
         part: [usize; 2],
     },
-    /// More triangles close to each other than a surface has.
+    /// Too many triangles close to each other for a surface.
     Tangled {
         /// Number of triangles.
         triangles: usize,
-        /// Pairs that may touch.
+        /// Number of pairs that may touch.
         pairs: u64,
     },
-    /// More parts than bodies have.
+    /// Too many parts.
     Parts {
-        /// How many.
+        /// Number of parts.
         parts: usize,
-        /// At most.
+        /// Largest number of parts.
         most: usize,
     },
-    /// Nothing enclosed.
+    /// A surface that encloses no volume.
     Flat,
 }
 
@@ -241,7 +242,7 @@ fn point(p: &Point3) -> String {
     format!("({}, {}, {})", short(p.x), short(p.y), short(p.z))
 }
 
-/// Seven digits, as many as single precision has, without zeros at the end.
+/// Rounds to seven digits, the precision of single precision.
 fn short(x: f64) -> f64 {
     format!("{x:.6e}").parse().unwrap_or(x)
 }

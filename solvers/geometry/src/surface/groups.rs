@@ -1,23 +1,23 @@
-//! Named groups of triangles: a triangle is in none, one or several.
+//! Named groups of triangles; a triangle may be in any number of groups.
 
 use std::collections::HashMap;
 
-/// Groups of triangles by name. Triangles name sets of groups, of which a file has few.
+/// Groups of triangles by name. Triangles refer to sets of groups, of which a file has few.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Groups {
     names: Vec<String>,
     known: HashMap<String, u32>,
-    /// Sets of names that occur; a triangle without a set is in no group.
+    /// Distinct sets of groups; a triangle without a set is in no group.
     sets: Vec<Vec<u32>>,
     places: HashMap<Vec<u32>, u32>,
-    /// Set of each triangle; those behind the end have none.
+    /// Set of each triangle; triangles beyond the end have none.
     of: Vec<u32>,
 }
 
-/// The set of a triangle that is in no group.
+/// Set of a triangle without groups.
 const NONE: u32 = u32::MAX;
 
-/// A set of groups, for triangles that are added.
+/// Set of groups for added triangles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Set(u32);
 
@@ -28,7 +28,8 @@ impl Default for Set {
 }
 
 impl Groups {
-    /// The set of these names, made where it is new. Blanks around a name are no part of it; an empty name is none.
+    /// Set of these names, created if it is new. Blanks around a name are removed, and empty names are
+    /// ignored.
     pub(crate) fn set<'a>(&mut self, names: impl IntoIterator<Item = &'a str>) -> Set {
         let names = names.into_iter().map(kept).filter(|name| !name.is_empty());
         let mut set: Vec<u32> = names.map(|name| self.name(name)).collect();
@@ -54,18 +55,18 @@ impl Groups {
         place
     }
 
-    /// Puts the triangles that were added since the last call into a set; `triangles` are there now.
+    /// Assigns a set to the triangles added since the last call; `triangles` is their current number.
     pub(crate) fn fill(&mut self, triangles: usize, Set(set): Set) {
         self.of.resize(triangles, set);
     }
 
-    /// The groups of some triangles alone, in their order.
+    /// Groups restricted to some triangles, in their order.
     pub(super) fn of_triangles(&self, kept: &[usize]) -> Groups {
         let of = kept.iter().map(|&t| self.set_of(t)).collect();
         Groups { of, ..self.clone() }
     }
 
-    /// Puts a triangle into the groups of another one.
+    /// Assigns the groups of a triangle to another triangle.
     pub(super) fn copy(&mut self, from: usize, to: usize) {
         let set = self.set_of(from);
         self.of.resize(self.of.len().max(to + 1), NONE);
@@ -81,12 +82,12 @@ impl Groups {
         &self.names
     }
 
-    /// The groups of a triangle, as places among the names.
+    /// Groups of a triangle, as indices into the names.
     pub fn of(&self, triangle: usize) -> &[u32] {
         self.sets.get(self.set_of(triangle) as usize).map_or(&[], Vec::as_slice)
     }
 
-    /// The same without the names that no triangle has.
+    /// The groups without names that no triangle has.
     pub(super) fn without_empty(&self) -> Groups {
         let mut has = vec![false; self.names.len()];
         let mut occurs = vec![false; self.sets.len()];
@@ -108,7 +109,8 @@ impl Groups {
     }
 }
 
-/// A name that every format of meshes can hold as far as it is ASCII: quotation marks, commas and control characters are replaced.
+/// A name that every mesh format can represent, as far as it is ASCII. Quotation marks, commas and control
+/// characters are replaced.
 fn kept(name: &str) -> String {
     let plain = |c: char| if c == '"' || c == ',' || c.is_control() { '_' } else { c };
     name.trim().chars().map(plain).collect()

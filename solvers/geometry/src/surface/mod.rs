@@ -1,7 +1,8 @@
-//! A closed surface of triangles: the distance from it, what is inside, and what keeps a surface from being closed.
+//! Closed triangulated surfaces: distance, inside test, and checks that a surface is closed.
 //!
-//! The sign of the distance is that of the pseudo-normal at the closest point, the sum of the normals around it weighted
-//! by angle (Baerentzen and Aanaes 2005): it is right wherever the closest point lies, on a face, an edge or a corner.
+//! The sign of the distance is that of the pseudo-normal at the closest point, the angle-weighted sum of the
+//! adjacent normals (Baerentzen and Aanaes 2005). It is correct for closest points on faces, edges and
+//! corners.
 
 mod closed;
 mod crossing;
@@ -27,7 +28,7 @@ pub(crate) use tree::Tree;
 use crate::triangle::Feature;
 use crate::{Point3, Vector3};
 
-/// A closed surface, its triangles counter-clockwise seen from outside; positions in metres.
+/// A closed surface with triangles that are counter-clockwise as seen from outside; positions in metres.
 pub struct Surface {
     points: Vec<Point3>,
     triangles: Vec<[u32; 3]>,
@@ -35,11 +36,11 @@ pub struct Surface {
     normals: Normals,
     tree: Tree,
     volume: f64,
-    /// Area of each triangle and all before it.
+    /// Cumulative area of the triangles, m^2.
     areas: Vec<f64>,
 }
 
-/// Normals of the parts of the surface, of any length: only their direction counts.
+/// Normals of faces, edges and corners, of arbitrary length.
 struct Normals {
     faces: Vec<Vector3>,
     edges: Vec<[Vector3; 3]>,
@@ -47,14 +48,15 @@ struct Normals {
 }
 
 impl Surface {
-    /// A surface of these triangles, whose lengths are times `unit` (m).
+    /// Creates a surface of these triangles, with lengths multiplied by `unit` (m).
     ///
     /// # Errors
-    /// A surface that is open, crosses itself or is inside out, with the triangle and the place in the unit of the triangles.
+    /// A surface that is open, crosses itself or is inside out, with the triangle and the position in the
+    /// unit of the triangles.
     pub fn new(soup: Soup, unit: f64) -> Result<Surface, SurfaceProblem> {
         let (mut soup, mut neighbours) = closed::closed(soup)?;
         if let Err(crossing) = crossing::refuse(&soup) {
-            // Needles are looked for only then: most surfaces have none.
+            // Needles are searched only after a crossing was found, because most surfaces have none.
             (soup, neighbours) = needles::cut(&soup, &neighbours).ok_or(crossing)??;
             crossing::refuse(&soup)?;
         }
@@ -92,7 +94,7 @@ impl Surface {
         &self.triangles
     }
 
-    /// Named groups of triangles, each of at least one.
+    /// Named groups of triangles, without empty groups.
     pub fn groups(&self) -> &Groups {
         &self.groups
     }
@@ -102,33 +104,33 @@ impl Surface {
         self.triangles[triangle].map(|p| self.points[p as usize])
     }
 
-    /// The volume inside, m^3.
+    /// Enclosed volume, m^3.
     pub fn volume(&self) -> f64 {
         self.volume
     }
 
-    /// The area, m^2.
+    /// Area, m^2.
     pub fn area(&self) -> f64 {
         self.areas.last().copied().unwrap_or(0.0)
     }
 
-    /// Lowest and highest corner of the box around it, m.
+    /// Lowest and highest corner of the bounding box, m.
     pub fn bounds(&self) -> [Point3; 2] {
         self.tree.bounds()
     }
 
-    /// The closest point, m, and the triangle that has it.
+    /// The closest point of the surface, m, and its triangle.
     pub fn closest(&self, p: &Point3) -> (Point3, usize) {
         let closest = self.tree.closest(p, f64::INFINITY);
         closest.map_or((*p, 0), |closest| (closest.at, closest.triangle as usize))
     }
 
-    /// Distance, m; negative inside.
+    /// Signed distance from the surface, m; negative inside.
     pub fn signed_distance(&self, p: &Point3) -> f64 {
         self.distance_within(p, f64::INFINITY).unwrap_or(f64::INFINITY)
     }
 
-    /// As [`Surface::signed_distance`]; `None` where the surface is not nearer than `within`.
+    /// Signed distance as [`Surface::signed_distance`], or `None` if the surface is not closer than `within`.
     fn distance_within(&self, p: &Point3, within: f64) -> Option<f64> {
         let closest = self.tree.closest(p, within)?;
         if closest.square == 0.0 {
@@ -141,26 +143,27 @@ impl Surface {
             Feature::Corner(corner) => self.normals.corners[self.triangles[triangle][corner] as usize],
         };
         let (distance, away) = (closest.square.sqrt(), (p - closest.at).dot(&normal));
-        // A point is straight above the surface closest to it: where it is not, the surface has triangles without an area.
+        // The offset from the closest point is along the normal, unless the surface has triangles without
+        // area.
         let doubtful = away.abs() <= 1e-6 * distance * normal.norm();
         let inside =
             if doubtful { nested::winding(&self.points, &self.triangles, p) > 0.5 } else { away < 0.0 };
         Some(if inside { -distance } else { distance })
     }
 
-    /// Where the surface cuts the line from a point inside to one outside, as a part of its length: where the distance, known
-    /// at both ends, is zero.
+    /// Fraction of the line from a point inside to a point outside at which it meets the surface: the zero of
+    /// the distance, which is known at both ends.
     pub(crate) fn cut(&self, inside: (&Point3, f64), outside: (&Point3, f64)) -> f64 {
         let line = outside.0 - inside.0;
         let length = line.norm();
         let (mut low, mut high) = ((0.0, inside.1), (1.0, outside.1));
-        // Illinois: the end that stays twice counts half, so both ends close in.
+        // Illinois method: the value at an end that is retained twice is halved, so that both ends converge.
         let mut last = 0;
         for _ in 0..60 {
             let t: f64 = (low.0 * high.1 - high.0 * low.1) / (high.1 - low.1);
             let t = if t > low.0 && t < high.0 { t } else { 0.5 * (low.0 + high.0) };
             let at = inside.0 + line * t;
-            // The distance changes no faster than the place does.
+            // The distance changes at most as fast as the position.
             let reach = (low.1.abs() + (t - low.0) * length).max(high.1 + (high.0 - t) * length);
             let distance =
                 self.distance_within(&at, 1.001 * reach).unwrap_or_else(|| self.signed_distance(&at));

@@ -1,17 +1,16 @@
-//! Triangles without an area that close a T-junction, exchanged with their neighbours for triangles that have
-//! one.
+//! Replaces needles, triangles without area that close a T-junction, together with their neighbours.
 //!
-//! Such a needle lies on the long edge of a neighbour, which ends at the needle's ends and passes its third
-//! corner. The two make a quadrilateral; cut along its other diagonal it is the same surface with the corner
-//! as a corner of both parts.
+//! Such a needle lies on the long edge of a neighbour, which ends at the needle's ends and passes through its
+//! third corner. The two triangles form a quadrilateral. Divided along its other diagonal, it is the same
+//! surface, and the third corner is a corner of both parts.
 
 use super::closed::{self, WELD};
 use super::{Soup, SurfaceProblem};
 
-/// The triangle across each edge of each triangle.
+/// Neighbours of each triangle across its edges.
 type Across = Vec<[u32; 3]>;
 
-/// Cuts all needles and their neighbours anew; `None` if there is no needle.
+/// Replaces all needles and their neighbours; `None` without needles.
 pub(super) fn cut(soup: &Soup, across: &Across) -> Option<Result<(Soup, Across), SurfaceProblem>> {
     let tolerance = WELD * soup.diagonal();
     let (mut soup, mut across) = (soup.clone(), across.clone());
@@ -20,7 +19,7 @@ pub(super) fn cut(soup: &Soup, across: &Across) -> Option<Result<(Soup, Across),
     while let Some(needle) = open.pop().filter(|_| cut < most) {
         let Some(edge) = long_edge(&soup, needle, tolerance) else { continue };
         let other = exchange(&mut soup, &mut across, needle, edge);
-        // A neighbour that is a needle too leaves one behind.
+        // If the neighbour is also a needle, the exchange leaves a needle.
         open.extend([other, needle]);
         cut += 1;
     }
@@ -30,13 +29,13 @@ pub(super) fn cut(soup: &Soup, across: &Across) -> Option<Result<(Soup, Across),
     Some(closed::neighbours(&soup).map(|across| (soup, across)))
 }
 
-/// Cuts a needle and the neighbour across its long edge along their other diagonal; returns the neighbour.
+/// Divides a needle and the neighbour across its long edge along the other diagonal; returns the neighbour.
 fn exchange(soup: &mut Soup, across: &mut Across, needle: usize, edge: usize) -> usize {
     let corner = |t: [u32; 3], first: usize| [0, 1, 2].map(|i| t[(first + i) % 3]);
     let [a, b, m] = corner(soup.triangles[needle], edge);
     let [other, beyond_b, beyond_a] = corner(across[needle], edge);
     let other = other as usize;
-    // The neighbour has the edge from b to a.
+    // The neighbour's edge goes from b to a.
     let start = soup.triangles[other].iter().position(|&p| p == b).unwrap_or(0);
     let [_, _, c] = corner(soup.triangles[other], start);
     let [_, along_a, along_b] = corner(across[other], start);
@@ -54,7 +53,7 @@ fn exchange(soup: &mut Soup, across: &mut Across, needle: usize, edge: usize) ->
     other
 }
 
-/// The edge of a triangle that its third corner lies on, between the ends.
+/// The edge of a triangle that contains the third corner between its ends.
 fn long_edge(soup: &Soup, triangle: usize, tolerance: f64) -> Option<usize> {
     let corners = soup.corners(triangle);
     (0..3).find(|&edge| {

@@ -1,15 +1,16 @@
-//! Whether the parts of a surface are turned right: a body counter-clockwise seen from outside, a cavity clockwise.
+//! Checks the orientation of the parts of a surface: a body is counter-clockwise as seen from outside, a
+//! cavity clockwise.
 
 use super::{Soup, SurfaceProblem};
 use crate::Point3;
 
-/// A volume of less than this part of the area to the power 3/2 is rounding.
+/// Volume, relative to the area to the power 3/2, below which the volume is rounding.
 const FLAT: f64 = 1e-12;
 
-/// Parts at most: each is compared with all triangles of the others.
+/// Largest number of parts, each of which is compared with all triangles of the others.
 const MOST: usize = 200;
 
-/// Refuses parts that are inside out.
+/// Rejects parts that are inside out.
 pub(super) fn refuse(soup: &Soup, neighbours: &[[u32; 3]]) -> Result<(), SurfaceProblem> {
     let parts = parts(neighbours);
     let count = parts.iter().max().map_or(0, |&last| last as usize + 1);
@@ -45,7 +46,7 @@ pub(super) fn refuse(soup: &Soup, neighbours: &[[u32; 3]]) -> Result<(), Surface
     Ok(())
 }
 
-/// The part that each triangle belongs to, numbered by their first triangles.
+/// Part of each triangle, numbered in the order of their first triangles.
 fn parts(neighbours: &[[u32; 3]]) -> Vec<u32> {
     let mut parts = vec![u32::MAX; neighbours.len()];
     let mut next = 0;
@@ -64,7 +65,8 @@ fn parts(neighbours: &[[u32; 3]]) -> Vec<u32> {
     parts
 }
 
-/// How often triangles go around a point, by their solid angles (van Oosterom and Strackee 1983): 1 inside, 0 outside.
+/// Winding number of triangles around a point, from their solid angles (van Oosterom and Strackee 1983): 1
+/// inside, 0 outside.
 pub(super) fn winding(points: &[Point3], triangles: &[[u32; 3]], p: &Point3) -> f64 {
     let angle = |t: &[u32; 3]| {
         let [a, b, c] = t.map(|q| points[q as usize] - p);

@@ -3,19 +3,20 @@
 use super::{Soup, Surface, SurfaceProblem};
 use crate::{FaceKind, Facet, Mesh};
 
-/// The boundary of a mesh, and which of its faces each triangle is a part of.
+/// The boundary of a mesh as a surface, with the mesh face of each triangle.
 pub struct BoundaryFaces {
-    /// The surface.
+    /// Surface of the boundary.
     pub surface: Surface,
     /// Face of each triangle.
     pub faces: Vec<Facet>,
 }
 
 impl BoundaryFaces {
-    /// Of all faces that one cell has.
+    /// Triangulates the faces that belong to only one cell.
     ///
     /// # Errors
-    /// A boundary that branches or crosses itself: triangles are numbered by the faces of the boundary, in metres.
+    /// A boundary that branches or crosses itself. Triangles are numbered by the faces of the boundary, with
+    /// positions in metres.
     pub fn new(mesh: &Mesh) -> Result<BoundaryFaces, SurfaceProblem> {
         let boundary = mesh.boundary();
         let mut soup = Soup { points: mesh.points().to_vec(), ..Soup::default() };
@@ -29,20 +30,21 @@ impl BoundaryFaces {
                 faces.push(facet);
             }
         }
-        // Nothing is left out: corners of a mesh are one or apart.
+        // No triangle is dropped, because nodes of a mesh are identical or distinct.
         let surface = Surface::new(soup, 1.0)?;
         debug_assert_eq!(surface.triangles().len(), faces.len());
         Ok(BoundaryFaces { surface, faces })
     }
 }
 
-/// A face cut in triangles through its nodes, which are those of its cell from outside: corners, then middles of edges.
+/// Divides a face into triangles through its nodes. The nodes are in the order of the cell as seen from
+/// outside: corners, then mid-edge nodes.
 pub fn triangles_of(kind: FaceKind, nodes: &[u32]) -> Vec<[u32; 3]> {
     let of = |list: &[[usize; 3]]| list.iter().map(|t| t.map(|local| nodes[local])).collect();
     match kind {
         FaceKind::Tri3 => of(&[[0, 1, 2]]),
         FaceKind::Tri6 => of(&[[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]]),
-        // The diagonal at the lowest node, whichever cell is asked.
+        // The diagonal starts at the lowest node, which is independent of the cell.
         FaceKind::Quad4 => match (0..4).min_by_key(|&i| nodes[i]) {
             Some(0 | 2) => of(&[[0, 1, 2], [0, 2, 3]]),
             _ => of(&[[0, 1, 3], [1, 2, 3]]),

@@ -1,33 +1,33 @@
-//! Faces of many corners as triangles: plane polygons, seen along their normals, by cutting off ears.
+//! Triangulation of planar polygons by ear clipping, in projection along their normals.
 
 use robust::{Coord, orient2d};
 
 use crate::{Point3, Vector3};
 
-/// Corners of a polygon that no fan fills: time grows with their third power at worst.
+/// Largest number of corners of a polygon that is not a fan; the time grows with the third power at worst.
 const MOST: usize = 1000;
 
-/// A normal that short, beside the parts it is the sum of, is rounding.
+/// Length of a normal, relative to the terms of its sum, below which it is rounding.
 const CANCELLED: f64 = 1e-9;
 
-/// Why a polygon can't be cut into triangles.
+/// Reason for which a polygon cannot be triangulated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum PolygonFault {
-    /// Two of its edges cross or touch away from a common corner; numbered from 1 by the corners that they begin at.
+    /// Two edges cross or touch away from a common corner; edges are numbered from 1 by their first corners.
     Crosses([usize; 2]),
-    /// It is concave and has more corners than are taken.
+    /// The polygon is concave and has too many corners.
     Corners(usize),
 }
 
-/// A corner in the plane with its place in the list of the polygon's.
+/// A projected corner with its index in the polygon.
 #[derive(Clone, Copy)]
 struct Corner {
     at: Coord<f64>,
     place: usize,
 }
 
-/// Triangles of a polygon that turn as it does, by the places of their corners in the list. Neighbours at one place are one corner, and
-/// what is left of fewer than three encloses nothing.
+/// Divides a polygon into triangles with its orientation, as indices into its corners. Adjacent corners at
+/// the same position are merged, and fewer than three remaining corners give no triangles.
 pub(crate) fn cut(corners: &[Point3]) -> Result<Vec<[usize; 3]>, PolygonFault> {
     if corners.len() == 3 {
         return Ok(vec![[0, 1, 2]]);
@@ -38,7 +38,7 @@ pub(crate) fn cut(corners: &[Point3]) -> Result<Vec<[usize; 3]>, PolygonFault> {
     }
     let area: f64 = fan(&polygon).map(|[a, b, c]| orient2d(a.at, b.at, c.at)).sum();
     if area < 0.0 {
-        // Seen from the other side.
+        // Mirrored, as seen from the other side.
         polygon.iter_mut().for_each(|corner| corner.at.x = -corner.at.x);
     }
     if polygon.len() == 3 || is_fan(&polygon) {
@@ -53,15 +53,16 @@ pub(crate) fn cut(corners: &[Point3]) -> Result<Vec<[usize; 3]>, PolygonFault> {
     }
 }
 
-/// The corners without the coordinate along which the normal is longest: what is left are numbers of the file, so that signs are exact.
+/// Projects the corners by dropping the coordinate with the largest normal component. The remaining
+/// coordinates are numbers of the file, so signs are exact.
 fn in_plane(corners: &[Point3]) -> Vec<Corner> {
     let next = |i: usize| corners[(i + 1) % corners.len()];
     let kept: Vec<usize> = (0..corners.len()).filter(|&i| corners[i] != next(i)).collect();
     let middle = corners[0];
     let crosses = || kept.iter().map(|&i| (corners[i] - middle).cross(&(next(i) - middle)));
-    // The sum over edges is twice the area along each axis (Newell), whatever the polygon's shape.
+    // The sum over the edges is twice the projected area along each axis (Newell), for any shape of polygon.
     let mut normal: Vector3 = crosses().sum();
-    // Parts of one that crosses itself can cancel; then any of them shows its plane.
+    // In a self-crossing polygon the terms may cancel; then the largest of them gives the plane.
     if normal.norm() < CANCELLED * crosses().map(|cross| cross.norm()).sum::<f64>() {
         normal = crosses().max_by(|a, b| a.norm().total_cmp(&b.norm())).unwrap_or(normal);
     }
@@ -78,13 +79,14 @@ fn fan(p: &[Corner]) -> impl Iterator<Item = [Corner; 3]> {
     (1..p.len() - 1).map(|i| [p[0], p[i], p[i + 1]])
 }
 
-/// Whether triangles around the first corner fill the polygon: each turns the right way, and all lie on one side of the first edge.
+/// Whether the triangles around the first corner fill the polygon: each has the right orientation, and all
+/// lie on one side of the first edge.
 fn is_fan(p: &[Corner]) -> bool {
     let left = |a: Corner, b: Corner, c: Corner| orient2d(a.at, b.at, c.at) > 0.0;
     fan(p).all(|[a, b, c]| left(a, b, c) && left(a, p[1], c))
 }
 
-/// The first two edges that meet elsewhere than at a corner that they have in common.
+/// The first two edges that meet other than at a common corner.
 fn crossing(p: &[Corner]) -> Option<[usize; 2]> {
     let count = p.len();
     let edge = |i: usize| [p[i].at, p[(i + 1) % count].at];
@@ -105,13 +107,13 @@ fn crossing(p: &[Corner]) -> Option<[usize; 2]> {
     None
 }
 
-/// Whether an edge from `b` goes back over that from `a`.
+/// Whether the edge from `b` folds back onto the edge from `a`.
 fn folds(a: Coord<f64>, b: Coord<f64>, c: Coord<f64>) -> bool {
     let back = (a.x - b.x) * (c.x - b.x) + (a.y - b.y) * (c.y - b.y) > 0.0;
     back && orient2d(a, b, c) == 0.0
 }
 
-/// Whether two edges have a point in common.
+/// Whether two edges share a point.
 fn touch([a, b]: [Coord<f64>; 2], [c, d]: [Coord<f64>; 2]) -> bool {
     let apart = |a: f64, b: f64, c: f64, d: f64| a.max(b) < c.min(d) || c.max(d) < a.min(b);
     if apart(a.x, b.x, c.x, d.x) || apart(a.y, b.y, c.y, d.y) {
@@ -124,7 +126,8 @@ fn touch([a, b]: [Coord<f64>; 2], [c, d]: [Coord<f64>; 2]) -> bool {
     !one_side(a, b, c, d) && !one_side(c, d, a, b)
 }
 
-/// Cuts a corner off whose triangle holds no other one, again and again. A simple polygon always has such a corner.
+/// Repeatedly cuts off a corner whose triangle contains no other corner. A simple polygon always has such a
+/// corner.
 fn ears(mut p: Vec<Corner>) -> Vec<[usize; 3]> {
     let mut triangles = Vec::with_capacity(p.len() - 2);
     let mut at = 0;
@@ -135,7 +138,7 @@ fn ears(mut p: Vec<Corner>) -> Vec<[usize; 3]> {
         let Some(ear) = (at..at + count).find(is_ear) else { break };
         triangles.push(around(ear).map(|corner| corner.place));
         p.remove(ear % count);
-        // On to the next but one: one corner is not used again and again, which would make thin triangles.
+        // Skipping a corner avoids repeated use of the same corner, which would give thin triangles.
         at = ear % count + 1;
     }
     triangles.extend(fan(&p).map(|triangle| triangle.map(|corner| corner.place)));

@@ -1,10 +1,11 @@
-//! A surface as a body: what clouds and clipped grids need to know of it.
+//! A surface as a body for clouds and clipped grids.
 
 use super::Surface;
 use crate::Point3;
 use crate::shapes::Shape;
 
-/// Draws from the box of a body before its middle is taken: none has so little of its box.
+/// Largest number of random points in the bounding box before the centre is used; no body fills so little of
+/// its box.
 const TRIES: usize = 1_000_000;
 
 impl Shape for Surface {
@@ -36,7 +37,7 @@ impl Shape for Surface {
         let triangle = self.areas.partition_point(|&sum| sum <= wanted).min(self.triangles.len() - 1);
         let [a, b, c] = self.corners(triangle);
         let (u, v) = (unit(), unit());
-        // The square folded onto the triangle.
+        // Folds the unit square onto the triangle.
         let (u, v) = if u + v > 1.0 { (1.0 - u, 1.0 - v) } else { (u, v) };
         a + (b - a) * u + (c - a) * v
     }

@@ -1,4 +1,4 @@
-//! Triangles as a file has them, and the corners that are one.
+//! Triangles as listed in a file, and the merging of coinciding corners.
 
 use std::collections::HashMap;
 
@@ -6,21 +6,21 @@ use super::Groups;
 use super::polygon::{self, PolygonFault};
 use crate::{Point3, Vector3};
 
-/// Triangles whose corners may be listed once for each, as in STL.
+/// Triangles, each of which may have its own copies of the corners, as in STL.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Soup {
     /// Positions, in the unit of the file.
     pub points: Vec<Point3>,
     /// Corners of each triangle.
     pub triangles: Vec<[u32; 3]>,
-    /// Number of each triangle's face in the file, from 1: a face of many corners is several triangles.
+    /// Number of each triangle's face in the file, from 1; a face with many corners gives several triangles.
     pub faces: Vec<u32>,
     /// Named groups of triangles.
     pub groups: Groups,
 }
 
 impl Soup {
-    /// Adds a face of any number of corners as triangles.
+    /// Adds a face with any number of corners as triangles.
     pub(crate) fn face(&mut self, number: usize, corners: &[u32]) -> Result<(), PolygonFault> {
         let points: Vec<Point3> = corners.iter().map(|&corner| self.points[corner as usize]).collect();
         for triangle in polygon::cut(&points)? {
@@ -35,14 +35,14 @@ impl Soup {
         self.faces.push(number as u32);
     }
 
-    /// Corners nearer to each other than `tolerance` become one; triangles that lose a corner so are left out.
+    /// Merges corners closer to each other than `tolerance`, and drops triangles that collapse.
     pub(super) fn welded(&self, tolerance: f64) -> Soup {
         let mut points: Vec<Point3> = Vec::new();
         let mut bins: HashMap<[i64; 3], Vec<u32>> = HashMap::new();
         let mut same: HashMap<[u64; 3], u32> = HashMap::new();
         let bin = |p: &Point3| [p.x, p.y, p.z].map(|x| (x / tolerance).floor() as i64);
         let mut place = |p: &Point3| {
-            // A sum makes a positive zero of a negative one.
+            // The sum turns a negative zero into a positive one.
             let bits = [p.x, p.y, p.z].map(|x| (x + 0.0).to_bits());
             if let Some(&known) = same.get(&bits) {
                 return known;
@@ -70,13 +70,13 @@ impl Soup {
         Soup { points, triangles, faces, groups: self.groups.of_triangles(&kept) }
     }
 
-    /// Length of the diagonal of the box around all corners.
+    /// Length of the diagonal of the bounding box.
     pub(super) fn diagonal(&self) -> f64 {
         let (low, high) = super::tree::bounds(self.points.iter().copied());
         (high - low).norm()
     }
 
-    /// The middle of a triangle.
+    /// Centre of a triangle.
     pub(super) fn middle(&self, triangle: usize) -> Point3 {
         Point3::from(self.corners(triangle).iter().map(|p| p.coords).sum::<Vector3>() / 3.0)
     }
@@ -86,7 +86,7 @@ impl Soup {
     }
 }
 
-/// The first known point that is near enough.
+/// The lowest known point within the tolerance.
 fn near(
     bins: &HashMap<[i64; 3], Vec<u32>>,
     points: &[Point3],

@@ -1,26 +1,26 @@
-//! A tree of boxes around triangles: the closest point, and triangles that may touch a box.
+//! Bounding-box tree of triangles, for closest points and for triangles that touch a box.
 
 use crate::triangle::{Feature, closest_on};
 use crate::{Point3, Vector3};
 
-/// Triangles in a box that is not split further.
+/// Largest number of triangles in a leaf.
 const FEW: usize = 4;
 
-/// Boxes within boxes; a box without children has triangles.
+/// Hierarchy of boxes; a leaf contains triangles.
 pub(crate) struct Tree {
     nodes: Vec<Node>,
-    /// Triangles by box.
+    /// Triangles in the order of the boxes.
     order: Vec<u32>,
-    /// Corners of the triangles in that order.
+    /// Corners of the triangles in this order.
     corners: Vec<[Point3; 3]>,
 }
 
 struct Node {
     low: Point3,
     high: Point3,
-    /// The first of its triangles, or the first of its two children.
+    /// First triangle of a leaf, or first of the two children.
     start: u32,
-    /// Number of its triangles; 0 of a box with children.
+    /// Number of triangles; 0 for a box with children.
     count: u32,
 }
 
@@ -30,7 +30,7 @@ pub(crate) struct Closest {
     pub triangle: u32,
     pub feature: Feature,
     pub at: Point3,
-    /// Squared distance.
+    /// Squared distance, m^2.
     pub square: f64,
 }
 
@@ -70,12 +70,12 @@ impl Tree {
         Tree { nodes, order, corners }
     }
 
-    /// Lowest and highest corner around all triangles.
+    /// Lowest and highest corner of the box around all triangles.
     pub(super) fn bounds(&self) -> [Point3; 2] {
         [self.nodes[0].low, self.nodes[0].high]
     }
 
-    /// The closest point of all triangles; `None` if none is nearer than `within`.
+    /// The closest point of all triangles; `None` if none is closer than `within`.
     pub(crate) fn closest(&self, p: &Point3, within: f64) -> Option<Closest> {
         let mut best: Option<Closest> = None;
         let mut least = within * within;
@@ -105,7 +105,7 @@ impl Tree {
         best
     }
 
-    /// Calls `found` with every triangle whose box may touch this one.
+    /// Calls `found` with every triangle whose box may touch the given box.
     pub(super) fn touching(&self, low: &Point3, high: &Point3, mut found: impl FnMut(u32)) {
         let mut open = vec![0u32];
         while let Some(at) = open.pop() {
@@ -130,7 +130,7 @@ impl Node {
     }
 }
 
-/// The box around points, of which there is one at the least.
+/// Bounding box of at least one point.
 pub(super) fn bounds(points: impl Iterator<Item = Point3>) -> (Point3, Point3) {
     let none = (Point3::from([f64::INFINITY; 3]), Point3::from([f64::NEG_INFINITY; 3]));
     points.fold(none, |(low, high), p| (low.inf(&p), high.sup(&p)))
