@@ -222,7 +222,7 @@ fn surfaces_that_enclose_nothing_are_refused_with_triangle_and_place() {
     assert!(inverted.contains("the volume is -1.666667e-1"), "{inverted}");
 }
 
-/// Every mistake that a repair could mend says how many triangles and where, and what to do until then.
+/// Each repairable error states the number and position of the triangles, and a workaround.
 #[test]
 fn what_a_repair_would_have_to_do_is_said() {
     const EDITOR: &str = "yet: mend the file in a mesh editor";
@@ -255,7 +255,7 @@ fn what_a_repair_would_have_to_do_is_said() {
         soup.faces.push(all as u32 + 1);
     });
     assert!(twice.contains(&format!("5 and {} have the same corners", all + 1)), "{twice}");
-    // A side of one triangle is two of its neighbours'.
+    // An edge of one triangle coincides with two edges of its neighbours.
     let split = edit(&|soup| {
         let [a, b, c] = soup.triangles[0];
         let middle = nalgebra::center(&soup.points[a as usize], &soup.points[b as usize]);

@@ -55,7 +55,7 @@ pub(super) fn neighbours(soup: &Soup) -> Result<Vec<[u32; 3]>, SurfaceProblem> {
                 across[a.triangle as usize][a.corner as usize] = b.triangle;
                 across[b.triangle as usize][b.corner as usize] = a.triangle;
             }
-            // Edges of more triangles say more.
+            // An edge of more triangles is the more informative error.
             [_] => open = open.or(Some(around)),
             _ => return Err(faults::of_edge(soup, &sides, around)),
         }

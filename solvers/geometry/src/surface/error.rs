@@ -37,15 +37,15 @@ pub enum SurfaceProblem {
         triangle: u32,
         /// Ends of the edge.
         ends: [Point3; 2],
-        /// A corner of another triangle on it, between its ends.
+        /// Corner of another triangle on the edge, between its ends.
         corner: Option<Point3>,
         /// Number of such edges.
         edges: usize,
-        /// Holes that they enclose.
+        /// Number of holes that these edges enclose.
         holes: usize,
-        /// Edges of the hole of this one.
+        /// Number of edges of the hole that this edge belongs to.
         hole: usize,
-        /// The middle of that hole.
+        /// Centre of this hole.
         at: Point3,
     },
     /// An edge of more than two triangles.
@@ -54,7 +54,7 @@ pub enum SurfaceProblem {
         triangles: Vec<u32>,
         /// Ends of the edge.
         ends: [Point3; 2],
-        /// Two of the triangles that have the same corners.
+        /// Numbers of two of these triangles with the same corners in the same orientation, if there are any.
         twice: Option<[u32; 2]>,
     },
     /// Neighbours with opposite orientations.
@@ -63,11 +63,11 @@ pub enum SurfaceProblem {
         triangles: [u32; 2],
         /// Ends of the common edge.
         ends: [Point3; 2],
-        /// Triangles that have to turn, so that all are counter-clockwise seen from outside.
+        /// Numbers of the triangles to be reversed, so that all are counter-clockwise as seen from outside.
         turned: Vec<u32>,
         /// Number of all triangles.
         all: usize,
-        /// Whether turning is enough: a band with a twist has no outside.
+        /// Whether reversal suffices; a twisted band has no outside.
         orientable: bool,
     },
     /// Triangles that cross or touch away from common corners.
@@ -89,7 +89,7 @@ pub enum SurfaceProblem {
         volume: f64,
         /// Number of other parts that enclose the part.
         within: usize,
-        /// Triangles of the part, and of the whole surface.
+        /// Number of triangles of the part, and of the whole surface.
         part: [usize; 2],
     },
     /// Too many triangles close to each other for a surface.
@@ -110,10 +110,10 @@ pub enum SurfaceProblem {
     Flat,
 }
 
-/// Where a surface is mended.
+/// Advice for the repair of a surface.
 const EDITOR: &str = "mend the file in a mesh editor";
 
-/// How regions are given without surfaces for them.
+/// Advice for regions without their own surfaces.
 const REGIONS: &str = "take a volume mesh with a region for each (.msh, .inp, .vtu), or the outer surface alone and a region \
                        of the scene by where";
 

@@ -1,4 +1,4 @@
-//! Reasons why an edge does not have two triangles that turn the same way, with what a repair has to do.
+//! Diagnosis of edges without exactly two triangles of consistent orientation, with hints for a repair.
 
 use std::collections::HashMap;
 
@@ -6,10 +6,11 @@ use super::closed::{Side, WELD};
 use super::{Soup, SurfaceProblem};
 use crate::{Point3, Vector3};
 
-/// Edges of a hole that are searched for corners on them.
+/// Largest number of edges of a hole that are searched for corners on them.
 const SEARCHED: usize = 1000;
 
-/// The problem of an edge with these sides, which are not two that turn the same way.
+/// Problem of the edge with the sides `around`, which are not two of consistent orientation. `sides` are
+/// those of all edges.
 pub(super) fn of_edge(soup: &Soup, sides: &[Side], around: &[Side]) -> SurfaceProblem {
     let triangles: Vec<u32> = around.iter().map(|side| soup.faces[side.triangle as usize]).collect();
     let ends = around[0].edge.map(|p| soup.points[p as usize]);
@@ -23,7 +24,8 @@ pub(super) fn of_edge(soup: &Soup, sides: &[Side], around: &[Side]) -> SurfacePr
         _ => {
             let corners = |side: &Side| {
                 let corners = soup.triangles[side.triangle as usize];
-                // From the lowest on: a face that two parts share turns the other way in each.
+                // The order begins at the lowest corner. Two copies of a face that two parts share differ in
+                // orientation.
                 let first = (0..3).min_by_key(|&k| corners[k]).unwrap_or(0);
                 [0, 1, 2].map(|k| corners[(first + k) % 3])
             };
@@ -35,7 +37,7 @@ pub(super) fn of_edge(soup: &Soup, sides: &[Side], around: &[Side]) -> SurfacePr
     }
 }
 
-/// The first of the holes of a surface whose edges have two triangles or one.
+/// Problem of the first hole of a surface in which every edge has one or two triangles.
 fn open(soup: &Soup, sides: &[Side]) -> SurfaceProblem {
     let alone = |around: &[Side]| (around.len() == 1).then(|| around[0]);
     let edges: Vec<Side> = sides.chunk_by(|a, b| a.edge == b.edge).filter_map(alone).collect();
@@ -75,7 +77,7 @@ fn open(soup: &Soup, sides: &[Side]) -> SurfaceProblem {
     }
 }
 
-/// Whether a point lies on a line between its ends.
+/// Whether a point lies on a line segment, away from its ends.
 fn lies_on(p: &Point3, [a, b]: &[Point3; 2], tolerance: f64) -> bool {
     let (along, from) = (b - a, p - a);
     let part = from.dot(&along) / along.norm_squared();
@@ -83,8 +85,8 @@ fn lies_on(p: &Point3, [a, b]: &[Point3; 2], tolerance: f64) -> bool {
     between && (from - along * part).norm() <= tolerance
 }
 
-/// Faces of the file that turn the other way than their neighbours do once the volume is positive; and whether
-/// there is a way for all to turn the same way.
+/// Faces of the file whose orientation has to be reversed for a consistent orientation with a positive
+/// volume. Also returns whether a consistent orientation exists.
 fn turned(soup: &Soup, sides: &[Side]) -> (Vec<u32>, bool) {
     let mut near: Vec<Vec<(u32, bool)>> = vec![Vec::new(); soup.triangles.len()];
     for around in sides.chunk_by(|a, b| a.edge == b.edge) {
