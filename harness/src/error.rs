@@ -1,61 +1,61 @@
-//! Why a run gave no numbers, which key of the scene that is about, and which exit code it means.
+//! Errors of a run: the scene key each refers to and the exit code each means.
 
 use cases::scene::{ErrorKind, Scene, SceneError};
 
-/// What stopped a run.
+/// Reason why a run stopped.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Failure {
-    /// At one key of a scene; prints as `file:line: key 'path': 'found' problem; help`.
+    /// Error at one key of a scene; prints as `file:line: key 'path': 'found' problem; help`.
     #[error("{0}")]
     Scene(Box<SceneError>),
-    /// Known to be about a part of the scene whose file and line are still to be looked up.
+    /// Error in a part of the scene whose file and line are not looked up yet.
     #[error("{}", .0.problem)]
     At(Box<Finding>),
-    /// Input that is no scene makes no sense.
+    /// Invalid input that is not part of a scene.
     #[error("{0}")]
     Input(String),
-    /// Tables of a cloud could not be made.
+    /// Failure to build the tables of a cloud.
     #[error(transparent)]
     Efg(#[from] efg::EfgError),
-    /// Assembly or solution failed.
+    /// Failed assembly or solution.
     #[error(transparent)]
     Solve(#[from] statics::SolveError),
-    /// A static procedure reached no load.
+    /// Static procedure that reached no load.
     #[error(transparent)]
     Static(Box<statics::StaticError>),
-    /// Explicit dynamics could not start or go on.
+    /// Explicit dynamics that could not start or continue.
     #[error(transparent)]
     Explicit(Box<explicit::ExplicitError>),
-    /// Implicit dynamics could not start or go on.
+    /// Implicit dynamics that could not start or continue.
     #[error(transparent)]
     InTime(Box<statics::TimeError>),
-    /// The method could not run or did not converge.
+    /// Method that could not run or did not converge.
     #[error("{0}")]
     Run(String),
-    /// A solver outside this program gave no numbers.
+    /// External solver that returned no numbers.
     #[error("{0}")]
     Foreign(Box<Foreign>),
 }
 
-/// What became of a run of a solver outside this program.
+/// Result of a run of an external solver that returned no numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ForeignStatus {
-    /// It does not take the problem, and says so itself.
+    /// The solver reported that it does not accept the problem.
     Refused,
-    /// It found no equilibrium.
+    /// The solver found no equilibrium.
     Stalled,
-    /// It broke, or what it answers is no answer.
+    /// The solver crashed or returned an invalid answer.
     Failed,
-    /// It took longer than it may.
+    /// The solver exceeded its time limit.
     TimedOut,
-    /// The problem asks for what its adapter does not offer, or it is not installed here.
+    /// The adapter lacks a feature of the problem, or the solver is not installed.
     NotOffered,
-    /// Its answer is of another problem.
+    /// The answer belongs to another problem.
     Stale,
 }
 
 impl ForeignStatus {
-    /// The word in records and tables.
+    /// Returns the word used in records and tables.
     pub fn name(self) -> &'static str {
         match self {
             ForeignStatus::Refused => "refused",
@@ -68,14 +68,14 @@ impl ForeignStatus {
     }
 }
 
-/// Why a solver outside this program gave no numbers.
+/// Reason why an external solver returned no numbers.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Foreign {
-    /// What became of it.
+    /// Status of the run.
     pub status: ForeignStatus,
-    /// Why.
+    /// Reason in words.
     pub reason: String,
-    /// The same at the key of the scene that it is about.
+    /// The same reason as an error at its key of the scene.
     pub(crate) at: Option<Box<SceneError>>,
 }
 
@@ -100,39 +100,39 @@ impl From<Foreign> for Failure {
     }
 }
 
-/// A failure that knows its part of the scene, not yet the place in the file.
+/// A failure in a known part of the scene, before its file and line are looked up.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Finding {
-    /// Whose fault it is: what exit code it means.
+    /// Kind of the error, from which its exit code follows.
     pub kind: ErrorKind,
     /// The part of the scene.
     pub key: Key,
-    /// What is wrong.
+    /// The problem in words.
     pub problem: String,
-    /// What would be right.
+    /// The remedy in words.
     pub help: Option<String>,
 }
 
-/// A part of a scene as code sees it that knows neither the scene nor the method's place in it.
+/// A part of a scene, named by code that knows neither the scene nor the method's index in it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Key {
     /// A key of the scene, such as `support[0].where`.
     Scene(String),
-    /// A key below the method; the method itself if empty.
+    /// A key below the method; empty for the method itself.
     Method(&'static str),
-    /// A key below the size that mesh or cloud were made in; the size itself if empty.
+    /// A key below the size of the mesh or cloud; empty for the size itself.
     Size(&'static str),
-    /// A key below the size of the background cells.
+    /// A key below the size of the background cells; empty for the size itself.
     Background(&'static str),
 }
 
 impl Failure {
-    /// Input that makes no sense at a key.
+    /// Returns an invalid-input error at `key`.
     pub fn input(key: Key, problem: impl Into<String>, help: &str) -> Failure {
         Failure::at(ErrorKind::Invalid, key, problem, help)
     }
 
-    /// Sound input that can't be had yet.
+    /// Returns an error for valid input that is not supported yet.
     pub fn unavailable(key: Key, problem: impl Into<String>, help: &str) -> Failure {
         Failure::at(ErrorKind::NotAvailable, key, problem, help)
     }
@@ -142,7 +142,7 @@ impl Failure {
         Failure::At(Box::new(Finding { kind, key, problem: problem.into(), help }))
     }
 
-    /// Place of the key that it is about, `file:line`; empty where none is known.
+    /// Returns the location of the error in the scene as `file:line`; empty if unknown.
     pub(crate) fn place(&self) -> String {
         let error = match self {
             Failure::Scene(error) => Some(error),
@@ -152,13 +152,13 @@ impl Failure {
         error.map_or(String::new(), |error| format!("{}:{}", error.file, error.line))
     }
 
-    /// Bad input at a key of a scene.
+    /// Returns an error of `kind` at `key` of `scene`.
     pub(crate) fn of_scene(scene: &Scene, kind: ErrorKind, key: &str, problem: &str, help: &str) -> Failure {
         let help = (!help.is_empty()).then_some(help);
         Failure::Scene(Box::new(scene.error(kind, key, problem, help)))
     }
 
-    /// The same failure of the background cells' size where it was of a size.
+    /// Moves an error at the size of the method to the size of the background cells.
     pub(crate) fn of_background(mut self) -> Failure {
         if let Failure::At(finding) = &mut self
             && let Key::Size(below) = finding.key
@@ -186,7 +186,7 @@ impl Failure {
         }
     }
 
-    /// The exit code of a program that met this.
+    /// Returns the exit code of a program that stops with this failure.
     pub fn exit_code(&self) -> u8 {
         match self.kind() {
             ErrorKind::Invalid => 2,
@@ -194,7 +194,7 @@ impl Failure {
         }
     }
 
-    /// The status of a run that this ended early, its numbers kept up to there.
+    /// Returns the status of a run that this failure ended early; its results up to that point are kept.
     pub fn early_status(&self) -> &'static str {
         use explicit::ExplicitError::{ContactAt, Inverted, InvertedAt, LightTool, NotFinite, StepTooLarge};
         let Failure::Explicit(error) = self else { return "stalled" };
@@ -207,7 +207,7 @@ impl Failure {
         }
     }
 
-    /// The status of a run that ended with this, in its JSON object.
+    /// Returns the status of a run that ended with this failure, for its JSON object.
     pub fn status(&self) -> &'static str {
         if let Failure::Foreign(foreign) = self {
             return foreign.status.name();

@@ -1,29 +1,36 @@
-//! Scene to plan to run to records; studies and their checks; the command line.
+//! From a scene through a plan to records; studies and their checks; the command line.
 //!
-//! The modules are rooms in one order, and a room uses only those to its right (`tests/rooms.rs` checks it):
+//! The modules form layers in one order. A module uses only modules to its right (`tests/rooms.rs` checks
+//! this):
 //!
-//! `cli` > `study` > `run` > `measure` > `procedure` > `prepare` > `scenario` > `discretise` > `adapter` > `outcome` > `process` > `error`
+//! `cli` > `study` > `run` > `measure` > `procedure` > `prepare` > `scenario` > `discretise` > `adapter` >
+//! `outcome` > `process` > `error`
 //!
-//! Data flows the other way round: a scene (TOML, checked) becomes a `scenario::Scenario`, that a
-//! `scenario::setup::Setup` and a `discretise::Discretisation`, these the tables of `prepare::prepare`. A procedure
-//! solves them, `measure` compares the solution, and `run::run` makes an [`outcome::Outcome`] of records. Nothing here
-//! draws; nothing in `reports` solves.
+//! Data flows in the opposite direction. A checked TOML scene becomes a `scenario::Scenario`. The scenario
+//! becomes a `scenario::setup::Setup` and a `discretise::Discretisation`, and `prepare::prepare` builds the
+//! tables from both. A procedure solves the problem, `measure` compares the solution with its references, and
+//! `run::run` returns an [`outcome::Outcome`] of records. Nothing here draws; nothing in `reports` solves.
 //!
 //! ```
 //! use cases::scene;
 //! use harness::run::{Group, Repeats, RunOptions};
-//! // A cube that is pressed between frictionless walls: at nu = 0 its top goes down by p h / E.
+//! // A cube between frictionless walls under a pressure p: at nu = 0 its top moves down by p h / E.
 //! let text = r#"
 //! title = "A cube between walls"
 //! body = { shape = "box", size = ["10 mm", "10 mm", "10 mm"] }
 //! material = { law = "linear", young = "20 kPa", poisson = 0.0 }
-//! support = [{ on = "z-min", fix = "z" }, { on = ["x-min", "x-max"], fix = "x" }, { on = ["y-min", "y-max"], fix = "y" }]
+//! support = [
+//!   { on = "z-min", fix = "z" },
+//!   { on = ["x-min", "x-max"], fix = "x" },
+//!   { on = ["y-min", "y-max"], fix = "y" },
+//! ]
 //! load = [{ on = "z-max", pressure = "1 kPa" }]
 //! method = [{ id = "hex8", family = "fem", element = "hex8", size = { cells = [2, 2, 2] } }]
 //! "#;
 //! let scene = scene::parse(text, "cube.toml").expect("sound");
 //! let group = Group::new(&scene, None, Repeats::ONCE)?;
-//! let outcome = group.run(&group.scenario(scene.methods[0].clone(), 0), RunOptions::default()).expect("runs");
+//! let outcome =
+//!     group.run(&group.scenario(scene.methods[0].clone(), 0), RunOptions::default()).expect("runs");
 //! let down = outcome.metric("max-z").expect("recorded");
 //! assert!((down - 1e3 / 20e3 * 0.01).abs() < 1e-12);
 //! # Ok::<(), harness::Failure>(())

@@ -1,7 +1,8 @@
-//! Printing that never panics, and never hands a terminal what others would have it do. The macros of the
-//! standard library panic where stdout or stderr takes no more, which would cost the results that are still
-//! to be written, and pass on every character of a title or of a file's name. These take their place in the
-//! whole crate.
+//! Printing that never panics and never passes control characters to a terminal.
+//!
+//! The standard library's macros panic if stdout or stderr cannot be written, which would lose results that
+//! are not written yet. They also pass on every character of a title or file name. The macros here replace
+//! them in the whole crate.
 
 use std::borrow::Cow;
 use std::fmt::Arguments;
@@ -22,10 +23,10 @@ macro_rules! eprintln {
     ($($text:tt)*) => { $crate::print::note(format_args!("{}\n", format_args!($($text)*))) };
 }
 
-/// Why stdout took no more; nothing is written to it from then on.
+/// The first error of writing to stdout; nothing is written to stdout after it.
 static LOST: Mutex<Option<io::Error>> = Mutex::new(None);
 
-/// The colours of this program, and their end, where a terminal takes any.
+/// Escape sequences of the program's own colours and their reset, which a terminal with colours receives.
 const COLOURS: [&str; 5] = ["\u{1b}[1m", "\u{1b}[31m", "\u{1b}[32m", "\u{1b}[33m", "\u{1b}[0m"];
 
 /// Writes to stdout.
@@ -38,14 +39,14 @@ pub(crate) fn out(text: Arguments) {
     }
 }
 
-/// Writes to stderr; nobody is left to hear that it takes nothing.
+/// Writes to stderr. Errors are ignored: there is nowhere left to report them.
 pub(crate) fn note(text: Arguments) {
     let stderr = io::stderr();
     let coloured = AutoStream::choice(&stderr) != ColorChoice::Never;
     let _ = stderr.lock().write_all(shown(&text.to_string(), coloured).as_bytes());
 }
 
-/// Stdout for those who write bytes of text.
+/// Stdout as a byte writer for text.
 pub(crate) struct Stdout;
 
 impl Write for Stdout {
@@ -59,8 +60,8 @@ impl Write for Stdout {
     }
 }
 
-/// Whether a terminal shows a character and does nothing else: control characters move, erase and send,
-/// others turn the direction of writing, so that a text reads as another one.
+/// Whether a terminal only displays this character. Control characters can move the cursor, erase and send;
+/// bidirectional marks can make a text read as another one.
 fn is_plain(c: char) -> bool {
     match c {
         '\n' | '\t' => true,
@@ -69,8 +70,8 @@ fn is_plain(c: char) -> bool {
     }
 }
 
-/// The text with characters that are not plain written as `\u001b`, which is how JSON has them: within its
-/// strings they stay the same.
+/// Returns `text` with characters that are not plain written as `\u001b`, the form of JSON: within JSON
+/// strings the text keeps its meaning. The program's own colours are kept if `coloured`.
 pub(crate) fn shown(text: &str, coloured: bool) -> Cow<'_, str> {
     let Some(first) = text.find(|c| !is_plain(c)) else { return text.into() };
     let (plain, mut rest) = text.split_at(first);
@@ -87,8 +88,8 @@ pub(crate) fn shown(text: &str, coloured: bool) -> Cow<'_, str> {
     shown.into()
 }
 
-/// The exit code of a command that ends with `code`: 5 where all held but stdout has not all of it. A reader that closes early
-/// (`| head`) has what it wants.
+/// Returns the exit code of a command that ends with `code`: 5 if the command succeeded but stdout could not
+/// be written completely. A reader that closes the pipe early (`| head`) is no error.
 pub(crate) fn code(code: u8) -> u8 {
     let flushed = io::stdout().lock().flush().err();
     let lost = LOST.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).take();

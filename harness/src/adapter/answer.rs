@@ -1,4 +1,4 @@
-//! What a solver outside this program answers: `result.json` and `displacement.npy`, each held against the question.
+//! Reads and checks the answer of an external solver: `result.json` and `displacement.npy`.
 
 use std::collections::BTreeMap;
 use std::io::ErrorKind;
@@ -11,38 +11,38 @@ use serde::{Deserialize, Serialize};
 use super::npy;
 use crate::error::{Foreign, ForeignStatus};
 
-/// The file of what it says.
+/// File with the solver's status and counts.
 pub(crate) const RESULT: &str = "result.json";
-/// The file of what it found.
+/// File with the computed displacement.
 pub(super) const DISPLACEMENT: &str = "displacement.npy";
 
-/// `result.json`. Keys that are not known here are left to others.
+/// Contents of `result.json`. Unknown keys are ignored.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Answer {
     /// `ok`, `refused`, `stalled` or `failed`.
     pub(crate) status: String,
-    /// Why, where it is not `ok`.
+    /// Reason if the status is not `ok`.
     #[serde(default)]
     pub(crate) message: String,
     /// Name and version of the solver.
     #[serde(default)]
     pub(crate) version: String,
-    /// Id of the problem that it is of.
+    /// Id of the problem that was solved.
     #[serde(default)]
     pub(crate) problem: Option<String>,
-    /// The part of the load that a path which stalled has reached.
+    /// Load fraction reached by a path that stalled.
     #[serde(default)]
     pub(crate) load: Option<f64>,
-    /// Its own seconds by phase.
+    /// The solver's own timings by phase, s.
     #[serde(default)]
     pub(crate) phases: BTreeMap<String, f64>,
-    /// Its own counts.
+    /// The solver's own counters.
     #[serde(default)]
     pub(crate) counts: BTreeMap<String, f64>,
 }
 
 impl Answer {
-    /// Reads it; `None` where there is none.
+    /// Reads the answer in `folder`; `None` if there is no file.
     pub(super) fn read(folder: &Path) -> Option<Result<Answer, String>> {
         let text = match disk::read_text(&folder.join(RESULT), Kind::MESSAGE) {
             Err(bad) if bad.kind() == ErrorKind::NotFound => return None,
@@ -53,7 +53,8 @@ impl Answer {
         Some(parsed.map_err(|bad| format!("{RESULT}: {bad}")))
     }
 
-    /// What it says against itself: not `ok`, or an answer to another question.
+    /// Returns the reason why the answer counts as failed: its status is not `ok`, or its problem id is not
+    /// `id`.
     pub(super) fn objection(&self, id: &str) -> Result<Option<Foreign>, String> {
         if let Some(other) = self.problem.as_ref().filter(|other| *other != id) {
             let reason = format!("the answer is of another problem ({other}, not {id})");
@@ -71,10 +72,11 @@ impl Answer {
     }
 }
 
-/// The displacement of so many nodes: at the end, or at the end of each of so many steps. Metres.
+/// Reads the nodal displacement, m, of `nodes` nodes: one field at the end, or one at the end of each of
+/// `steps` load steps.
 pub(super) fn displacement(folder: &Path, nodes: usize, steps: usize) -> Result<Vec<Vec<Vector3>>, String> {
     let named = |bad: String| format!("{DISPLACEMENT}: {bad}");
-    // More than the nodes take is not read.
+    // Files larger than the expected array are refused.
     let most = (24 * nodes * steps.max(1)) as u64 + (1 << 16);
     let array = npy::read(&folder.join(DISPLACEMENT), Kind::ARRAY.at_most(most)).map_err(named)?;
     let count = match array.shape[..] {

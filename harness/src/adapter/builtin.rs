@@ -1,6 +1,6 @@
-//! The adapters that this program brings with it, wherever it is installed.
+//! The adapters that are compiled into this program.
 
-/// Files of an adapter: name and text.
+/// Files of an adapter, as pairs of name and text.
 pub(super) type Files = &'static [(&'static str, &'static str)];
 
 macro_rules! shipped {
@@ -9,7 +9,7 @@ macro_rules! shipped {
     };
 }
 
-/// All, `adapter.toml` first.
+/// All shipped adapters, `adapter.toml` first.
 pub(super) static SHIPPED: &[Files] = shipped! {
     "calculix": "adapter.toml", "calculix.py";
     "dolfinx": "adapter.toml", "dolfinx_adapter.py";

@@ -1,4 +1,4 @@
-//! Which adapters have passed their check here, as they are now.
+//! Records which adapters have passed their check on this machine in their present state.
 
 use std::path::PathBuf;
 
@@ -10,7 +10,7 @@ fn file(adapter: &Found) -> Option<PathBuf> {
     Some(data_folder()?.join("adapters").join(&adapter.manifest.name).join("checked"))
 }
 
-/// Of all that the check depends on.
+/// Returns a hash of everything the check depends on: the adapter's files and its solver's version.
 fn state(adapter: &Found) -> String {
     let mut hasher = blake3::Hasher::new();
     for (name, bytes) in adapter.files() {
@@ -20,7 +20,8 @@ fn state(adapter: &Found) -> String {
     format!("{}\n", hasher.finalize().to_hex())
 }
 
-/// Notes that an adapter has passed, or has not. Where nothing can be written, nothing is known.
+/// Records whether an adapter passed its check. If the record cannot be written, the adapter counts as
+/// unchecked.
 pub(crate) fn note(adapter: &Found, passed: bool) {
     let Some(file) = file(adapter) else { return };
     if !passed {
@@ -36,7 +37,7 @@ pub(crate) fn note(adapter: &Found, passed: bool) {
     }
 }
 
-/// Whether an adapter has passed as it is now.
+/// Whether an adapter has passed its check in its present state.
 pub(crate) fn is_checked(adapter: &Found) -> bool {
     let noted = file(adapter).and_then(|file| disk::read_text(&file, disk::Kind::MESSAGE).ok());
     noted.is_some_and(|noted| noted == state(adapter))

@@ -1,5 +1,5 @@
-//! Where adapters are: in the folders that a person names, beside the scene, in the folder that the program is called in, and in the
-//! program.
+//! Finds adapters: in the folders the user names, next to the scene, in the working directory, and in the
+//! program itself.
 
 use std::collections::BTreeSet;
 use std::io::ErrorKind;
@@ -15,44 +15,44 @@ use super::builtin::{Files, SHIPPED};
 use super::manifest::Manifest;
 use crate::Failure;
 
-/// What a folder of adapters is called beside a scene.
+/// Name of a folder of adapters next to a scene.
 const BESIDE: &str = "adapters";
 const MANIFEST: &str = "adapter.toml";
-/// Bytes.
+/// Largest manifest that is read, bytes.
 const LARGEST_MANIFEST: u64 = 1 << 20;
 
-/// Folders of the command line.
+/// Adapter folders given on the command line.
 static GIVEN: OnceLock<Vec<PathBuf>> = OnceLock::new();
-/// Whether only those are looked in that a person has named, and the program.
+/// Whether only folders named by the user and the program's own adapters are searched.
 static NOT_LOCAL: AtomicBool = AtomicBool::new(false);
 
-/// Looks in these folders first. Only the first call counts.
+/// Sets the folders that are searched first. Only the first call counts.
 pub(crate) fn add_folders(folders: &[PathBuf]) {
     let _ = GIVEN.set(folders.to_vec());
 }
 
-/// Looks neither beside the scene nor in the folder that the program is called in.
+/// Excludes the scene's folder and the working directory from the search.
 pub(crate) fn leave_local_out() {
     NOT_LOCAL.store(true, Ordering::Relaxed);
 }
 
-/// Whether it does not look there.
+/// Whether the scene's folder and the working directory are excluded.
 pub(crate) fn leaves_local_out() -> bool {
     NOT_LOCAL.load(Ordering::Relaxed)
 }
 
-/// The folders that a person has named, on the command line or in the environment.
+/// Returns the adapter folders named on the command line and in the environment.
 pub(crate) fn given_folders() -> Vec<PathBuf> {
     let environment = std::env::var_os(FOLDERS).unwrap_or_default();
     let of_environment = std::env::split_paths(&environment).filter(|path| !path.as_os_str().is_empty());
     GIVEN.get().into_iter().flatten().cloned().chain(of_environment).collect()
 }
 
-/// An adapter and where it was found.
+/// An adapter and its origin.
 #[derive(Clone, Debug)]
 pub(crate) struct Found {
     pub(crate) manifest: Manifest,
-    /// `None` where it is one that this program brings with it.
+    /// The adapter's folder; `None` if the adapter is compiled into this program.
     pub(crate) folder: Option<PathBuf>,
     shipped: Files,
 }
@@ -75,8 +75,8 @@ impl Found {
         Some(Manifest::parse(&text, &file).map(found).map_err(Failure::Input))
     }
 
-    /// Its files with their contents, by name, one at a time; those of folders inside its own are not among
-    /// them, nor those that are together more than one may be.
+    /// Iterates over the adapter's files as pairs of name and contents, sorted by name and read one at a
+    /// time. Files in subfolders are left out, and so are files beyond the size limit of a whole adapter.
     pub(crate) fn files(&self) -> impl Iterator<Item = (String, Vec<u8>)> {
         let shipped = self.shipped.iter().map(|(name, text)| (name.to_string(), text.as_bytes().to_vec()));
         let entries = self.folder.iter().flat_map(std::fs::read_dir).flatten().flatten();
@@ -90,7 +90,7 @@ impl Found {
         }))
     }
 
-    /// Says once where an adapter comes from whose program is not one of this program.
+    /// Prints once per folder where an adapter comes from, unless the adapter is compiled into this program.
     fn announce(&self) {
         static SAID: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
         let Some(folder) = &self.folder else { return };
@@ -100,22 +100,22 @@ impl Found {
         }
     }
 
-    /// Where it is, for people.
+    /// Returns the adapter's location for messages.
     pub(crate) fn place(&self) -> String {
         self.folder.as_ref().map_or("shipped".into(), |folder| folder.display().to_string())
     }
 }
 
-/// What was found of adapters.
+/// Result of a search for adapters.
 #[derive(Default)]
 pub(crate) struct All {
-    /// The first of each name.
+    /// The first adapter of each name.
     pub(crate) found: Vec<Found>,
-    /// Folders whose `adapter.toml` is wrong, and what is wrong with it.
+    /// Folders with an invalid `adapter.toml`, and the error in each.
     pub(crate) broken: Vec<(PathBuf, Failure)>,
 }
 
-/// All adapters for a scene.
+/// Returns all adapters available to a scene.
 pub(crate) fn all(scene: Option<&Path>) -> All {
     let beside = scene.and_then(Path::parent).map(|folder| folder.join(BESIDE));
     let local = beside.into_iter().chain([PathBuf::from(BESIDE)]).filter(|_| !leaves_local_out());
@@ -131,7 +131,7 @@ pub(crate) fn all(scene: Option<&Path>) -> All {
         let entries = std::fs::read_dir(&folder).into_iter().flatten().flatten();
         let mut paths: Vec<PathBuf> = entries.map(|entry| entry.path()).collect();
         paths.sort();
-        // A folder may be one adapter itself.
+        // The folder itself may be an adapter.
         paths.insert(0, folder);
         for path in paths {
             if let Some(read) = Found::in_folder(&path) {
@@ -143,10 +143,10 @@ pub(crate) fn all(scene: Option<&Path>) -> All {
     all
 }
 
-/// The adapter of a name.
+/// Returns the adapter called `name`.
 pub(crate) fn find(name: &str, scene: Option<&Path>) -> Result<Found, Failure> {
     let All { mut found, mut broken } = all(scene);
-    // One that is wrong does not stand aside for another of its name.
+    // An adapter with an invalid manifest is not replaced by another one of the same name.
     if let Some(at) = broken.iter().position(|(folder, _)| folder.file_name().is_some_and(|own| own == name))
     {
         return Err(broken.swap_remove(at).1);

@@ -1,4 +1,4 @@
-//! `adapter.toml`: what an adapter says of itself.
+//! `adapter.toml`: the description of an adapter.
 
 use std::path::Path;
 
@@ -6,69 +6,70 @@ use catalogue::suggest;
 use material::LAWS;
 use serde::Deserialize;
 
-/// What the words of `can` are, beside the names of laws.
+/// Words that `can` accepts besides the names of material laws.
 const WORDS: [&str; 3] = ["linear", "static", "tools"];
 const ELEMENTS: [&str; 4] = ["tet4", "tet10", "hex8", "hex20"];
 const READS: [&str; 2] = ["mesh.inp", "mesh.vtu"];
-/// Characters of a name: it is one of a folder, too.
+/// Longest name of an adapter, in characters; the name is also that of a folder.
 const LONGEST_NAME: usize = 64;
-/// Digits of a displacement that is written as it is.
+/// Significant digits of a displacement written in full.
 const ALL_DIGITS: u32 = 15;
 
-/// An adapter as its file has it.
+/// An adapter as described in its file.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Manifest {
-    /// As scenes name it; the name of its folder too.
+    /// Name of the adapter in scenes, and of its folder.
     pub(crate) name: String,
-    /// One line: which solver.
+    /// Name of the solver, in one line.
     pub(crate) title: String,
-    /// The program with its arguments. `{problem}` and `{answer}` are folders, `{python}` the adapter's own Python or `python3`,
-    /// `{tissuebench}` this program; an argument that is a file of the adapter's folder stands for its path.
+    /// The program with its arguments. `{problem}` and `{answer}` stand for folders, `{python}` for the
+    /// adapter's own Python or `python3`, and `{tissuebench}` for this program. An argument that names a file
+    /// of the adapter's folder stands for that file's path.
     pub(crate) run: Vec<String>,
-    /// A command that prints the version of the solver.
+    /// Command that prints the version of the solver.
     #[serde(default)]
     pub(crate) version: Vec<String>,
-    /// Procedures and laws, by their names in scenes, and "tools".
+    /// Supported procedures and laws, by their names in scenes, and "tools".
     pub(crate) can: Vec<String>,
-    /// Elements, by their names in scenes.
+    /// Supported elements, by their names in scenes.
     pub(crate) elements: Vec<String>,
-    /// Digits of its answer: text files have few.
+    /// Significant digits of the solver's answer; text files have few.
     #[serde(default = "all_digits")]
     pub(crate) digits: u32,
-    /// How it takes the number of threads.
+    /// How the number of threads is passed to the solver.
     #[serde(default)]
     pub(crate) threads: Threads,
-    /// Mesh files that it reads beside the arrays, which are written for it: mesh.inp, mesh.vtu.
+    /// Mesh files (mesh.inp, mesh.vtu) to be written for the adapter in addition to the arrays.
     #[serde(default)]
     pub(crate) reads: Vec<String>,
-    /// What it needs.
+    /// The adapter's requirements.
     #[serde(default)]
     pub(crate) install: Install,
 }
 
-/// How an adapter takes the number of threads.
+/// How the number of threads is passed to a solver.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Threads {
-    /// In this environment variable.
+    /// Environment variable that receives the number.
     pub(crate) env: Option<String>,
 }
 
-/// What an adapter needs.
+/// Requirements of an adapter.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Install {
-    /// Python packages, for a virtual environment of its own.
+    /// Python packages, installed in a virtual environment of the adapter.
     #[serde(default)]
     pub(crate) python: Vec<String>,
-    /// Python packages that make it faster, and that it does without where there is none for a machine.
+    /// Optional Python packages that make the solver faster; skipped on machines for which they do not exist.
     #[serde(default)]
     pub(crate) faster: Vec<String>,
-    /// Programs that have to be in the `PATH`.
+    /// Programs that must be in the `PATH`.
     #[serde(default)]
     pub(crate) programs: Vec<String>,
-    /// Where these come from, for people.
+    /// Instructions for users on how to install these programs.
     #[serde(default)]
     pub(crate) say: String,
 }
@@ -78,7 +79,7 @@ fn all_digits() -> u32 {
 }
 
 impl Manifest {
-    /// Reads a file; `file` is its name in messages.
+    /// Parses a manifest; `file` is the name used in messages.
     pub(crate) fn parse(text: &str, file: &Path) -> Result<Manifest, String> {
         let manifest: Manifest = toml::from_str(text)
             .map_err(|bad| format!("{}: {}", file.display(), bad.to_string().trim_end()))?;
@@ -112,7 +113,8 @@ impl Manifest {
         }
     }
 
-    /// Why it does not take what a scene asks for, in the words of `can`; `None` where it does.
+    /// Returns why the adapter cannot solve a problem with this element and these features (words of `can`,
+    /// each with its description); `None` if it can.
     pub(crate) fn refusal(&self, element: &str, asked: &[(&str, String)]) -> Option<String> {
         if !self.elements.iter().any(|known| known == element) {
             return Some(format!("has no {element}, only {}", self.elements.join(", ")));

@@ -1,7 +1,7 @@
-//! Solvers outside this program: what an adapter says of itself, where it is found, how it is called, what it answers.
+//! External solvers: the description of an adapter, the search for adapters, their calls and their answers.
 //!
-//! An adapter is a folder with `adapter.toml` and any program: a process, files in, files out. What is in the files of a problem is
-//! written where problems are (`procedure::external`); this room knows no scene.
+//! An adapter is a folder with `adapter.toml` and any program: one process with files as input and output.
+//! The problem files are written by `procedure::external`; this module does not depend on scenes.
 
 use std::path::Path;
 
@@ -22,8 +22,8 @@ pub(crate) use outside::{About, Outside, label};
 pub(crate) use run::{Answered, Question, ask, environment, ready, version};
 pub(crate) use work::{Folder, remove_all};
 
-/// Reads what is there of an adapter and its answer in a folder: `adapter.toml`, `result.json` and `displacement.npy`; says of each what is
-/// wrong with it. For whoever tries these readers on files of all kinds.
+/// Reads `adapter.toml`, `result.json` and `displacement.npy` in `folder` and returns the error of each
+/// reader. Fuzz targets use this function. `nodes` and `steps` are the expected counts of the displacement.
 pub fn try_readers(folder: &Path, nodes: usize, steps: usize) -> [Result<(), String>; 3] {
     let file = folder.join("adapter.toml");
     let text = disk::read_text(&file, disk::Kind::ADAPTER.at_most(1 << 20)).map_err(|bad| bad.to_string());
@@ -33,5 +33,5 @@ pub fn try_readers(folder: &Path, nodes: usize, steps: usize) -> [Result<(), Str
     [manifest.map(drop), result.map(drop), answer::displacement(folder, nodes, steps).map(drop)]
 }
 
-/// The environment variable with folders of adapters, as `PATH` has folders of programs.
+/// Environment variable with adapter folders, separated as in `PATH`.
 pub(crate) const FOLDERS: &str = "TISSUEBENCH_ADAPTERS";

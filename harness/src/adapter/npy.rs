@@ -1,14 +1,14 @@
-//! Arrays in files of NumPy's format (`.npy`, version 1.0): what other people's programs read and write in one line.
+//! Arrays in NumPy's file format (`.npy`, written as version 1.0).
 
 use std::path::Path;
 
 const MAGIC: &[u8] = b"\x93NUMPY";
-/// The head is filled up to a multiple of it.
+/// The header is padded to a multiple of this many bytes.
 const ALIGNED: usize = 64;
-/// A head is a line of text.
+/// Longest header that is read, bytes.
 const LONGEST_HEAD: usize = 1 << 16;
 
-/// Writes numbers of so many columns; one column is a list.
+/// Writes an array of shape (n, `columns`), or (n) if `columns` is 1, given row by row.
 pub(crate) fn write_floats(
     path: &Path,
     columns: usize,
@@ -17,7 +17,7 @@ pub(crate) fn write_floats(
     write(path, "<f8", columns, values.map(f64::to_le_bytes))
 }
 
-/// The same of whole numbers.
+/// Writes an array of integers in the same shape.
 pub(crate) fn write_integers(
     path: &Path,
     columns: usize,
@@ -45,7 +45,7 @@ fn write(
     disk::write(path, file).map_err(|bad| format!("{}: can't be written: {bad}", path.display()))
 }
 
-/// An array of numbers, row by row.
+/// An array of numbers in row-major order.
 #[derive(Debug, PartialEq)]
 pub(crate) struct Array {
     /// Length along each axis.
@@ -53,10 +53,11 @@ pub(crate) struct Array {
     pub(crate) values: Vec<f64>,
 }
 
-/// Reads an array of floating-point or whole numbers.
+/// Reads an array of floating-point numbers or integers.
 ///
 /// # Errors
-/// A file that is not there, is no array, or has not the bytes that its head says; without its name.
+/// Returns an error if the file is missing, is not an array, or differs in length from its header. The
+/// message leaves out the file's name.
 pub(crate) fn read(path: &Path, kind: disk::Kind) -> Result<Array, String> {
     let bytes = disk::read(path, kind).map_err(|bad| format!("can't be read: {bad}"))?;
     let (head, data) = parts(&bytes)?;
@@ -90,7 +91,7 @@ pub(crate) fn read(path: &Path, kind: disk::Kind) -> Result<Array, String> {
     Ok(Array { shape, values })
 }
 
-/// The head of a file and what is behind it.
+/// Splits a file into its header and its data.
 fn parts(bytes: &[u8]) -> Result<(&str, &[u8]), String> {
     let rest = bytes.strip_prefix(MAGIC).ok_or("is no .npy file")?;
     let (length, rest) = match rest {
@@ -109,13 +110,13 @@ fn after<'a>(head: &'a str, key: &str) -> Option<&'a str> {
     head.split_once(key).map(|(_, behind)| behind)
 }
 
-/// `(3, 4)`, `(3,)` or `()`.
+/// Parses a shape such as `(3, 4)`, `(3,)` or `()`.
 fn shape(text: &str) -> Option<Vec<usize>> {
     let inside = text.trim_start().strip_prefix('(')?.split(')').next()?;
     inside.split(',').map(str::trim).filter(|n| !n.is_empty()).map(|n| n.parse().ok()).collect()
 }
 
-/// Numbers in the order of rows that are in the order of columns.
+/// Reorders values from column-major to row-major order.
 fn by_rows(values: &[f64], shape: &[usize]) -> Vec<f64> {
     let mut at = vec![0; shape.len()];
     let mut out = Vec::with_capacity(values.len());

@@ -1,4 +1,4 @@
-//! A method of a solver outside this program, as far as it goes with a mesh.
+//! The external solver of a method.
 
 use std::collections::BTreeMap;
 
@@ -7,28 +7,28 @@ use cases::scene::Setting;
 use super::find::Found;
 use crate::process::Limits;
 
-/// Who solves a method that this program does not, and how.
+/// The external solver of a method and its problem.
 #[derive(Clone, Debug)]
 pub(crate) struct Outside {
     pub(crate) adapter: Found,
     pub(crate) about: About,
 }
 
-/// What a problem in files is called, and what its solver gets beside it.
+/// Names of a problem written to files, and the settings of its solver.
 #[derive(Clone, Debug)]
 pub(crate) struct About {
     /// Name of the case.
     pub(crate) case: String,
     /// Id of the method.
     pub(crate) method: String,
-    /// Elements, by their name in scenes.
+    /// Element, by its name in scenes.
     pub(crate) element: &'static str,
-    /// What the scene gives the adapter beside the problem.
+    /// Settings that the scene gives the adapter.
     pub(crate) settings: BTreeMap<String, Setting>,
     pub(crate) limits: Limits,
 }
 
-/// An adapter with its settings, as records and people have it.
+/// Returns the adapter's name followed by its settings, for records and messages.
 pub(crate) fn label(adapter: &str, settings: &BTreeMap<String, Setting>) -> String {
     let setting = |(name, value): (&String, &Setting)| match value {
         Setting::Flag(flag) => format!(" {name}={flag}"),

@@ -1,4 +1,4 @@
-//! An adapter asked: its program called, and what it answers read.
+//! Calls the program of an adapter and reads its answer.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -14,37 +14,37 @@ use super::work::{Folder, data_folder};
 use crate::error::{Foreign, ForeignStatus};
 use crate::process::{Call, End, Limits, call, said_within};
 
-/// Python for all adapters, in place of their own.
+/// Environment variable with the Python interpreter for all adapters, instead of their own.
 const PYTHON: &str = "TISSUEBENCH_PYTHON";
-/// How long a program may think about its version.
+/// Time limit for printing a version.
 const VERSION: Duration = Duration::from_secs(8);
 
-/// A problem in files, for an adapter.
+/// A problem in files for an adapter.
 pub(crate) struct Question<'a> {
     pub(crate) adapter: &'a Found,
-    /// For what the adapter's programs need meanwhile.
+    /// Folder for the adapter's own program files during the call.
     pub(crate) work: &'a Folder,
     /// The folder of the problem.
     pub(crate) problem: &'a Path,
-    /// The folder to answer in.
+    /// The folder for the answer.
     pub(crate) answer: &'a Path,
-    /// Its id.
+    /// Id of the problem.
     pub(crate) id: &'a str,
     pub(crate) nodes: usize,
-    /// Load steps; 0 of a linear procedure.
+    /// Number of load steps; 0 for a linear procedure.
     pub(crate) steps: usize,
     pub(crate) limits: Limits,
     pub(crate) threads: usize,
 }
 
-/// An answer that is sound in its form.
+/// An answer that passed the checks of its form.
 #[derive(Debug)]
 pub(crate) struct Answered {
     pub(crate) call: Call,
     pub(crate) answer: Answer,
-    /// Displacement at the ends of steps, or at the end alone, m.
+    /// Displacement, m, at the ends of the load steps, or only at the end.
     pub(crate) fields: Vec<Vec<Vector3>>,
-    /// Why it ended early, where its fields are those of a part of the load.
+    /// Reason for an early end; the fields then cover a part of the load.
     pub(crate) stalled: Option<Foreign>,
 }
 
@@ -79,7 +79,7 @@ fn read(question: &Question, call: Call) -> Result<Answered, Foreign> {
         Some(answer) => answer.map_err(failed)?,
     };
     let objection = answer.objection(question.id).map_err(failed)?;
-    // Part of a load is worth having, as far as it is said how much.
+    // A part of the load is a usable result if the answer states the load fraction.
     let partial = objection.as_ref().is_some_and(|bad| bad.status == ForeignStatus::Stalled)
         && question.steps > 0
         && answer.load.is_some_and(|load| load > 0.0 && load < 1.0);
@@ -93,13 +93,13 @@ fn read(question: &Question, call: Call) -> Result<Answered, Foreign> {
     Ok(Answered { call, answer, fields, stalled: objection })
 }
 
-/// The last line of what a program said, behind a colon.
+/// Returns the last non-empty line of the program's stderr after a colon.
 fn said(call: &Call) -> String {
     let line = call.last_words.lines().rev().find(|line| !line.trim().is_empty());
     line.map_or(String::new(), |line| format!(": {}", line.trim()))
 }
 
-/// The program with its arguments, in the folder that it answers in.
+/// Returns the command of the adapter, run in the answer folder.
 fn command(question: &Question) -> Result<Command, Foreign> {
     let Question { adapter: Found { manifest, .. }, problem, answer, .. } = question;
     ready(question.adapter).map_err(|reason| Foreign::new(ForeignStatus::NotOffered, reason))?;
@@ -115,7 +115,7 @@ fn command(question: &Question) -> Result<Command, Foreign> {
     Ok(command)
 }
 
-/// The folder with the programs of an adapter; those that this program brings with it are written out.
+/// Returns the folder with the adapter's programs. Those compiled into this program are written to `work`.
 fn programs(adapter: &Found, work: &Folder) -> Result<PathBuf, String> {
     if let Some(folder) = &adapter.folder {
         return folder.canonicalize().map_err(|bad| format!("{}: {bad}", folder.display()));
@@ -127,7 +127,7 @@ fn programs(adapter: &Found, work: &Folder) -> Result<PathBuf, String> {
     Ok(folder)
 }
 
-/// A word of `run` as it is called.
+/// Replaces the placeholders in one word of `run`.
 fn fill(adapter: &Found, word: &str, folder: &Path, problem: &Path, answer: &Path) -> String {
     let own = folder.join(word);
     if !word.is_empty() && own.is_file() {
@@ -141,7 +141,7 @@ fn fill(adapter: &Found, word: &str, folder: &Path, problem: &Path, answer: &Pat
         .replace("{python}", &python(&adapter.manifest.name).display().to_string())
 }
 
-/// The virtual environment of an adapter.
+/// Returns the folder of the adapter's virtual environment.
 pub(crate) fn environment(name: &str) -> Option<PathBuf> {
     Some(data_folder()?.join("adapters").join(name).join("venv"))
 }
@@ -154,13 +154,14 @@ fn python(name: &str) -> PathBuf {
     own.filter(|path| path.exists()).unwrap_or_else(|| "python3".into())
 }
 
-/// Answers that do not change while this program runs, by the words of the question.
+/// Returns the value stored for `key`, or computes and stores it. Such values do not change while the program
+/// runs.
 fn once<T: Clone>(known: &Mutex<BTreeMap<String, T>>, key: &str, find: impl FnOnce() -> T) -> T {
     let mut known = known.lock().unwrap_or_else(PoisonError::into_inner);
     known.entry(key.to_string()).or_insert_with(find).clone()
 }
 
-/// Whether what an adapter needs is there; what to do where it is not.
+/// Checks that the requirements of an adapter are installed; the error says how to install them.
 pub(crate) fn ready(adapter: &Found) -> Result<(), String> {
     static KNOWN: Mutex<BTreeMap<String, Result<(), String>>> = Mutex::new(BTreeMap::new());
     let manifest = &adapter.manifest;
@@ -183,7 +184,7 @@ pub(crate) fn ready(adapter: &Found) -> Result<(), String> {
         }
         let what = if packages.is_empty() { "Python".into() } else { packages.join(", ") };
         let name = &manifest.name;
-        // What is said is of the programs where there are some, and otherwise of packages that pip does not bring.
+        // The manifest's instructions apply to programs, or else to packages that pip does not provide.
         let say = match manifest.install.programs.is_empty() && !say.is_empty() {
             true => say,
             false => format!(": tissuebench adapter install {name}"),
@@ -197,13 +198,13 @@ fn in_path(program: &str) -> bool {
     std::env::split_paths(&paths).any(|folder| folder.join(program).is_file())
 }
 
-/// Whether a Python is there and has packages, whatever their version.
+/// Whether this Python exists and has the packages, in any version.
 fn has_packages(python: &Path, packages: &[String]) -> bool {
     let names = packages.iter().map(|package| {
         let name = package.split(['=', '<', '>', '~', '!', '[', ' ']).next().unwrap_or_default();
         format!("m.version({name:?})")
     });
-    // Files of the folder that this program is called in are no modules.
+    // Files in the working directory must not be imported as modules.
     let script = format!(
         "import sys; sys.path = [p for p in sys.path if p]; import importlib.metadata as m; {}",
         names.collect::<Vec<_>>().join("; ")
@@ -211,7 +212,7 @@ fn has_packages(python: &Path, packages: &[String]) -> bool {
     said_within(Command::new(python).args(["-c", &script]), VERSION).is_ok_and(|(status, _)| status.success())
 }
 
-/// What an adapter's solver says of its version, in a line.
+/// Returns the version of an adapter's solver in one line.
 pub(crate) fn version(adapter: &Found) -> Option<String> {
     static KNOWN: Mutex<BTreeMap<String, Option<String>>> = Mutex::new(BTreeMap::new());
     once(&KNOWN, &format!("{:?}", adapter.manifest), || {

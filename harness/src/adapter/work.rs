@@ -1,4 +1,4 @@
-//! Folders: one for each call, which is gone with it, and one for what a person has installed.
+//! Folders: a temporary one for each call, and one for the user's installed adapters.
 
 use std::collections::BTreeSet;
 use std::fs::DirBuilder;
@@ -8,27 +8,28 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
-/// Says where installed things go, in place of the usual folder of the system.
+/// Environment variable with the folder for installations, instead of the system's usual one.
 const DATA: &str = "TISSUEBENCH_DATA";
 
-/// How often a folder is removed in which processes that are being ended still write, and the time between.
+/// Attempts to remove a folder in which processes being killed may still write, and the pause between
+/// attempts.
 const TRIES: usize = 50;
 const PAUSE: Duration = Duration::from_millis(10);
 
-/// Folders that are there now.
+/// Temporary folders that exist now.
 static FOLDERS: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
 
 fn folders() -> MutexGuard<'static, BTreeSet<PathBuf>> {
     FOLDERS.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// A folder of its own that is removed at the end.
+/// A temporary folder that is removed when dropped.
 #[derive(Debug)]
 pub(crate) struct Folder(PathBuf);
 
 impl Folder {
-    /// Makes one where the system has its temporary files: under a name that nobody can know before, for this
-    /// user alone.
+    /// Creates a folder among the system's temporary files. Its name is unpredictable and only this user can
+    /// enter it.
     pub(crate) fn new() -> Result<Folder, String> {
         let mut folders = folders();
         loop {
@@ -45,7 +46,7 @@ impl Folder {
         }
     }
 
-    /// A folder in it, made now.
+    /// Creates a subfolder.
     pub(crate) fn inside(&self, name: &str) -> Result<PathBuf, String> {
         let path = self.0.join(name);
         private(&path).map_err(|bad| format!("{}: can't be made: {bad}", path.display()))?;
@@ -64,7 +65,7 @@ impl Drop for Folder {
     }
 }
 
-/// Makes a new folder that other users can't enter.
+/// Creates a folder that other users cannot enter.
 fn private(path: &Path) -> io::Result<()> {
     let mut builder = DirBuilder::new();
     #[cfg(unix)]
@@ -72,8 +73,8 @@ fn private(path: &Path) -> io::Result<()> {
     builder.create(path)
 }
 
-/// Removes all folders, and lets no other one be made: for a program that is about to exit, and has ended
-/// what it started.
+/// Removes all temporary folders and blocks the creation of others. Called just before the program exits,
+/// after its child processes were killed.
 pub(crate) fn remove_all() {
     let folders = folders();
     for path in folders.iter() {
@@ -87,7 +88,8 @@ pub(crate) fn remove_all() {
     std::mem::forget(folders);
 }
 
-/// Where adapters have what was installed for them: `TISSUEBENCH_DATA`, or else `tissuebench` among the data of this person.
+/// Returns the folder for installed adapters: `TISSUEBENCH_DATA` if set, otherwise `tissuebench` in the
+/// user's data folder (`XDG_DATA_HOME` or `~/.local/share`).
 pub(crate) fn data_folder() -> Option<PathBuf> {
     let of = |name: &str| std::env::var_os(name).filter(|value| !value.is_empty()).map(PathBuf::from);
     of(DATA).or_else(|| {

@@ -1,8 +1,8 @@
-//! Whether the gradients of a cloud are good.
+//! Check of the gradients of a cloud.
 //!
-//! Values have a test of their own, that of every table: they sum to one. Gradients are the inverse of a moment matrix, which loses
-//! as many digits as its condition number has, and of maximum entropy on a face twice as many. A displacement can be right
-//! to rounding where the strain has no right digit.
+//! Shape values are checked in every table: they sum to one. Gradients come from the inverse of a moment
+//! matrix, which loses as many digits as its condition number has. Maximum-entropy gradients on a face lose
+//! twice as many. A displacement can be correct to rounding while the strain has no correct digit.
 
 use cases::scene::ErrorKind;
 use geometry::Point3;
@@ -11,11 +11,12 @@ use shape::GradRows;
 use crate::Failure;
 use crate::error::Key;
 
-/// The gradient of a linear field is off by this part of itself at most. Nothing later in a run sees it, and errors worth having
-/// begin above. Those of sound clouds are off by 1e-14 to 1e-9; on faces, of maximum entropy, by up to 2e-7.
+/// Largest relative error accepted in the gradient of a linear field. No later step of a run detects this
+/// error, and relevant errors lie above the limit. Valid clouds have errors of 1e-14 to 1e-9, or up to 2e-7
+/// for maximum entropy on faces.
 const LIMIT: f64 = 1e-4;
 
-/// Refuses gradients that do not reproduce linear fields; `nodes` (m) are those of the method.
+/// Refuses gradients that do not reproduce linear fields. `nodes` (m) are the nodes of the method.
 pub(crate) fn check(key: Key, nodes: &[Point3], rows: &GradRows) -> Result<(), Failure> {
     let Some((q, off)) = rows.worst_reproduction(nodes).filter(|(_, off)| *off > LIMIT) else {
         return Ok(());

@@ -1,5 +1,5 @@
-//! One method on one body: nodes, cells, and the source of its tables. From here on finite elements and meshless clouds look the
-//! same.
+//! One method on one body: nodes, cells, and the source of its tables. The interface is the same for finite
+//! elements and meshless clouds.
 
 use std::sync::Arc;
 
@@ -17,29 +17,29 @@ use crate::adapter::Outside;
 use crate::error::Key;
 use crate::outcome::{Counters, Plan, StageName};
 
-/// Which quadrature points share a dilation.
+/// Groups of quadrature points that share a dilation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Dilation {
-    /// Every point its own: the plain displacement method.
+    /// Each point has its own dilation: the plain displacement method.
     Standard,
-    /// One per element or integration cell.
+    /// One dilation per element or integration cell.
     Element,
-    /// One per node and material, weighted by the shape values.
+    /// One dilation per node and material, weighted by the shape values.
     Nodal,
-    /// The same, each point among the four nodes with the largest values alone.
+    /// As `Nodal`, but each point counts only for the four nodes with the largest shape values.
     Near,
-    /// A pressure field of its own in each material, linear between the corners.
+    /// A separate pressure field in each material, linear between the corners.
     Mixed,
 }
 
 /// How essential conditions are enforced.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Essential {
-    /// Exactly: the parameters at the vertices of the mesh are displacements.
+    /// Exactly: the parameters at the mesh vertices are displacements.
     Nodal,
-    /// Symmetric Nitsche with this factor.
+    /// Symmetric Nitsche method with this stabilisation factor.
     Nitsche(f64),
-    /// Penalty with this factor.
+    /// Penalty method with this factor.
     Penalty(f64),
     /// Lagrange multipliers on the surface.
     Multipliers,
@@ -49,47 +49,48 @@ pub enum Essential {
     Coupling(Coupled),
 }
 
-/// What a cloud is coupled to.
+/// Finite-element nodes coupled to a cloud.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Coupled {
-    /// Vertices of the mesh that are nodes of finite elements, ascending; they come last among the nodes.
+    /// Mesh vertices that are finite-element nodes, ascending; they are the last nodes.
     pub vertices: Vec<u32>,
-    /// Nodes of the cloud that are left before them.
+    /// Number of cloud nodes before them.
     pub free: usize,
 }
 
 impl Coupled {
-    /// The node of a vertex.
+    /// Returns the node index of a mesh vertex.
     pub(crate) fn node(&self, vertex: u32) -> u32 {
         (self.free + self.vertices.partition_point(|&v| v < vertex)) as u32
     }
 }
 
-/// Clouds after the first, and what they are placed by.
+/// Refinement of a cloud.
 #[derive(Clone)]
 pub struct Refine {
-    /// How many.
+    /// Number of refined clouds after the first.
     pub steps: usize,
-    /// Coarsest over finest spacing at most.
+    /// Largest ratio of coarsest to finest spacing.
     pub ratio: f64,
-    /// Seed of the generator.
+    /// Seed of the random generator.
     pub seed: u64,
-    /// The body they fill.
+    /// The body that the clouds fill.
     pub shape: Arc<dyn Shape + Send + Sync>,
     /// The present cloud.
     pub cloud: Cloud,
-    /// The method on another cloud.
+    /// Builds the method on another cloud.
     pub on: Arc<dyn Fn(Cloud) -> Result<Discretisation, Failure> + Send + Sync>,
 }
 
-/// Where a method integrates inside the body, as far as that is known before its tables are filled.
+/// Integration points inside the body, as far as they are known before the tables are filled.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct InnerPoints {
     /// Points in each cell; 0 for none.
     pub per_cell: usize,
-    /// Whether the vertices of the mesh are among them.
+    /// Whether the mesh vertices are integration points.
     pub vertices: bool,
-    /// Whether cells are no guide: wherever a surface is cut some points are near.
+    /// Whether the points form a grid independent of the cells. A region that cuts the surface then contains
+    /// some of them.
     pub grid: bool,
 }
 
@@ -99,33 +100,33 @@ pub type MakeSource = Arc<dyn Fn() -> Result<Box<dyn RowSource>, SourceError> + 
 /// One method on one body, before any table is filled.
 #[derive(Clone)]
 pub struct Discretisation {
-    /// Positions that nodal parameters belong to, m.
+    /// Node positions, m.
     pub nodes: Arc<Vec<Point3>>,
-    /// The cells that carry quadrature, facets and regions.
+    /// The cells with quadrature, facets and regions.
     pub mesh: Arc<Mesh>,
-    /// Whether the basis is Kronecker: nodal parameters are displacements.
+    /// Whether the basis has the Kronecker delta property: nodal parameters are displacements.
     pub interpolates: bool,
-    /// Whether shape functions reach across borders between regions.
+    /// Whether shape functions extend across borders between regions.
     pub blends: bool,
-    /// Order of the polynomials that the shape functions hold: 1 or 2.
+    /// Order of the polynomials that the shape functions reproduce: 1 or 2.
     pub order: usize,
-    /// Whether it integrates at so few points that much of the strain between them has no energy.
+    /// Whether the quadrature is reduced: much of the strain between its points has no energy.
     pub reduced: bool,
-    /// Essential conditions.
+    /// Method of enforcing essential conditions.
     pub essential: Essential,
     /// Volumetric projection.
     pub dilation: Dilation,
-    /// Where it integrates.
+    /// Integration points inside the body.
     pub inner: InnerPoints,
-    /// How the cloud follows an error, if it does.
+    /// Adaptive refinement of the cloud, if any.
     pub refine: Option<Refine>,
-    /// How supports are found; `None` where the cells give the neighbours.
+    /// Description of the support search; `None` if the cells give the neighbours.
     pub supports: Option<String>,
-    /// How shape functions are made and where they are evaluated.
+    /// Description of the shape functions and their evaluation points.
     pub shape_functions: String,
-    /// Makes the source of its tables.
+    /// Creates the source of the tables.
     pub source: MakeSource,
-    /// Who solves it, where that is not this program.
+    /// The external solver; `None` if this program solves the problem.
     pub(crate) outside: Option<Arc<Outside>>,
 }
 
@@ -133,33 +134,33 @@ pub struct Discretisation {
 pub struct Volume {
     /// The quadrature.
     pub rows: VolumeRows,
-    /// Region of each point; empty where the body is of one.
+    /// Region of each point; empty if the body has one region.
     pub region: Vec<u16>,
-    /// Points that share a dilation.
+    /// Groups of points that share a dilation.
     pub groups: Option<DilationGroups>,
-    /// Shape values of the pressure field at the points, where the method has one.
+    /// Shape values of the pressure field at the points, if the method has a pressure field.
     pub pressure: Option<Rows>,
-    /// What was met as the rows were made.
+    /// Diagnostics of building the rows.
     pub diagnostics: Vec<(&'static Metric, f64)>,
 }
 
 impl Discretisation {
-    /// Positions that nodal parameters belong to, m.
+    /// Returns the node positions, m.
     pub fn nodes(&self) -> &[Point3] {
         &self.nodes
     }
 
-    /// The cells that carry quadrature, facets and regions.
+    /// Returns the cells with quadrature, facets and regions.
     pub fn mesh(&self) -> &Mesh {
         &self.mesh
     }
 
-    /// Whether the body has several regions; where it has one, none is looked up for any point.
+    /// Whether the body has several regions. If it has one, no region is stored per point.
     pub fn has_regions(&self) -> bool {
         self.mesh.region_names().len() > 1
     }
 
-    /// Finds the supports and fills the volume tables that the plan has; `alike` names the material of each
+    /// Finds the supports and fills the volume tables in the plan. `alike` is the material index of each
     /// region.
     pub(crate) fn volume(
         &self,
@@ -174,7 +175,7 @@ impl Discretisation {
             gradients::check(Key::Method("basis"), self.nodes(), rows.at())?;
         }
         let region = if plan.runs(StageName::Tensors) { source.regions() } else { Vec::new() };
-        // A dilation, and a pressure, jump at the border of two materials.
+        // Dilation and pressure are discontinuous at the border of two materials.
         let several = alike.iter().any(|&material| material != alike[0]);
         let by_material = |groups: DilationGroups| match several {
             true => {

@@ -1,4 +1,4 @@
-//! Where a support or a load acts, on one mesh: nodes, whole facets, or facets cut by the region's planes.
+//! Places of supports and loads on one mesh: nodes, whole facets, or facets cut by the region's planes.
 
 use cases::scene::{Comparison, Region, Relation};
 use geometry::{Facet, Mesh, Point3, Vector3};
@@ -8,11 +8,11 @@ use crate::error::Key;
 
 pub use cases::scene::Place;
 
-/// The part of a boundary where something acts.
+/// The part of a boundary on which a support or load acts.
 pub struct Patch {
-    /// Facets that lie in the region as a whole: the discretisation integrates over them with its own rule.
+    /// Facets entirely in the region. The discretisation integrates over them with its own rule.
     pub whole: Vec<Facet>,
-    /// Centroid-ruled triangles of the facets that the region cuts.
+    /// Flat triangles left of the facets that the region cuts.
     pub cut: Vec<CutTriangle>,
 }
 
@@ -24,26 +24,26 @@ pub struct CutTriangle {
 }
 
 impl CutTriangle {
-    /// Area (m^2) times outward unit normal.
+    /// Returns the area (m^2) times the outward unit normal.
     pub fn area_vector(&self) -> Vector3 {
         let [a, b, c] = self.corners;
         (b - a).cross(&(c - a)) / 2.0
     }
 }
 
-/// Diagonal of the mesh's bounding box times the relative tolerance of regions, m.
+/// Returns the tolerance of regions, m: the diagonal of the mesh's bounding box times the relative tolerance.
 pub fn tolerance(mesh: &Mesh) -> f64 {
     let (low, high) = bounds(mesh);
     Region::TOLERANCE * (high - low).norm()
 }
 
-/// The corners of the box around a mesh, m.
+/// Returns the lowest and highest corner of the mesh's bounding box, m.
 pub fn bounds(mesh: &Mesh) -> (Point3, Point3) {
     let first = mesh.points()[0];
     mesh.points().iter().fold((first, first), |(low, high), p| (low.inf(p), high.sup(p)))
 }
 
-/// Whether `x` lies in the place's region; true for a place that is given by name.
+/// Whether `x` lies in the place's region, within `tolerance`, m; true for a named place.
 pub fn holds(place: &Place, x: &Point3, tolerance: f64) -> bool {
     match place {
         Place::Where(region) => region.contains([x.x, x.y, x.z], tolerance),
@@ -51,7 +51,7 @@ pub fn holds(place: &Place, x: &Point3, tolerance: f64) -> bool {
     }
 }
 
-/// The key of the place, below `key` of what acts there.
+/// Returns the scene key of the place. `key` is that of its support or load.
 pub fn key(place: &Place, key: &str) -> Key {
     Key::Scene(match place {
         Place::On(_) => format!("{key}.on"),
@@ -60,7 +60,7 @@ pub fn key(place: &Place, key: &str) -> Key {
     })
 }
 
-/// The place in the words of the scene.
+/// Returns the place as written in the scene.
 pub fn words(place: &Place) -> String {
     match place {
         Place::On(names) => names.join(", "),
@@ -69,17 +69,17 @@ pub fn words(place: &Place) -> String {
     }
 }
 
-/// What the mesh spans, in the millimetres that scenes mostly give.
+/// Describes the extent of the mesh in mm, the most common unit of scenes.
 pub fn extent(mesh: &Mesh) -> String {
     let (low, high) = bounds(mesh);
-    // To the nanometre: 0.04 m times 1000 is not 40 in the last digit.
+    // Rounded to a nanometre: 0.04 m times 1000 differs from 40 in the last digit.
     let millimetres = |m: f64| (m * 1e9).round() / 1e6;
     let along =
         |a: usize| format!("{} = {} to {}", ["x", "y", "z"][a], millimetres(low[a]), millimetres(high[a]));
     format!("the mesh spans {} mm", (0..3).map(along).collect::<Vec<_>>().join(", "))
 }
 
-/// What acts at `key` on a place of nothing.
+/// Returns the error of a support or load at `key` whose place contains nothing of the body.
 pub fn empty(key: &str, place: &Place, mesh: &Mesh) -> Failure {
     let tolerance = tolerance(mesh);
     let inside = matches!(place, Place::Where(_)) && mesh.points().iter().any(|x| holds(place, x, tolerance));
@@ -92,8 +92,8 @@ pub fn empty(key: &str, place: &Place, mesh: &Mesh) -> Failure {
     Failure::input(self::key(place, key), "touches nothing of the body", &help)
 }
 
-/// Refuses faces between two cells for what acts at `key` along the outward normal: a wall inside the body
-/// has two sides.
+/// Refuses interior faces for a support or load at `key` that acts along the outward normal: a wall inside
+/// the body has two sides.
 pub fn outer(key: &str, place: &Place, mesh: &Mesh, faces: &[Facet]) -> Result<(), Failure> {
     let Place::On(names) = place else { return Ok(()) };
     let boundary = mesh.boundary();
@@ -113,8 +113,11 @@ pub fn outer(key: &str, place: &Place, mesh: &Mesh, faces: &[Facet]) -> Result<(
     ))
 }
 
-/// The facets that the place of what acts at `key` names (`surface` is the whole boundary of any mesh), or an error
-/// that lists the names there are; the whole boundary for a place given by comparisons.
+/// Returns the facets named by the place of the support or load at `key`. The name `surface` is the whole
+/// boundary of any mesh. A place given by comparisons returns the whole boundary.
+///
+/// # Errors
+/// Returns an error that lists the known names if the mesh lacks a named surface.
 pub fn facets(key: &str, place: &Place, mesh: &Mesh) -> Result<Vec<Facet>, Failure> {
     let Place::On(names) = place else { return Ok(mesh.boundary()) };
     let mut all = Vec::new();
@@ -136,8 +139,8 @@ pub fn facets(key: &str, place: &Place, mesh: &Mesh) -> Result<Vec<Facet>, Failu
     Ok(all)
 }
 
-/// Sorted indices of the nodes in the place: those of its named facets, or any node of the mesh where its
-/// comparisons hold.
+/// Returns the sorted indices of the nodes in the place: the nodes of its named facets, or all mesh nodes
+/// that satisfy its comparisons.
 pub fn nodes(key: &str, place: &Place, mesh: &Mesh) -> Result<Vec<u32>, Failure> {
     if let Place::On(_) = place {
         return Ok(mesh.facet_group_nodes(&facets(key, place, mesh)?));
@@ -148,9 +151,10 @@ pub fn nodes(key: &str, place: &Place, mesh: &Mesh) -> Result<Vec<u32>, Failure>
         .collect())
 }
 
-/// The part of the boundary in the place. A facet counts as whole when all its corners and its centroid are in the
-/// region; a facet that the region cuts is clipped by the region's planes, so that the loaded area is the region's
-/// own and not that of the facets near it (on a 1331-node kidney, facets are half as wide as the jaw).
+/// Returns the part of the boundary in the place. A facet counts as whole if all its corners and its centroid
+/// are in the region. A facet that the region cuts is clipped by the region's planes, so that the loaded area
+/// is that of the region and not of the facets near it. On a 1331-node kidney, facets are half as wide as the
+/// jaw.
 pub fn patch(key: &str, place: &Place, mesh: &Mesh) -> Result<Patch, Failure> {
     let tolerance = tolerance(mesh);
     let mut patch = Patch { whole: Vec::new(), cut: Vec::new() };
@@ -169,7 +173,8 @@ pub fn patch(key: &str, place: &Place, mesh: &Mesh) -> Result<Patch, Failure> {
     Ok(patch)
 }
 
-/// Fails where a place of a surface cuts facets: finite elements hold whole ones. A place with a volume holds the vertices in it.
+/// Refuses a planar place that cuts facets, because finite elements constrain whole facets. A place with a
+/// volume constrains the vertices in it.
 pub fn whole(key: &str, place: &Place, mesh: &Mesh) -> Result<(), Failure> {
     let Place::Where(region) = place else { return Ok(()) };
     if region.comparisons.iter().all(|c| c.relation != Relation::Equal) {
@@ -188,13 +193,14 @@ pub fn whole(key: &str, place: &Place, mesh: &Mesh) -> Result<(), Failure> {
     Err(Failure::input(self::key(place, key), problem, help))
 }
 
-/// Corners of a facet: three or four.
+/// Returns the three or four corners of a facet, m.
 pub fn corners(mesh: &Mesh, facet: Facet) -> Vec<Point3> {
     let count = mesh.kind(facet.cell as usize).face_kind().corner_count();
     mesh.facet_nodes(facet).take(count).map(|node| mesh.points()[node as usize]).collect()
 }
 
-/// How far `x` is on the side that a comparison keeps, m; above its value for an equality.
+/// Returns the distance, m, of `x` from the plane of a comparison, positive on the kept side. For an equality
+/// the distance is positive above the value.
 fn ahead(comparison: &Comparison, x: &Point3) -> f64 {
     let above = x[comparison.axis] - comparison.value;
     match comparison.relation {
@@ -203,8 +209,8 @@ fn ahead(comparison: &Comparison, x: &Point3) -> f64 {
     }
 }
 
-/// Clips a triangle by each plane of the region in turn (Sutherland and Hodgman 1974) and fans what is left.
-/// An equality keeps nothing of a facet that is not in its plane.
+/// Clips a triangle by each plane of the region in turn (Sutherland and Hodgman 1974) and splits the
+/// remaining polygon into triangles. An equality keeps only facets in its plane.
 fn clip(triangle: &[Point3; 3], region: &Region, tolerance: f64, out: &mut Vec<CutTriangle>) {
     let beyond = |c: &Comparison| c.relation != Relation::Equal && triangle.iter().all(|p| ahead(c, p) < 0.0);
     if region.comparisons.iter().any(beyond) {

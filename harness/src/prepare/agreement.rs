@@ -1,5 +1,5 @@
-//! Whether supports that meet prescribe the same displacement there, whatever the method makes of them: weak and averaged
-//! conditions would end in between without a word.
+//! Checks that supports prescribe the same displacement at the vertices they share. Otherwise weak and
+//! averaged conditions would silently end between the values.
 
 use std::collections::HashMap;
 
@@ -11,10 +11,11 @@ use crate::discretise::place;
 use crate::error::Key;
 use crate::scenario::setup::Support;
 
-/// Differences of prescribed values up to this part of the largest one, or of the body's size, are rounding.
+/// Largest difference of prescribed values that counts as rounding, relative to the largest value or the
+/// body's size.
 const ROUNDING: f64 = 1e-12;
 
-/// Refuses supports that prescribe different values at a vertex of the mesh.
+/// Refuses supports that prescribe different values at a mesh vertex.
 pub(super) fn check(supports: &[Support], mesh: &Mesh) -> Result<(), Failure> {
     let values = |support: &Support| -> Result<Vec<(u32, Vector3)>, Failure> {
         let vertices = place::nodes(&support.key, &support.place, mesh)?;
@@ -25,7 +26,7 @@ pub(super) fn check(supports: &[Support], mesh: &Mesh) -> Result<(), Failure> {
     let values: Vec<_> = supports.iter().map(values).collect::<Result<_, _>>()?;
     let (low, high) = place::bounds(mesh);
     let largest = values.iter().flatten().map(|(_, value)| value.amax()).fold((high - low).norm(), f64::max);
-    // By vertex and axis: the support and its value, m.
+    // First support and its value, m, by vertex and axis.
     let mut prescribed: HashMap<(u32, usize), (usize, f64)> = HashMap::new();
     for (index, (support, values)) in supports.iter().zip(values).enumerate() {
         for (vertex, value) in values {

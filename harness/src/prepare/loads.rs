@@ -1,4 +1,4 @@
-//! Loads at the points of their surfaces.
+//! Loads at the integration points of their surfaces.
 
 use fem::SurfaceRule;
 use geometry::{Facet, Vector3, quadrature};
@@ -11,17 +11,17 @@ use crate::discretise::Discretisation;
 use crate::discretise::place::CutTriangle;
 use crate::scenario::setup::{self, Applied};
 
-/// Points per clipped triangle: degree 4, exact for a quadratic traction on it.
+/// Points per clipped triangle: a rule of degree 4, exact for a quadratic traction on the triangle.
 const CUT_POINTS: usize = 6;
 
-/// Values of one load at its points.
+/// Values of one load at its points: traction or pressure, Pa.
 pub(super) enum Values {
     Traction(Vec<Vector3>),
     Pressure(Vec<f64>),
 }
 
 impl Prepared {
-    /// Evaluates a load where it acts.
+    /// Evaluates a load at its points.
     pub(super) fn load(&mut self, method: &Discretisation, load: &setup::Load) -> Result<(), Failure> {
         if let Applied::Body(field) = &load.applied {
             let values = self.volume.rows.points().iter().map(field).collect::<Result<_, _>>();
@@ -43,13 +43,14 @@ impl Prepared {
         Ok(())
     }
 
-    /// Whether gradients are smoothed with one point on a face, its centre.
+    /// Whether gradients are smoothed with one point per face, its centre.
     fn is_smoothed_by_centres(&self) -> Result<bool, Failure> {
         Ok(self.source.face_points() == 1 && self.source.trace(&[])?.is_some())
     }
 
-    /// The mean of a load over each facet, at its centre: the integration constraint wants the point that smooths, which alone
-    /// gives 6.5 % too much of a Saint-Venant traction on 4 x 4 faces.
+    /// Returns the mean of a load over each facet, at the facet's centre. The integration constraint requires
+    /// the load at the point that smooths the gradients. The value at the centre alone gives 6.5 % too much
+    /// of a Saint-Venant traction on 4 x 4 faces.
     fn by_means(&self, load: &setup::Load, facets: &[Facet]) -> Result<(SurfaceRows, Values), Failure> {
         let surface = self.source.surface(facets)?;
         let fine = fem::surface_rows(self.source.mesh(), facets, &SurfaceRule::FINE)?;
@@ -72,7 +73,7 @@ impl Prepared {
     }
 }
 
-/// The load at every point of a surface.
+/// Evaluates the load at every point of a surface.
 fn at_points(load: &setup::Load, surface: SurfaceRows) -> Result<(SurfaceRows, Values), Failure> {
     let at = surface.points().iter().zip(surface.normals());
     let values = match &load.applied {
@@ -89,7 +90,7 @@ fn at_points(load: &setup::Load, surface: SurfaceRows) -> Result<(SurfaceRows, V
     Ok((surface, values))
 }
 
-/// Surface rows over clipped triangles.
+/// Builds surface rows over clipped triangles.
 pub(super) fn cut_surface(source: &dyn RowSource, cut: &[CutTriangle]) -> Result<SurfaceRows, Failure> {
     let rule = quadrature::tri(CUT_POINTS).expect("a tabulated rule");
     let (mut points, mut weights, mut normals) = (Vec::new(), Vec::new(), Vec::new());

@@ -1,4 +1,4 @@
-//! Means over parts of the surface.
+//! Mean displacements over parts of the surface.
 
 use geometry::Mesh;
 use shape::SurfaceRows;
@@ -8,12 +8,12 @@ use super::loads::cut_surface;
 use crate::Failure;
 use crate::discretise::place::{self, Place};
 
-/// The key of a face whose mean is asked for.
+/// Returns the scene key of a surface for means.
 fn key(index: usize) -> String {
     format!("output.means[{index}]")
 }
 
-/// Refuses faces that the mesh does not have, before anything is solved.
+/// Refuses surfaces that the mesh does not have, before anything is solved.
 pub fn check_means(mesh: &Mesh, places: &[Place]) -> Result<(), Failure> {
     for (index, place) in places.iter().enumerate() {
         let patch = place::patch(&key(index), place, mesh)?;
@@ -25,8 +25,9 @@ pub fn check_means(mesh: &Mesh, places: &[Place]) -> Result<(), Failure> {
 }
 
 impl Prepared {
-    /// Weights of the nodal parameters in the mean displacement over each face, by its area: the shape functions integrated over
-    /// it. Faces that a comparison cuts count with the part inside.
+    /// Returns, for each surface, the nodal weights of its area mean displacement: the integrals of the shape
+    /// functions over the surface, divided by its area. A facet cut by a comparison counts with the part
+    /// inside.
     pub fn means(&self, places: &[Place]) -> Result<Vec<Vec<(u32, f64)>>, Failure> {
         let each = places.iter().enumerate().map(|(index, place)| {
             let patch = place::patch(&key(index), place, self.source.mesh())?;
@@ -45,7 +46,7 @@ impl Prepared {
     }
 }
 
-/// Adds the integrals of the shape functions over a surface; returns its area, m^2.
+/// Adds the integrals of the shape functions over a surface to `weights` and returns the area, m^2.
 fn add(surface: &SurfaceRows, weights: &mut [f64]) -> f64 {
     for (q, w) in surface.weights().iter().enumerate() {
         let (nodes, values) = surface.rows().row(q);

@@ -1,4 +1,4 @@
-//! The prepare phase: every table that assembly reads, for one method on one body under one setup.
+//! The prepare phase: all tables for assembly, for one method on one body under one setup.
 
 mod agreement;
 mod loads;
@@ -38,7 +38,7 @@ use touch::Touch;
 pub use means::check_means;
 pub use support_forces::ConditionForces;
 
-/// A surface constrained weakly, with its tables owned.
+/// A weakly constrained surface with its tables.
 struct OwnedWeak {
     flux: FluxRows,
     axes: [bool; 3],
@@ -48,7 +48,7 @@ struct OwnedWeak {
     trace: Option<TraceRows>,
 }
 
-/// A surface constrained by penalty in a static procedure, with its table owned.
+/// A surface constrained by penalty in a static procedure, with its table.
 struct OwnedPenalty {
     surface: SurfaceRows,
     axes: [bool; 3],
@@ -58,7 +58,7 @@ struct OwnedPenalty {
 
 /// All tables of one run.
 pub struct Prepared {
-    /// Where further tables come from.
+    /// Source of further tables.
     pub source: Box<dyn RowSource>,
     /// The volume tables.
     pub volume: Volume,
@@ -68,17 +68,17 @@ pub struct Prepared {
     body_force: Vec<Vec<Vector3>>,
     fixed: Vec<FixedDof>,
     constraints: Vec<ConstraintRow>,
-    /// Whether the constraints are eliminated, not enforced by multipliers.
+    /// Whether the constraints are eliminated instead of being enforced by multipliers.
     eliminates: bool,
     weak: Vec<OwnedWeak>,
     penalties: Vec<OwnedPenalty>,
-    /// Which of these conditions are whose, by support.
+    /// The conditions that belong to each support.
     held: Vec<Held>,
-    /// Where tools may touch; `None` without tools.
+    /// Contact tables; `None` without tools.
     touch: Option<Touch>,
 }
 
-/// Fills every table that the plan has.
+/// Fills all tables in the plan.
 pub fn prepare(
     method: &Discretisation,
     setup: &Setup,
@@ -128,7 +128,7 @@ pub fn prepare(
 }
 
 impl Prepared {
-    /// The loads, borrowed as the solver takes them.
+    /// Returns the loads for the solver.
     pub fn loads(&self) -> Vec<Load<'_>> {
         let surfaces = self.surfaces.iter().map(|(surface, values)| match values {
             Values::Traction(values) => Load::Traction { surface, values: values.clone() },
@@ -137,7 +137,7 @@ impl Prepared {
         surfaces.chain(self.body_force.iter().map(|values| Load::Body { values: values.clone() })).collect()
     }
 
-    /// The weak supports, borrowed as the solver takes them.
+    /// Returns the weak supports for the solver.
     pub fn weak(&self) -> Vec<WeakSupport<'_>> {
         self.weak
             .iter()
@@ -153,22 +153,22 @@ impl Prepared {
             .collect()
     }
 
-    /// The points at which tools may touch, m; none without tools.
+    /// Returns the contact points, m; none without tools.
     pub fn contact_points(&self) -> &[Point3] {
         self.touch.as_ref().map_or(&[], |touch| touch.surface.points())
     }
 
-    /// Where tools may touch, as the solver takes it; `None` without tools.
+    /// Returns the contact surface for the solver; `None` without tools.
     pub fn contact(&self) -> Option<ContactSurface<'_>> {
         self.touch.as_ref().map(Touch::contact)
     }
 
-    /// Degrees of freedom prescribed.
+    /// Returns the prescribed degrees of freedom.
     pub fn fixed(&self) -> &[FixedDof] {
         &self.fixed
     }
 
-    /// The surfaces constrained by penalty in a static procedure, borrowed as the solver takes them.
+    /// Returns the surfaces constrained by penalty in a static procedure, for the solver.
     pub fn penalties(&self) -> Vec<PenaltySurface<'_>> {
         self.penalties
             .iter()
@@ -181,7 +181,7 @@ impl Prepared {
             .collect()
     }
 
-    /// The whole problem over borrowed parts.
+    /// Returns the whole linear problem.
     pub fn problem<'a>(
         &'a self,
         nodes: &'a [Point3],
@@ -199,36 +199,37 @@ impl Prepared {
         LinearProblem { body, loads, fixed: &self.fixed, constraints: &self.constraints, weak }
     }
 
-    /// Factors the assembled problem as the method holds the body.
+    /// Factors the assembled problem, with the constraints eliminated or as multipliers.
     pub fn factor<'a>(&self, assembled: Assembled<'a>) -> Result<Factored<'a>, SolveError> {
         if self.eliminates { assembled.factor_eliminated() } else { assembled.factor() }
     }
 
-    /// Whether the nodal parameters alone are the unknowns: no constraint rows.
+    /// Whether the problem has constraint rows.
     pub fn has_rows(&self) -> bool {
         !self.constraints.is_empty()
     }
 
-    /// Whether every essential condition is that of a node.
+    /// Whether all essential conditions are prescribed at nodes.
     pub fn holds_nodes_alone(&self) -> bool {
         self.constraints.is_empty() && self.weak.is_empty() && self.penalties.is_empty()
     }
 
-    /// A finer quadrature than the method's own, for error norms and consistent masses, with the region of each point where
-    /// there are several.
+    /// Returns a finer quadrature than the method's own, for error norms and consistent masses, and the
+    /// region of each point if there are several regions.
     pub fn fine_volume(&self) -> Result<(VolumeRows, Vec<u16>), Failure> {
         let regions = self.source.mesh().region_names().len() > 1;
         let region = if regions { self.source.fine_regions() } else { Vec::new() };
         Ok((self.source.fine_volume()?, region))
     }
 
-    /// Linear shape functions of the mesh's own nodes at the points of the facets' surface: a basis of multipliers.
+    /// Returns the linear shape functions of the mesh nodes at the surface points of the facets: a multiplier
+    /// basis.
     fn multiplier_basis(&self, facets: &[Facet]) -> Result<SurfaceRows, Failure> {
         let rule = SurfaceRule::STANDARD.with(FaceKind::Tri3, self.source.face_points())?;
         Ok(fem::surface_rows(self.source.mesh(), facets, &rule)?)
     }
 
-    /// Resultant of all surface loads and body forces, N.
+    /// Returns the resultant of all surface loads and body forces, N.
     pub fn resultant(&self) -> Vector3 {
         let mut sum = Vector3::zeros();
         for (surface, values) in &self.surfaces {
@@ -248,7 +249,7 @@ impl Prepared {
         sum
     }
 
-    /// Constrains the body as all supports say.
+    /// Applies all supports.
     fn constrain(&mut self, method: &Discretisation, supports: &[Support]) -> Result<(), Failure> {
         agreement::check(supports, method.mesh())?;
         let mut first = HashMap::new();
@@ -268,8 +269,8 @@ impl Prepared {
         Ok(())
     }
 
-    /// Constrains the vertices of a mesh that lie in a place; `node` maps a vertex to its node. Of values
-    /// that differ by rounding the first stays.
+    /// Constrains the mesh vertices in the place of a support; `node` maps a vertex to its node. Among values
+    /// that differ by rounding the first is used.
     fn constrain_nodes(
         &mut self,
         mesh: &Mesh,
@@ -292,8 +293,9 @@ impl Prepared {
         Ok(())
     }
 
-    /// A support on a basis whose parameters are not displacements, unless elements are coupled to it: on the facets of the
-    /// place, and, where the place has a volume (a clamped end, not a clamped face), on that too.
+    /// Applies a support to a basis whose parameters are not displacements and to which no elements are
+    /// coupled. The support acts on the facets of the place, and also in its volume if the place has one (a
+    /// clamped end instead of a clamped face).
     fn constrain_cloud(&mut self, method: &Discretisation, support: &Support) -> Result<(), Failure> {
         let patch = place::patch(&support.key, &support.place, method.mesh())?;
         let (rows, constraints) = (self.weak.len(), self.constraints.len());
@@ -331,7 +333,7 @@ impl Prepared {
                     place::outer(&support.key, &support.place, method.mesh(), &patch.whole)?;
                     let flux = self.source.flux(&patch.whole)?;
                     let trace = self.source.trace(&patch.whole)?;
-                    // A trace has the gradients of the volume in their place.
+                    // A trace replaces these gradients by those of the volume, which are checked already.
                     if trace.is_none() {
                         gradients::check(Key::Method("essential"), method.nodes(), flux.at())?;
                     }
@@ -346,7 +348,7 @@ impl Prepared {
             }
         }
         match method.essential {
-            // Volume points outnumber what a cloud can follow; its own nodes do not.
+            // A cloud cannot satisfy constraints at all volume points, but at its own nodes it can.
             Essential::Multipliers | Essential::Elimination(_)
                 if matches!(support.place, Place::Where(_)) =>
             {
@@ -373,7 +375,8 @@ impl Prepared {
         Ok(())
     }
 
-    /// Weak supports as penalties of `factor E / h`, as the linear procedure has them; at finite strain no other kind is known.
+    /// Turns weak supports into penalties of `factor E / h`, as in the linear procedure. Newton's method
+    /// supports no other weak condition.
     fn penalise(&mut self, setup: &Setup) -> Result<(), Failure> {
         let young = setup.materials[0].young();
         let penalty = |weak: &OwnedWeak| match weak.method {
@@ -419,8 +422,8 @@ impl Prepared {
         Ok(())
     }
 
-    /// Volume points inside the place, as a table of penalty points: weight per spacing, so that one penalty factor
-    /// means the same stiffness per depth of one node spacing as it does on a surface.
+    /// Returns the volume points in the place as a table of penalty points. Their weights are divided by the
+    /// spacing: a penalty factor then means the same stiffness per depth of one node spacing as on a surface.
     fn clamped_volume(
         &self,
         method: &Discretisation,
@@ -457,7 +460,7 @@ fn at(support: &Support, points: &[Point3]) -> Result<Vec<Vector3>, Failure> {
     points.iter().map(&support.value).collect::<Result<_, _>>().map_err(not_finite(&support.key, "move"))
 }
 
-/// A value that is no number somewhere, of what acts at `key`.
+/// Returns the error for a value of `below` at `key` that is not finite somewhere.
 fn not_finite(key: &str, below: &'static str) -> impl Fn(String) -> Failure {
     let key = Key::Scene(format!("{key}.{below}"));
     move |problem| {
@@ -465,7 +468,7 @@ fn not_finite(key: &str, below: &'static str) -> impl Fn(String) -> Failure {
     }
 }
 
-/// `u(x_c) = g(x_c)` at points, by one constraint row per point and constrained axis.
+/// Builds one constraint row `u(x_c) = g(x_c)` per point and constrained axis.
 fn collocated(rows: &PointRows, axes: [bool; 3], values: &[Vector3]) -> Vec<ConstraintRow> {
     let mut out = Vec::new();
     for (c, value) in values.iter().enumerate() {

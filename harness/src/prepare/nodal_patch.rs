@@ -1,28 +1,31 @@
-//! What of a constrained surface belongs to which node of a cloud, and the constraint rows made of it.
+//! Nodal patches of a constrained surface, and the constraint rows of a cloud built from them.
 //!
-//! Rows at points let test functions through that vanish there and not between: the traction on the constrained surface does
-//! work on them, and a patch test misses by it. Rows of means over shares that cover the surface do no such work under a
-//! constant traction, by whatever rule the surface is integrated, if it is the rule of the energy.
+//! Rows at points admit test functions that vanish at the points but not between them. The traction on the
+//! constrained surface does work on these functions, and a patch test fails by this work. Rows of means over
+//! patches that cover the surface do no such work under a constant traction, for any surface quadrature that
+//! is also the quadrature of the energy.
 
 use geometry::{Facet, Mesh, Point3, Vector3, closest_on_triangle};
 use shape::SurfaceRows;
 use statics::ConstraintRow;
 
-/// Normals that differ by more than this belong to two sides of an edge, each with a traction of its own: 37 degrees.
+/// Smallest product of unit normals on the same side of an edge: 37 degrees. Each side has its own traction.
 const SAME_SIDE: f64 = 0.8;
 
-/// The points of a surface that one node answers for, on one side of every edge.
+/// The surface points assigned to one node, on one side of every edge.
 pub struct NodalPatch {
     node: usize,
     normal: Vector3,
     points: Vec<usize>,
 }
 
-/// Shares by ascending node; every point of the surface is in one of them. A node on an edge answers for the side on which
-/// more points are nearest to it, and those of the other go to the nearest node there: with a share on each side, a cube
-/// of 6 x 6 x 6 nodes constrained on all sides would have more rows than nodes.
+/// Returns the patches by ascending node; every surface point belongs to one of them. A node on an edge owns
+/// points on the side with more points nearest to the node. Points on the other side go to the nearest node
+/// of that side. With a patch on each side, a cube of 6 x 6 x 6 nodes constrained on all sides would have
+/// more rows than nodes.
 pub fn nodal_patches(nodes: &[Point3], surface: &SurfaceRows) -> Vec<NodalPatch> {
-    // The row's nodes are those near the point: the nearest of all is among them, or the point's values are poor.
+    // The nodes of a row are the neighbours of its point. They contain the nearest node, or the point's
+    // values are poor.
     let nearest = |q: usize, of: &dyn Fn(usize) -> bool| {
         let distance = |n: &usize| (nodes[*n] - surface.points()[q]).norm_squared();
         let near = surface.rows().row(q).0.iter().map(|&n| n as usize).filter(|&n| of(n));
@@ -40,21 +43,22 @@ pub fn nodal_patches(nodes: &[Point3], surface: &SurfaceRows) -> Vec<NodalPatch>
     for q in points.clone() {
         nearest(q, &|_| true).into_iter().for_each(|node| put(&mut sides, node, q));
     }
-    // The first of equals: the order of points is that of the facets.
+    // The first among equals: points are ordered by facet.
     let most =
         |patches: &Vec<NodalPatch>| patches.iter().rev().max_by_key(|s| s.points.len()).map(|s| s.normal);
     let side: Vec<Option<Vector3>> = sides.iter().map(most).collect();
     let mut sides: Vec<Vec<NodalPatch>> = nodes.iter().map(|_| Vec::new()).collect();
     for q in points {
         let own = |n: usize| side[n].is_some_and(|side| side.dot(&surface.normals()[q]) > SAME_SIDE);
-        // A side so narrow that no node is its own takes the nearest of another.
+        // A side so narrow that no node owns it goes to the nearest node of another side.
         let node = nearest(q, &own).or_else(|| nearest(q, &|_| true));
         node.into_iter().for_each(|node| put(&mut sides, node, q));
     }
     sides.into_iter().flatten().collect()
 }
 
-/// The mean displacement over each share is that of `values` (m, one per point of the surface), along each constrained axis.
+/// Returns constraint rows for the mean displacement over each patch, along each constrained axis. The mean
+/// equals that of `values` (m, one per surface point).
 pub fn mean_rows(
     surface: &SurfaceRows,
     patches: &[NodalPatch],
@@ -77,7 +81,7 @@ pub fn mean_rows(
     out
 }
 
-/// The points of the facets (triangles) nearest to the nodes that have a share.
+/// Returns, for each node with a patch, the nearest point on the facets (triangles).
 pub fn on_facets(nodes: &[Point3], patches: &[NodalPatch], mesh: &Mesh, facets: &[Facet]) -> Vec<Point3> {
     let triangles: Vec<[Point3; 3]> = (facets.iter())
         .map(|&facet| {

@@ -1,4 +1,4 @@
-//! Whether every support and load of a scene touches the body, before any table is filled.
+//! Checks that every support and load of a scene touches the body, before any table is filled.
 
 use std::collections::HashSet;
 
@@ -9,8 +9,8 @@ use crate::discretise::place::{self, Patch, Place, tolerance};
 use crate::discretise::{Discretisation, Essential};
 use crate::scenario::setup::{Applied, Load, Setup, Support};
 
-/// Fails as a run would on the first support or load whose place is empty or names a surface that the mesh does not
-/// have. A plan needs no more: filling the tables to find out costs a thousand times as much.
+/// Fails, as a run would, on the first support or load whose place is empty or names a surface that the mesh
+/// does not have. A plan calls only this check: filling the tables costs a thousand times as much.
 pub fn check(method: &Discretisation, setup: &Setup) -> Result<(), Failure> {
     let mesh = method.mesh();
     for load in setup.loads.iter().filter(|load| !matches!(load.applied, Applied::Body(_))) {
@@ -36,10 +36,10 @@ pub fn check(method: &Discretisation, setup: &Setup) -> Result<(), Failure> {
     Ok(())
 }
 
-/// The faces that a load acts on.
+/// Returns the faces on which a load acts.
 pub(super) fn loaded(load: &Load, mesh: &Mesh) -> Result<Patch, Failure> {
     let mut patch = place::patch(&load.key, &load.place, mesh)?;
-    // A wall between two cells may be named from both sides: it is one.
+    // A wall between two cells may be named from both sides, but is loaded once.
     let mut seen = HashSet::new();
     patch.whole.retain(|facet| {
         let mut nodes: Vec<u32> = mesh.facet_nodes(*facet).collect();
@@ -55,7 +55,7 @@ pub(super) fn loaded(load: &Load, mesh: &Mesh) -> Result<Patch, Failure> {
     Ok(patch)
 }
 
-/// Whether one of the points at which a cloud is constrained inside its volume lies in the place.
+/// Whether the place contains a point at which a cloud is constrained inside its volume.
 fn holds_inside(method: &Discretisation, support: &Support, patch: &Patch) -> bool {
     if !matches!(support.place, Place::Where(_)) {
         return false;
@@ -67,14 +67,14 @@ fn holds_inside(method: &Discretisation, support: &Support, patch: &Patch) -> bo
         return method.nodes().iter().any(inside);
     }
     let points = method.inner;
-    // A region of the body that holds no centroid of a cell cuts its boundary.
+    // A region that contains no cell centroid may still cut the boundary.
     if (points.vertices && mesh.points().iter().any(inside)) || (points.grid && !patch.cut.is_empty()) {
         return true;
     }
     if points.per_cell == 0 {
         return false;
     }
-    // A number of points without a rule is refused where the tables are filled.
+    // A point count without a rule is refused when the tables are filled.
     let Some(rule) = quadrature::tet(points.per_cell) else { return true };
     (0..mesh.cell_count()).any(|cell| {
         let p: Vec<&Point3> = mesh.cell_points(cell).collect();

@@ -1,4 +1,4 @@
-//! Which essential conditions are whose, and with what force each support holds the body.
+//! The essential conditions of each support, and the force of each support on the body.
 
 use std::ops::Range;
 
@@ -7,7 +7,7 @@ use shape::FixedDof;
 
 use super::Prepared;
 
-/// Conditions of each kind up to one support: nodal ones, constraint rows and weakly held surfaces.
+/// Counts of nodal conditions, constraint rows and weakly constrained surfaces.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Conditions {
     fixed: usize,
@@ -15,21 +15,21 @@ pub(super) struct Conditions {
     weak: usize,
 }
 
-/// What one support prescribes.
+/// The conditions of one support.
 pub(super) struct Held {
     axes: [bool; 3],
-    /// Conditions before it, and with it.
+    /// Counts before the support and after it.
     from: Conditions,
     to: Conditions,
 }
 
-/// Forces (N) on the body at a solution.
+/// Forces (N) on the body at a solution, by kind of condition.
 pub struct ConditionForces<'a> {
-    /// Of the nodal supports on each node; none without them.
+    /// Force of the nodal supports on each node; empty without nodal supports.
     pub nodes: &'a [Vector3],
-    /// Of each constraint row.
+    /// Force of each constraint row.
     pub rows: &'a [Vector3],
-    /// Of each weakly held surface.
+    /// Force of each weakly constrained surface.
     pub weak: &'a [Vector3],
 }
 
@@ -38,25 +38,25 @@ impl Prepared {
         Conditions { fixed: self.fixed.len(), rows: self.constraints.len(), weak: self.weak.len() }
     }
 
-    /// Notes that all conditions since `from` are those of one support.
+    /// Records that all conditions since `from` belong to one support.
     pub(super) fn hold(&mut self, axes: [bool; 3], from: Conditions) {
         self.held.push(Held { axes, from, to: self.conditions() });
     }
 
-    /// Axes along which each support holds.
+    /// Iterates over the constrained axes of each support.
     pub fn support_axes(&self) -> impl Iterator<Item = [bool; 3]> {
         self.held.iter().map(|held| held.axes)
     }
 
-    /// Force (N) of each support on the body. A degree of freedom that several hold counts for the first of them, so that all
-    /// together balance what acts on the body.
+    /// Returns the force (N) of each support on the body. A degree of freedom in several supports counts for
+    /// the first of them, so that the sum balances the loads.
     pub fn support_forces(&self, forces: &ConditionForces) -> Vec<Vector3> {
         let mut seen = vec![false; 3 * forces.nodes.len()];
         let each = self.held.iter().map(|Held { from, to, .. }| {
             let mut sum = Vector3::zeros();
             for &FixedDof { node, axis, .. } in self.fixed.get(from.fixed..to.fixed).unwrap_or_default() {
                 let (i, a) = (node as usize, usize::from(axis));
-                // Without nodal supports there are no forces of theirs.
+                // Without nodal supports there are no nodal forces.
                 if i < forces.nodes.len() && !std::mem::replace(&mut seen[3 * i + a], true) {
                     sum[a] += forces.nodes[i][a];
                 }
@@ -69,8 +69,8 @@ impl Prepared {
         each.collect()
     }
 
-    /// Force (N) of each surface held by penalty in a procedure of Newton's method, at nodal parameters `u` (m) and this part of
-    /// what supports prescribe.
+    /// Returns the force (N) of each penalty surface on the body under Newton's method. `u` (m) are the nodal
+    /// parameters and `part` is the applied fraction of the prescribed displacements.
     pub fn penalty_forces(&self, u: &[Vector3], part: f64) -> Vec<Vector3> {
         let each = self.penalties.iter().map(|held| {
             let points = held.surface.rows().apply(u);

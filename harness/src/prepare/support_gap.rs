@@ -1,12 +1,12 @@
-//! How far supports that are held weakly give way.
+//! Displacement error at weakly constrained supports.
 
 use geometry::Vector3;
 
 use super::Prepared;
 
 impl Prepared {
-    /// RMS distance (m) between the displacement and what weak supports prescribe, over their surfaces and axes, and the area of
-    /// these (m^2); `None` without any.
+    /// Returns the RMS difference (m) between the displacement and the values of weak supports, over their
+    /// surfaces and axes, and the area of these surfaces (m^2); `None` without weak supports.
     pub fn support_gap(&self, u: &[Vector3]) -> Option<[f64; 2]> {
         let weak = self.weak.iter().map(|w| (w.flux.at().rows(), w.flux.weights(), &w.values, w.axes));
         let held = self.penalties.iter().map(|h| (h.surface.rows(), h.surface.weights(), &h.values, h.axes));

@@ -1,4 +1,5 @@
-//! Where tools may touch: contact points so close together that no tool fits between them, and the corners of the faces.
+//! Contact tables: contact points so dense that no tool fits between them, and points at sharp corners and
+//! edges.
 
 use cases::scene::ErrorKind;
 use contact::{ContactSurface, Outline, Tool};
@@ -11,31 +12,33 @@ use crate::Failure;
 use crate::error::Key;
 use crate::scenario::PlacedTool;
 
-/// Part of a tool's half breadth that its way may be off the nearest point at most: just so much that it cannot pass all points,
-/// nor go through the surface in one step unseen. Tools of that size keep the method's own points.
+/// Largest distance from a location on a facet to the nearest contact point, over the tool's half breadth.
+/// Within this distance a tool can neither slip between the points nor pass the surface in one step. The
+/// method's own points are then kept.
 const FREE: f64 = 0.95;
-/// The same where faces are divided.
+/// Target of the same ratio if faces are subdivided.
 const AIM: f64 = 0.5;
-/// Points that dividing faces may add: as many as a large mesh has.
+/// Most points that subdivision may add: as many as in a large mesh.
 const MOST: usize = 500_000;
 
-/// Parts along each edge of a face that has contact points at its corners and on its edges.
+/// Divisions along each edge of a face with contact points at its corners and edges.
 const AT_CORNERS: usize = 4;
 
-/// Points on a part of a face, about.
+/// Approximate number of points on one part of a face.
 const POINTS: usize = 4;
 
-/// Tables of the surface.
+/// Tables of the contact surface.
 pub(super) struct Touch {
     /// Contact points.
     pub(super) surface: SurfaceRows,
-    /// Vertices and middles of the faces that tools pass; they carry no force.
+    /// Vertices and centres of the faces that tools pass; no force acts on them.
     outline: PointRows,
     triangles: Vec<[u32; 3]>,
 }
 
 impl Touch {
-    /// The method's own contact points, and more where a tool passes faces that are too large for it.
+    /// Builds the method's own contact points, and more of them on faces that are too large for a tool
+    /// passing them.
     pub(super) fn new(source: &dyn RowSource, tools: &[PlacedTool]) -> Result<Touch, Failure> {
         let mesh = source.mesh();
         let facets = mesh.boundary();
@@ -52,7 +55,7 @@ impl Touch {
             sharp::mark(mesh, &facets, |facet| passes(mesh, facet, &set.tool), &set.tool, &mut sharp);
             for (k, &facet) in facets.iter().enumerate().filter(|(_, facet)| passes(mesh, **facet, &set.tool))
             {
-                // Points go by facets: those of this one are near there.
+                // Points are ordered by facet, so that those of this facet are near this index.
                 let near = k * surface.points().len() / facets.len();
                 let free = free(mesh, facet, &surface, near, FREE * half);
                 if free > FREE * half {
@@ -73,25 +76,26 @@ impl Touch {
         Ok(Touch { surface, outline, triangles })
     }
 
-    /// As the solver takes it.
+    /// Returns the contact surface for the solver.
     pub(super) fn contact(&self) -> ContactSurface<'_> {
         let outline = Outline::new(&self.outline, &self.triangles).expect("triangles of its own points");
         ContactSurface::new(&self.surface).with_outline(outline)
     }
 }
 
-/// Part of the solid angle `4 pi` from which on a place is taken to lie within a surface: 1 inside, 0 outside, but near points
-/// that are far apart 1/2 on both sides.
+/// Fraction of the solid angle `4 pi` above which a point counts as inside a surface. The exact fraction is 1
+/// inside and 0 outside; close to a surface with sparse points it is 1/2 on both sides.
 const WITHIN: f64 = 0.75;
 
-/// Refuses a tool that starts within the body: it would never meet the surface from outside. What is inside is seen from the solid
-/// angle `sum w n . r / |r|^3` of the surface.
+/// Refuses a tool that starts inside the body, because it would never meet the surface from outside. The test
+/// is the solid angle `sum w n . r / |r|^3` of the surface as seen from the tool.
 fn outside(surface: &SurfaceRows, index: usize, tool: &Tool) -> Result<(), Failure> {
     let place = tool.place(0.0);
     let angle: f64 = (surface.points().iter().zip(surface.normals()).zip(surface.weights()))
         .map(|((x, n), w)| w * n.dot(&(x - place)) / (x - place).norm().powi(3))
         .sum();
-    // A plate's place is any point of its face. Written so that a NaN, of a place on a point, passes.
+    // The place of a plate is any point of its face. The condition is negated so that NaN passes: the place
+    // may coincide with a point.
     if tool.shape().is_endless() || !(angle > WITHIN * 4.0 * std::f64::consts::PI) {
         return Ok(());
     }
@@ -104,7 +108,8 @@ fn outside(surface: &SurfaceRows, index: usize, tool: &Tool) -> Result<(), Failu
     ))
 }
 
-/// Facets in triangles around their middles, between the rows of [`RowSource::outline`]: nodes in ascending order, then middles.
+/// Splits facets into triangles around their centres. Indices refer to the rows of [`RowSource::outline`]:
+/// nodes in ascending order, then centres.
 fn triangles(mesh: &Mesh, facets: &[Facet]) -> Vec<[u32; 3]> {
     let nodes = mesh.facet_group_nodes(facets);
     let mut triangles = Vec::new();
@@ -112,7 +117,7 @@ fn triangles(mesh: &Mesh, facets: &[Facet]) -> Vec<[u32; 3]> {
         let row = |node: u32| nodes.binary_search(&node).expect("a node of the facets") as u32;
         let of_facet: Vec<u32> = mesh.facet_nodes(facet).map(row).collect();
         let corners = mesh.kind(facet.cell as usize).face_kind().corner_count();
-        // Nodes on the edges, if there are any, follow the corners, each after the corner of the same place.
+        // Edge nodes, if any, follow the corners. Each lies after the corner of the same index.
         let (corners, between) = of_facet.split_at(corners);
         let around: Vec<u32> =
             (0..corners.len()).flat_map(|i| [Some(corners[i]), between.get(i).copied()]).flatten().collect();
@@ -122,7 +127,7 @@ fn triangles(mesh: &Mesh, facets: &[Facet]) -> Vec<[u32; 3]> {
     triangles
 }
 
-/// Refuses faces that would take too many points.
+/// Refuses a subdivision of faces that takes too many points.
 fn affordable(index: usize, half: f64, free: f64, points: usize) -> Result<(), Failure> {
     if points <= MOST {
         return Ok(());
@@ -136,7 +141,8 @@ fn affordable(index: usize, half: f64, free: f64, points: usize) -> Result<(), F
     Err(Failure::at(ErrorKind::NotRun, Key::Size(""), problem, "a finer mesh where the tool touches"))
 }
 
-/// Whether a tool passes a facet, or twice its own size beside it: the tissue gives way.
+/// Whether a tool passes a facet or a margin around it. The margin is the diagonal of the tool's bounding
+/// box, because the tissue deforms.
 fn passes(mesh: &Mesh, facet: Facet, tool: &Tool) -> bool {
     let nodes = || mesh.facet_nodes(facet).map(|node| mesh.points()[node as usize]);
     let middle = Point3::from(nodes().map(|x| x.coords).sum::<Vector3>() / nodes().len() as f64);
@@ -147,8 +153,9 @@ fn passes(mesh: &Mesh, facet: Facet, tool: &Tool) -> bool {
     across.norm() <= radius + (high - low).norm()
 }
 
-/// Distance (m) from the place on a facet that is farthest from all contact points: its nodes, its middle and the places between
-/// them; 0 where none is farther than `allowed` (m). Points from `near` on are looked at first.
+/// Returns the largest distance (m) from a sampled location on a facet to its nearest contact point; 0 if
+/// none exceeds `allowed` (m). Samples are the nodes, the centre and the midpoints between them. The search
+/// starts at point `near`.
 fn free(mesh: &Mesh, facet: Facet, surface: &SurfaceRows, near: usize, allowed: f64) -> f64 {
     let nodes: Vec<Vector3> =
         mesh.facet_nodes(facet).map(|node| mesh.points()[node as usize].coords).collect();

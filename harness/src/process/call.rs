@@ -1,4 +1,4 @@
-//! One call of another program: as long as it may take, with as much memory as it may have, and measured.
+//! One call of another program, measured and limited in time and memory.
 
 use std::io::{self, Read};
 use std::process::{Command, ExitStatus, Stdio};
@@ -7,52 +7,53 @@ use std::time::{Duration, Instant};
 
 use super::group::{self, Started, last_words};
 
-/// Times between two looks at what the processes take: a tenth of what they took so far.
+/// Bounds of the pause between two measurements of the processes; the pause is a tenth of the elapsed time.
 const SHORTEST_PAUSE: Duration = Duration::from_millis(3);
 const LONGEST_PAUSE: Duration = Duration::from_millis(100);
-/// How long the last words of a program are waited for: what it has started may keep its end of the pipe open.
+/// How long the program's last output is awaited: a process it has started may keep the pipe open.
 const LAST_WORDS: Duration = Duration::from_secs(1);
 
-/// Bytes of the first words of a program that are kept.
+/// Bytes kept of the beginning of a program's output.
 const FIRST_WORDS: u64 = 4096;
 
-/// What a call may take.
+/// Limits of a call.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Limits {
     pub(crate) time: Duration,
-    /// Bytes of all processes together.
+    /// Memory of all processes together, bytes.
     pub(crate) memory: u64,
 }
 
-/// How a call ended.
+/// Reason why a call ended.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum End {
-    /// By itself.
+    /// The program exited by itself.
     Exited(ExitStatus),
     OutOfTime,
     OutOfMemory,
 }
 
-/// A call that has ended, with all that it had started.
+/// A call that has ended, including all processes it had started.
 #[derive(Debug)]
 pub(crate) struct Call {
     pub(crate) end: End,
-    /// Seconds by the clock on the wall.
+    /// Wall-clock time, s.
     pub(crate) wall: f64,
-    /// Seconds of the processors, to a hundredth; known on Linux.
+    /// CPU time of all processes, s, to a hundredth; known on Linux.
     pub(crate) cpu: Option<f64>,
-    /// Most bytes that all processes had together; known on Linux, 0 elsewhere.
+    /// Peak memory of all processes together, bytes; known on Linux, 0 elsewhere.
     pub(crate) memory: u64,
-    /// The end of what it wrote to stderr.
+    /// The end of the program's output on stderr.
     pub(crate) last_words: String,
 }
 
-/// Calls a program on a leash: its group ends with it, with its limits, or with this process.
+/// Calls a program through the command `leash`. Its processes end with the program, at a limit, or with this
+/// process.
 pub(crate) fn call(program: &Command, limits: Limits) -> io::Result<Call> {
     let mut command = leashed(program, limits.memory)?;
     let began = Instant::now();
     let mut started = Started::new(&mut command)?;
-    // Kept open as long as this process is there: the leash pulls when it closes.
+    // The pipe stays open as long as this process exists; the leash kills its group when the pipe closes.
     let leash = started.child().stdin.take();
     let (heard, words) = mpsc::channel();
     if let Some(stderr) = started.child().stderr.take() {
@@ -67,8 +68,8 @@ pub(crate) fn call(program: &Command, limits: Limits) -> io::Result<Call> {
     Ok(Call { end, wall: watched.wall, cpu, memory: watched.memory, last_words })
 }
 
-/// Runs a program for so long at most, and ends all of its group; its status, and what it begins stdout and
-/// stderr with.
+/// Runs a program for at most `time` and then kills its whole group. Returns its exit status and the
+/// beginning of its stdout and stderr.
 pub(crate) fn said_within(program: &mut Command, time: Duration) -> io::Result<(ExitStatus, [String; 2])> {
     let mut started =
         Started::new(program.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped()))?;
@@ -85,7 +86,8 @@ pub(crate) fn said_within(program: &mut Command, time: Duration) -> io::Result<(
     Ok((status, [heard(out), heard(err)]))
 }
 
-/// The beginning of what a program writes. It is read to its end, so that the program does not wait.
+/// Returns the beginning of a program's output. The output is read to its end so that the program does not
+/// block.
 fn first_words(from: impl Read + Send + 'static) -> mpsc::Receiver<String> {
     let (send, heard) = mpsc::channel();
     std::thread::spawn(move || {
@@ -98,7 +100,7 @@ fn first_words(from: impl Read + Send + 'static) -> mpsc::Receiver<String> {
     heard
 }
 
-/// This program as the leash of another one.
+/// Returns the command that runs `program` under this program's `leash`.
 fn leashed(program: &Command, memory: u64) -> io::Result<Command> {
     let mut command = Command::new(std::env::current_exe()?);
     command.args(["leash", "--memory-limit", &memory.to_string(), "--"]);
@@ -116,14 +118,14 @@ fn leashed(program: &Command, memory: u64) -> io::Result<Command> {
     Ok(command)
 }
 
-/// What was seen of a group until its first process ended, or had to.
+/// Measurements of a process group until its first process ended or was killed.
 #[derive(Default)]
 struct Watched {
-    /// `None` where it ended by itself.
+    /// The limit that was exceeded; `None` if the program exited by itself.
     end: Option<End>,
     wall: f64,
     memory: u64,
-    /// Seconds of the processors that processes had which nobody has waited for.
+    /// CPU time of processes that have not been waited for, s.
     #[cfg_attr(not(target_os = "linux"), allow(dead_code))]
     running: f64,
 }
@@ -154,12 +156,12 @@ fn watch(started: &mut Started, began: Instant, limits: Limits) -> Watched {
         let left = limits.time.saturating_sub(began.elapsed());
         if let Ok(at) = end.recv_timeout(pause.min(left)) {
             watched.wall = (at - began).as_secs_f64();
-            // The leash has waited for all below it.
+            // The leash has waited for all processes below it.
             watched.running = 0.0;
             return watched;
         }
         watched.wall = began.elapsed().as_secs_f64();
-        // Where nobody waits for it, it is looked for.
+        // Without a waiting thread, the end is polled.
         #[cfg(not(unix))]
         if started.has_ended().unwrap_or(true) {
             drop(ended);
@@ -171,7 +173,7 @@ fn watch(started: &mut Started, began: Instant, limits: Limits) -> Watched {
         }
         if watched.end.is_some() {
             started.kill();
-            // Whatever is killed ends, but a process that waits for a disk does so later.
+            // A killed process ends later if it is waiting for a disk.
             let _ = end.recv_timeout(limits.time);
             return watched;
         }

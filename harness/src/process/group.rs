@@ -1,21 +1,22 @@
-//! A process with all that it starts: limited, ended as a whole, and gone with the process that started it.
+//! A process and all its descendants: limited, killed as a whole, and ended with the process that started it.
 
 use std::io::{self, Read};
 use std::process::{Child, Command, ExitStatus};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
 
-/// Most of what a process said last that is kept.
+/// Bytes kept of the end of a process's output.
 const LAST_WORDS: usize = 4096;
 
-/// Numbers of the processes that run now. Locked while one is started, so that none is missed when all are ended.
+/// Ids of the running processes. Locked while a process is started, so that none is missed when all are
+/// killed.
 static RUNNING: Mutex<Vec<u32>> = Mutex::new(Vec::new());
 
 fn running() -> std::sync::MutexGuard<'static, Vec<u32>> {
     RUNNING.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// A process in a group of its own.
+/// A process in a process group of its own.
 pub(crate) struct Started {
     child: Child,
 }
@@ -38,7 +39,8 @@ impl Started {
         &mut self.child
     }
 
-    /// Whether it has ended. It is not waited for: its number stays its own until its group is ended too.
+    /// Whether the process has ended. The process is not reaped, so its id is not reused before its group is
+    /// killed.
     #[cfg(unix)]
     pub(crate) fn has_ended(&mut self) -> io::Result<bool> {
         use rustix::process::{WaitId, WaitIdOptions, waitid};
@@ -51,12 +53,12 @@ impl Started {
         Ok(self.child.try_wait()?.is_some())
     }
 
-    /// Ends what is left of it and of its group, without waiting for it.
+    /// Kills the process and its group, without waiting.
     pub(super) fn kill(&self) {
         kill(self.child.id());
     }
 
-    /// Ends what is left of it and of its group.
+    /// Kills the process and its group, and waits for the process.
     pub(crate) fn end(mut self) -> io::Result<ExitStatus> {
         let mut running = running();
         kill(self.child.id());
@@ -67,7 +69,7 @@ impl Started {
     }
 }
 
-/// Waits until a process has ended; its number stays its own until it is waited for otherwise.
+/// Waits until a process has ended, without reaping it: its id is not reused before.
 #[cfg(unix)]
 pub(super) fn wait(id: u32) {
     use rustix::process::{WaitId, WaitIdOptions, waitid};
@@ -76,7 +78,7 @@ pub(super) fn wait(id: u32) {
     {}
 }
 
-/// The end of what a process writes, however much that is.
+/// Returns the end of a process's output, whatever its length.
 pub(crate) fn last_words(mut from: impl Read) -> String {
     let (mut kept, mut buffer) = (Vec::new(), [0; LAST_WORDS]);
     while let Ok(read @ 1..) = from.read(&mut buffer) {
@@ -87,7 +89,7 @@ pub(crate) fn last_words(mut from: impl Read) -> String {
     String::from_utf8_lossy(&kept).into_owned()
 }
 
-/// Ends all groups, and lets no other one begin: for a program that is about to exit. A second call does
+/// Kills all groups and blocks the start of others. Called just before the program exits; a second call does
 /// nothing.
 pub(crate) fn end_all() {
     static ENDED: AtomicBool = AtomicBool::new(false);
@@ -104,7 +106,7 @@ fn pid(id: u32) -> rustix::process::Pid {
     rustix::process::Pid::from_raw(id.cast_signed()).expect("the number of a process that was started")
 }
 
-/// Ends what is below a process, in whatever group, and its own group.
+/// Kills all descendants of a process, in whatever group, and the group of the process.
 #[cfg(unix)]
 pub(super) fn kill(id: u32) {
     #[cfg(target_os = "linux")]
@@ -115,14 +117,15 @@ pub(super) fn kill(id: u32) {
 #[cfg(not(unix))]
 pub(super) fn kill(_: u32) {}
 
-/// Ends this process with its parent and limits what it may allocate from now on.
+/// Makes this process end with its parent and limits the memory it may allocate from now on, in bytes.
 ///
-/// The limit is of what can be written to, not of addresses: an allocator reserves 64 MB of these for each thread.
+/// The limit applies to writable memory, not to address space, of which an allocator reserves 64 MB per
+/// thread.
 #[cfg(target_os = "linux")]
 pub(crate) fn limit(parent: u32, memory: Option<u64>) -> io::Result<()> {
     use rustix::process::{Signal, getppid, set_parent_process_death_signal};
     set_parent_process_death_signal(Some(Signal::KILL))?;
-    // It may have died before.
+    // The parent may have ended before.
     if getppid().map(rustix::process::Pid::as_raw_nonzero).map(|id| id.get().cast_unsigned()) != Some(parent)
     {
         return Err(io::Error::other("the study that started it has ended"));
@@ -130,7 +133,7 @@ pub(crate) fn limit(parent: u32, memory: Option<u64>) -> io::Result<()> {
     memory.map_or(Ok(()), limit_memory)
 }
 
-/// Limits what this process, and each one that it starts, may allocate from now on.
+/// Limits this process, and each process it starts, to `bytes` more than it has allocated now.
 #[cfg(target_os = "linux")]
 pub(super) fn limit_memory(bytes: u64) -> io::Result<()> {
     use rustix::process::{Resource, Rlimit, setrlimit};
@@ -143,7 +146,7 @@ pub(super) fn limit_memory(_: u64) -> io::Result<()> {
     Ok(())
 }
 
-/// Bytes that this process has by now.
+/// Returns the memory this process has allocated, bytes.
 #[cfg(target_os = "linux")]
 fn allocated() -> io::Result<u64> {
     let status = std::fs::read_to_string("/proc/self/status")?;
@@ -168,7 +171,7 @@ mod tests {
 
     use super::*;
 
-    /// Whether a process runs: it is there and has not ended.
+    /// Whether a process exists and has not ended.
     fn runs(id: &str) -> bool {
         let stat = std::fs::read_to_string(format!("/proc/{id}/stat")).unwrap_or_default();
         stat.rsplit_once(')').is_some_and(|(_, state)| !state.trim_start().starts_with(['Z', 'X']))

@@ -1,8 +1,8 @@
-//! The hidden command `leash`: runs another program, and ends all that this has started, when it ends and when whoever started the leash
-//! is gone.
+//! The hidden command `leash`: runs another program and kills all descendants of that program when it ends,
+//! or when the process that started the leash ends.
 //!
-//! A program that starts others leaves them behind if it is killed. Its leash does not: its stdin is a pipe that the system closes with
-//! the process at the other end, whatever ends that.
+//! A program that is killed leaves its child processes behind. The leash does not: its stdin is a pipe, which
+//! the system closes when the process at the other end ends for any reason.
 
 use std::ffi::OsString;
 use std::io::Read;
@@ -14,14 +14,14 @@ use super::group;
 #[cfg(target_os = "linux")]
 use super::members;
 
-/// As shells have it: a program that is not there, and one that a signal has ended.
+/// Exit codes as in shells: for a program that does not exist, and the offset for one ended by a signal.
 const NOT_FOUND: u8 = 127;
 const SIGNAL: i32 = 128;
 
 /// Arguments of the hidden command `leash`.
 #[derive(Args)]
 pub struct LeashArgs {
-    /// Memory that each process may allocate
+    /// Memory limit of each process, in bytes
     #[arg(long)]
     pub memory_limit: Option<u64>,
     /// The program with its arguments
@@ -29,7 +29,7 @@ pub struct LeashArgs {
     pub command: Vec<OsString>,
 }
 
-/// Runs the program; returns its exit code.
+/// Runs the program and returns its exit code.
 pub(crate) fn leash(args: &LeashArgs) -> u8 {
     #[cfg(target_os = "linux")]
     if let Err(bad) = members::adopt() {
@@ -64,7 +64,8 @@ fn code(status: ExitStatus) -> u8 {
     status.code().and_then(|code| u8::try_from(code).ok()).unwrap_or(1)
 }
 
-/// Ends the group that this process leads, itself included. One that it does not lead is somebody else's.
+/// Kills the group that this process leads, including this process. A group led by another process is left
+/// alone.
 fn end_own_group() {
     #[cfg(unix)]
     if rustix::process::getpgrp() == rustix::process::getpid() {

@@ -1,36 +1,38 @@
-//! What a process has started, and what that has started: what it takes, as `/proc` says, and its end.
+//! Descendants of a process, read from `/proc`: their resources and how they are killed.
 //!
-//! A leash gets what is left behind by those below it (it is their "child subreaper"), so that all that a program has started is below
-//! its leash, in whatever group or session it is.
+//! A leash is the "child subreaper" of its descendants: the system makes orphaned processes its children. All
+//! processes that a program has started are therefore below its leash, in whatever group or session.
 
 use std::collections::BTreeMap;
 use std::time::Duration;
 
 use rustix::process::{Pid, Signal, WaitOptions};
 
-/// Of times in `/proc`, whatever the kernel counts in.
+/// Clock ticks per second of the times in `/proc`, independent of the kernel's own timer.
 const TICKS_PER_SECOND: f64 = 100.0;
-/// Of the state as the first field behind the name: parent, group, and so on, as proc(5) numbers them less 3.
+/// Indices of the fields after the name in `/proc/<id>/stat`; the state is 0. They are the numbers of proc(5)
+/// minus 3.
 const PARENT: usize = 1;
 const OWN_TIMES: [usize; 2] = [11, 12];
 const TIMES_OF_CHILDREN: [usize; 2] = [13, 14];
 const PAGES: usize = 21;
-/// How often those are looked for that have been started while others were ended, and the time between.
+/// Passes over the processes to kill, and the pause between passes. A pass may miss processes started during
+/// it.
 const LOOKS: usize = 100;
 const LOOK: Duration = Duration::from_millis(1);
 
-/// All processes below a leash.
+/// Resources of all processes below a leash.
 #[derive(Debug, Default)]
 pub(super) struct Members {
-    /// Bytes in memory, together.
+    /// Resident memory of all processes together, bytes.
     pub(super) memory: u64,
-    /// Most bytes that one of them had by now.
+    /// Largest peak memory of a single process, bytes.
     pub(super) largest: u64,
-    /// Seconds of the processors that they had.
+    /// CPU time of all processes, s.
     pub(super) seconds: f64,
 }
 
-/// The processes below a leash now.
+/// Measures the processes below a leash.
 pub(super) fn of(leash: u32) -> Members {
     let mut members = Members::default();
     let page = rustix::param::page_size() as u64;
@@ -42,7 +44,7 @@ pub(super) fn of(leash: u32) -> Members {
     members
 }
 
-/// The processes below another one, with their numbers.
+/// Returns all descendants of a process, each as its id and its fields.
 fn below(root: u32) -> Vec<(u32, Vec<f64>)> {
     let entries = std::fs::read_dir("/proc").into_iter().flatten().flatten();
     let ids = entries.filter_map(|entry| entry.file_name().to_str()?.parse::<u32>().ok());
@@ -59,10 +61,10 @@ fn below(root: u32) -> Vec<(u32, Vec<f64>)> {
     found
 }
 
-/// Ends all processes below another one.
+/// Kills all descendants of a process.
 pub(super) fn end_below(root: u32) {
     for _ in 0..LOOKS {
-        // One that has ended and was not waited for has no memory.
+        // A zombie process has no memory.
         let left: Vec<u32> = below(root)
             .iter()
             .filter(|(_, of)| of.get(PAGES).is_some_and(|n| *n > 0.0))
@@ -78,23 +80,24 @@ pub(super) fn end_below(root: u32) {
     }
 }
 
-/// Makes what those below this process leave behind its own.
+/// Makes orphaned descendants children of this process.
 pub(super) fn adopt() -> std::io::Result<()> {
     Ok(rustix::process::set_child_subreaper(Some(rustix::process::getpid()))?)
 }
 
-/// Ends all below this process, and waits for them, so that their times count.
+/// Kills all descendants of this process and waits for them, so that their CPU times are counted.
 pub(super) fn end_own() {
     end_below(std::process::id());
     while let Ok(Some(_)) = rustix::process::wait(WaitOptions::empty()) {}
 }
 
-/// Seconds of the processors that the children of a process had which it has waited for, and theirs; known until it is waited for itself.
+/// Returns the CPU time, s, of the children that a process has waited for, and of their waited-for
+/// descendants. Known until the process itself is waited for.
 pub(super) fn waited_for(id: u32) -> Option<f64> {
     Some(seconds(&fields(id)?, TIMES_OF_CHILDREN))
 }
 
-/// Seconds that the system has worked for a process, to a hundredth.
+/// Returns the kernel CPU time of a process, s, to a hundredth.
 pub(super) fn by_the_system(id: u32) -> Option<f64> {
     Some(fields(id)?.get(OWN_TIMES[1])? / TICKS_PER_SECOND)
 }
@@ -103,14 +106,14 @@ fn seconds(fields: &[f64], of: [usize; 2]) -> f64 {
     of.iter().filter_map(|&at| fields.get(at)).sum::<f64>() / TICKS_PER_SECOND
 }
 
-/// The numbers of a process behind its name; its state, which is a letter, is 0.
+/// Returns the fields after the name in `/proc/<id>/stat`. The state, a letter, becomes 0.
 fn fields(id: u32) -> Option<Vec<f64>> {
     let text = std::fs::read_to_string(format!("/proc/{id}/stat")).ok()?;
     let (_, behind) = text.rsplit_once(')')?;
     Some(behind.split_whitespace().map(|field| field.parse().unwrap_or(0.0)).collect())
 }
 
-/// Most bytes in memory that a process had at once.
+/// Returns the peak resident memory of a process, bytes.
 pub(super) fn most(id: u32) -> u64 {
     let text = std::fs::read_to_string(format!("/proc/{id}/status")).unwrap_or_default();
     let line = text.lines().find_map(|line| line.strip_prefix("VmHWM:")).unwrap_or_default();

@@ -1,4 +1,4 @@
-//! Processes that are started: each is limited, measured and ended as a whole, with all that it starts.
+//! Child processes: each is limited, measured and killed together with all its descendants.
 
 mod call;
 pub(crate) mod group;
@@ -10,8 +10,8 @@ pub(crate) use call::{Call, End, Limits, call, said_within};
 pub(crate) use group::{Started, last_words};
 pub use leash::LeashArgs;
 
-/// Most bytes in memory that this process has had since [`forget_most_memory`], or since it began; `None`
-/// where the system does not say.
+/// Returns the peak memory of this process, bytes, since [`forget_most_memory`] or since its start; `None` if
+/// unknown.
 pub(crate) fn most_memory() -> Option<u64> {
     #[cfg(target_os = "linux")]
     return Some(members::most(std::process::id())).filter(|bytes| *bytes > 0);
@@ -19,13 +19,13 @@ pub(crate) fn most_memory() -> Option<u64> {
     None
 }
 
-/// Makes the most memory of this process what it has now, where the system can.
+/// Resets the peak memory of this process to its present memory, if the system supports this.
 pub(crate) fn forget_most_memory() {
     #[cfg(target_os = "linux")]
     let _ = std::fs::write("/proc/self/clear_refs", "5");
 }
 
-/// Seconds that the system has worked for this process, to a hundredth; `None` where it does not say.
+/// Returns the kernel CPU time of this process, s, to a hundredth; `None` if unknown.
 pub(crate) fn system_seconds() -> Option<f64> {
     #[cfg(target_os = "linux")]
     return members::by_the_system(std::process::id());
