@@ -1,4 +1,4 @@
-//! A method's problem as files, for other solvers: written, not solved.
+//! Export of a method's problem to files for other solvers. The problem is written, not solved.
 
 use std::path::Path;
 
@@ -11,16 +11,17 @@ use crate::procedure::Problem;
 use crate::procedure::external::problem;
 use crate::scenario::Scenario;
 
-/// What was written.
+/// Id and size of an exported problem.
 pub(crate) struct Exported {
-    /// Of all that is in the files.
+    /// Hash of the contents of all files.
     pub(crate) id: String,
     pub(crate) nodes: usize,
     pub(crate) cells: usize,
 }
 
 impl Group<'_> {
-    /// Writes the problem of a method of finite elements to a folder, with the meshes for programs that read no arrays.
+    /// Writes the problem of a finite-element method to a folder. Meshes are also written in formats for
+    /// programs that read no arrays.
     pub(crate) fn export(&self, scenario: &Scenario, folder: &Path) -> Result<Exported, Failure> {
         scenario.check_files().map_err(|failure| scenario.locate(failure))?;
         let about = scenario.about_elements()?;

@@ -1,4 +1,5 @@
-//! One scene at one Poisson's ratio: its reference first, then its methods against it.
+//! A scene at one Poisson's ratio. Its reference runs first; its methods are then compared with the
+//! reference.
 
 use std::borrow::Cow;
 use std::path::Path;
@@ -21,7 +22,8 @@ use crate::prepare::reach;
 use crate::procedure::{Wanted, plan};
 use crate::scenario::{Scenario, point, rule, warnings};
 
-/// What every run of a scene shares.
+/// Data shared by all runs of a scene at one Poisson's ratio: probes, targets, transfer schemes and
+/// references.
 pub struct Group<'a> {
     scene: Cow<'a, Scene>,
     case: String,
@@ -37,16 +39,17 @@ pub struct Group<'a> {
     watch: Option<Arc<Watch>>,
 }
 
-/// What a run does beside its numbers.
+/// Optional outputs of a run in addition to its metrics.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct RunOptions {
     /// Keeps the surface displacement, for pictures.
     pub picture: bool,
-    /// Keeps the body at all recorded states, for programs that draw it.
+    /// Keeps the body at all recorded states, for visualisation programs.
     pub states: bool,
     /// Runs the loop that the scene requests (`[output] repeated`) after the first solution.
     pub frames: bool,
-    /// Solves a cloud once more, integrated by this rule, to tell its errors of integration and of discretisation apart.
+    /// Solves a cloud a second time with this integration rule, to separate its integration error from its
+    /// discretisation error.
     pub split: Option<scene::Integration>,
 }
 
@@ -56,12 +59,17 @@ pub fn case_name(scene: &Scene) -> String {
 }
 
 impl<'a> Group<'a> {
-    /// Runs the reference method, if the scene compares with one, and finds the target points.
+    /// Runs the reference method, if the scene has one, and finds the target points.
+    ///
+    /// # Errors
+    /// Returns the error of a reference that cannot be read or solved, and of target points that cannot be
+    /// read.
     pub fn new(scene: &'a Scene, poisson: Option<f64>, repeats: Repeats) -> Result<Group<'a>, Failure> {
         Group::watched(Cow::Borrowed(scene), poisson, repeats, None)
     }
 
-    /// The same for a scene that may be the group's own, and for someone who waits for the reference and for every run.
+    /// Same as [`Group::new`], but the group may own its scene, and `watch` is called with the steps of the
+    /// reference and of every run.
     pub fn watched(
         scene: Cow<'a, Scene>,
         poisson: Option<f64>,
@@ -90,12 +98,12 @@ impl<'a> Group<'a> {
         Ok(group)
     }
 
-    /// Repeats and watch of the runs to come; the reference stays.
+    /// Sets the repeats and the watch of the runs to come. The reference stays.
     pub fn follow(&mut self, repeats: Repeats, watch: Option<Arc<Watch>>) {
         (self.repeats, self.watch) = (repeats, watch);
     }
 
-    /// The scene without its reference: enough for a plan.
+    /// Group without a reference, which suffices for a plan.
     pub fn unreferenced(scene: &'a Scene, repeats: Repeats) -> Result<Group<'a>, Failure> {
         Group::prepared(Cow::Borrowed(scene), repeats)
     }
@@ -118,8 +126,11 @@ impl<'a> Group<'a> {
         })
     }
 
-    /// One method's solution as a reference, whole or not at all; `targets` are where its displacement is reported, m.
-    /// `watch` is called with every converged step.
+    /// Solves method `id` as a reference. The displacement is reported at `targets` (m). `watch` is called
+    /// with every converged step.
+    ///
+    /// # Errors
+    /// Returns an error if the method fails or ends before the whole load.
     pub fn solve_for(
         scene: &'a Scene,
         id: &str,
@@ -145,7 +156,7 @@ impl<'a> Group<'a> {
         Ok(method)
     }
 
-    /// Finds how far the reference, which is this method, is off itself.
+    /// Estimates the own error of the reference, which was solved with this method.
     fn know_reference(&mut self, method: &scene::Method) {
         let Some(reference) = &self.reference else { return };
         let (own, counters) = match &self.reference_stalled {
@@ -158,8 +169,8 @@ impl<'a> Group<'a> {
         self.reference.iter_mut().for_each(|reference| reference.own = own.clone());
     }
 
-    /// Runs a method that others are compared with, whose size may be the reference's own; also why it ended
-    /// early, if it did.
+    /// Runs a method that others are compared with. If `resized`, its size is set by `reference.size`. The
+    /// second value is the failure that ended the run early, if any.
     fn compared(
         &mut self,
         method: scene::Method,
@@ -180,7 +191,7 @@ impl<'a> Group<'a> {
         Ok((super::reference(solved, &self.targets)?, stalled))
     }
 
-    /// One method's solution, once and compared with nothing.
+    /// Solves a method once, without repeats and without a comparison.
     fn solved(&self, scenario: &Scenario, discretisation: &Discretisation) -> Result<Finished, Failure> {
         let setup = scenario.setup()?;
         let plan = plan(discretisation, &setup, Wanted { targets: !self.targets.is_empty(), schemes: false });
@@ -189,7 +200,8 @@ impl<'a> Group<'a> {
             .map_err(|failure| scenario.locate(failure))
     }
 
-    /// A cloud's solution, integrated by another rule, where the cloud is compared: at the targets, or else at its nodes.
+    /// Solves a cloud with another integration rule, as a reference at the targets; without targets, at its
+    /// nodes.
     fn integrated(
         &self,
         scenario: &Scenario,
@@ -206,7 +218,7 @@ impl<'a> Group<'a> {
         super::reference(solved, at)
     }
 
-    /// One of the scene's methods, as a run of this group.
+    /// Combines one of the scene's methods with this group's scene and Poisson's ratio.
     pub fn scenario(&self, method: scene::Method, level: u32) -> Scenario<'_> {
         self.scenario_of(&self.scene, method, level)
     }
@@ -220,22 +232,26 @@ impl<'a> Group<'a> {
         &self.probes
     }
 
-    /// What the reference took, once for all methods; nothing where none had to run.
+    /// Counters of the reference, once for all methods; zero if no reference had to run.
     pub fn reference_counters(&self) -> Counters {
         self.reference_counters
     }
 
-    /// Why the reference ended early, if it did: nothing is compared with its end then, but with the steps it reached.
+    /// Failure that ended the reference early, if any. Such a reference is compared only at the steps that it
+    /// reached, not at its end.
     pub fn reference_stalled(&self) -> Option<&Failure> {
         self.reference_stalled.as_ref()
     }
 
-    /// The part of the load that the reference reached, where it has steps.
+    /// Fraction of the load that the reference reached, 0 to 1; `None` if the reference has no load steps.
     pub fn reference_carried(&self) -> Option<f64> {
         self.reference.as_ref().and_then(|reference| reference.steps.last()).map(|step| step.load)
     }
 
     /// Runs one method.
+    ///
+    /// # Errors
+    /// Returns the failure with the plan and the sizes, as far as they were known.
     pub fn run(&self, scenario: &Scenario, options: RunOptions) -> Result<Outcome, Unfinished> {
         let discretisation = scenario.discretise()?;
         let size = size(&discretisation);
@@ -274,7 +290,7 @@ impl<'a> Group<'a> {
         }
     }
 
-    /// A solution compared with the references, with nothing else beside it.
+    /// Request for a comparison with the references and no other output.
     pub(super) fn request(&self) -> Request<'_> {
         Request {
             reference: self.reference.as_ref(),
@@ -284,7 +300,7 @@ impl<'a> Group<'a> {
         }
     }
 
-    /// The reference of the runs; `None` if they have none.
+    /// Reference that the runs are compared with; `None` if there is none.
     pub fn reference(&self) -> Option<reports::Reference> {
         let case = self.case.clone();
         if let Some(Reference::Exact { entry, .. }) = &self.scene.reference {
@@ -307,14 +323,17 @@ impl<'a> Group<'a> {
         })
     }
 
-    /// Says in a run what it is compared with, and warns where that is coarser than the run.
+    /// Records the reference in an outcome, and warns if the reference is coarser than the run.
     pub(super) fn hold_against(&self, outcome: &mut Outcome) {
         let poisson = outcome.identity.poisson;
         outcome.reference = self.reference().map(|reference| reports::Reference { poisson, ..reference });
         outcome.warnings.extend(outcome.reference.as_ref().and_then(|reference| coarser(reference, outcome)));
     }
 
-    /// The plan of one method, without running it. An empty place is refused as a run refuses it.
+    /// Plan and sizes of one method, without running the method.
+    ///
+    /// # Errors
+    /// Returns the errors of an actual run for regions that select nothing.
     pub fn plan(&self, scenario: &Scenario) -> Result<(Plan, Sizes), Failure> {
         let (discretisation, setup) = (scenario.discretise()?, scenario.setup()?);
         reach::check(&discretisation, &setup).map_err(|failure| scenario.locate(failure))?;
@@ -322,7 +341,7 @@ impl<'a> Group<'a> {
     }
 
     fn wanted(&self) -> Wanted {
-        // Known before the reference has run, so that a plan says what the run will do.
+        // The targets count before the reference has run, so that the plan matches the run.
         let nodes_of_reference =
             matches!(self.scene.reference, Some(Reference::Method { .. } | Reference::Record(_)));
         let targets = nodes_of_reference || !self.targets.is_empty();
@@ -334,10 +353,10 @@ impl<'a> Group<'a> {
     }
 }
 
-/// Relative errors below this are of rounding.
+/// Relative errors below this limit are attributed to rounding.
 const ROUNDING: f64 = 1e-9;
 
-/// The error of a run that is finer than its reference may be the error of the reference.
+/// Warning that the run has more nodes than its reference, whose error may then dominate.
 fn coarser(reference: &reports::Reference, outcome: &Outcome) -> Option<Warning> {
     let error = outcome.metric(metric::RELATIVE_RMS.name).filter(|error| *error > ROUNDING)?;
     let (own, known) = (outcome.size.nodes, reference.nodes);
@@ -352,13 +371,13 @@ fn coarser(reference: &reports::Reference, outcome: &Outcome) -> Option<Warning>
     })
 }
 
-/// What is known of the sizes before any table is filled.
+/// Numbers of nodes and elements, which are known before any table is filled.
 fn size(method: &Discretisation) -> Sizes {
     let (nodes, elements) = (method.nodes().len() as u64, method.mesh().cell_count() as u64);
     Sizes { nodes, elements, ..Sizes::default() }
 }
 
-/// The key of a transfer, which may stand alone or in a list.
+/// Key of a transfer in the scene, which gives either a single table or a list.
 fn transfer_key(scene: &Scene, index: usize, below: &str) -> String {
     let listed = format!("output.transfer[{index}]");
     let key = if scene.has(&listed) { listed } else { "output.transfer".into() };
@@ -383,13 +402,13 @@ fn targets(scene: &Scene, probes: &[Point3]) -> Result<Vec<Point3>, Failure> {
     Ok(Vec::new())
 }
 
-/// Schemes with their settings; the method's own rows are always compared with them.
+/// Transfer schemes of the scene with their settings, without duplicates. The method's own shape functions
+/// are always compared with them.
 fn schemes(scene: &Scene) -> Vec<(SchemeSettings, Scheme)> {
     let named = scene.output.transfers.iter().filter_map(|transfer| transfer.scheme.as_ref());
     let mut list = Vec::new();
     for (scheme, values) in named {
         let scheme = (SchemeSettings::of(values), *scheme);
-        // One that is asked for twice is one scheme.
         if !list.contains(&scheme) {
             list.push(scheme);
         }

@@ -1,9 +1,11 @@
-//! A stored reference holds points of the whole body; a scene may have the half of it.
+//! Mirror symmetry of a stored reference: the file has points of the whole body, and a scene may model only
+//! half of the body.
 
 use cases::scene::Body;
 use geometry::{Point3, Vector3};
 
-/// Where a body is the half z >= 0 of another: points below are taken at their mirror images.
+/// Mapping of points to the modelled half z >= 0. If `half` is set, points with z < 0 are replaced by their
+/// mirror images.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Mirror {
     half: bool,
@@ -14,12 +16,12 @@ impl Mirror {
         Mirror { half: matches!(body, Body::Kidney { half: true, .. }) }
     }
 
-    /// The point of the body that stands for `x`.
+    /// Returns the point of the modelled body that corresponds to `x`.
     pub(crate) fn place(self, x: &Point3) -> Point3 {
         if self.below(x) { mirrored(x.coords).into() } else { *x }
     }
 
-    /// The displacement `u` at `x` from that at the point that stands for it, and the other way round.
+    /// Converts a displacement between `x` and its corresponding point, in either direction.
     pub(crate) fn displacement(self, x: &Point3, u: Vector3) -> Vector3 {
         if self.below(x) { mirrored(u) } else { u }
     }

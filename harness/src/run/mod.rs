@@ -1,4 +1,5 @@
-//! One run: prepare, assemble, factor, solve (timed apart, repeated), then errors, probes and transfers.
+//! A run: prepare, assemble, factor and solve (timed separately and repeated), then errors, probes and
+//! transfers.
 
 mod export;
 mod group;
@@ -37,19 +38,20 @@ pub use memory::Baseline as MemoryBaseline;
 pub use posed::{Found, Posed, PosedTool};
 pub use stored::Stored;
 
-/// A finished run with its nodal parameters.
+/// Finished run with its nodal parameters.
 pub(crate) struct Finished {
-    /// Identity, numbers, times.
+    /// Identity, metrics and times.
     pub(crate) outcome: Outcome,
     prepared: Prepared,
     /// Nodal parameters, m.
     u: Vec<Vector3>,
 }
 
-/// Runs one method by its plan.
+/// Runs one method according to its plan.
 ///
-/// All of it runs on a thread of the pool: from outside, whatever is done in parallel is handed over and waited for, which takes
-/// 0.03 to 0.1 ms each time, as long as the forces of 6000 elements.
+/// The whole run executes on a thread of the Rayon pool. From an outside thread every parallel region would
+/// have to be handed over and waited for, which takes 0.03 to 0.1 ms each time: as long as the forces of 6000
+/// elements.
 pub(crate) fn run(
     identity: Identity,
     plan: Plan,
@@ -94,29 +96,32 @@ fn on_pool(
     Ok(Finished { outcome, prepared, u: solution.u })
 }
 
-/// Refuses a run with a number that is none: it costs that run, not the study whose tables it would be in.
+/// Refuses a run whose records contain an invalid number. Only this run fails, not the study whose tables
+/// would contain the number.
 fn readable(outcome: &Outcome) -> Result<(), Failure> {
     let numbers = outcome.records().iter().try_for_each(Record::check);
     let all = numbers.and_then(|()| outcome.field.iter().try_for_each(SurfaceField::check));
     all.map_err(|bad| Failure::Run(bad.to_string()))
 }
 
-/// What a pass over a run leaves.
+/// Results of one timed pass.
 struct Pass {
     refined: Option<Discretisation>,
     prepared: Prepared,
     solution: Solution,
 }
 
-/// Share of a pass's processor time that went to the system from which on the pass was the first to use memory, and the least that is one:
-/// times of the system are known to a hundredth of a second.
+/// Fraction of a pass's CPU time spent in the kernel above which the pass is taken to have touched its memory
+/// for the first time.
 const FIRST_USE: f64 = 0.25;
+/// Smallest kernel time that counts, s. Kernel times have a resolution of a hundredth of a second.
 const LEAST_FIRST_USE: f64 = 0.03;
 
-/// The timed part, as often as it is repeated; the counters are those of the last pass.
+/// Runs the timed part as often as it is repeated. The counters are those of the last pass.
 ///
-/// A pass that first uses memory is taken once more and not timed. The host of a virtual machine takes back what is not in use: there a
-/// first use took 1.5 to 2 s per GB, a second one 0.05 to 0.3, and the rows of a cloud of 97,336 nodes 1.7 s, not 0.47.
+/// A first pass that touches memory for the first time is discarded and run again. The host of a virtual
+/// machine reclaims unused memory: there the first use took 1.5 to 2 s per GB and the second 0.05 to 0.3 s,
+/// and the rows of a cloud of 97,336 nodes took 1.7 s instead of 0.47 s.
 fn passes(
     method: &Discretisation,
     setup: &Setup,
@@ -138,14 +143,15 @@ fn passes(
         if start.elapsed().as_secs_f64() > request.repeats.seconds {
             break;
         }
-        // Two at once would take twice the memory.
+        // Keeping both passes would take twice the memory.
         drop(pass);
         pass = once(method, setup, plan, request, meters)?;
     }
     Ok(pass)
 }
 
-/// Whether a pass of so many seconds of the processors was the first to use its memory, by the system's seconds before and after it.
+/// Whether a pass was the first to use its memory, from the kernel's CPU seconds before and after the pass
+/// and the CPU seconds spent in its repeats.
 fn is_first_use(before: Option<f64>, after: Option<f64>, spent: &[f64]) -> bool {
     let system = after.zip(before).map_or(0.0, |(after, before)| after - before);
     system >= LEAST_FIRST_USE && system > FIRST_USE * spent.iter().sum::<f64>()
@@ -166,7 +172,7 @@ fn once(
         None
     };
     let current = refined.as_ref().unwrap_or(method);
-    // What another solver has to be asked and measured with is none of its own time.
+    // The tables that an external solver is compared with do not count as its preparation time.
     let phase = if current.outside.is_some() { "tables" } else { "prepare" };
     let prepared = timings.time(phase, || prepare(current, setup, plan, counters))?;
     let Request { watch, probes, .. } = *request;
@@ -175,7 +181,8 @@ fn once(
     Ok(Pass { refined, prepared, solution })
 }
 
-/// A run without a displacement, one that ends before anything is solved or has modes: what its tables are like.
+/// Completes a run without a displacement: a run that ends before the solution, or a modal analysis. Adds the
+/// modes and the properties of the tables.
 fn unloaded(outcome: &mut Outcome, run: &measure::Solved) -> Result<(), Failure> {
     if let Some(vibration) = &run.solution.vibration {
         let found = report_modes(run, vibration)?;
@@ -186,7 +193,7 @@ fn unloaded(outcome: &mut Outcome, run: &measure::Solved) -> Result<(), Failure>
     Ok(())
 }
 
-/// A run with a displacement: all that is compared, evaluated and drawn of it.
+/// Completes a run with a displacement: all comparisons, probes, warnings and pictures.
 fn loaded(
     outcome: &mut Outcome,
     run: &measure::Solved,
@@ -212,7 +219,8 @@ fn loaded(
     if let Some(exact) = &setup.exact {
         probe_errors(&mut outcome.metrics, &outcome.probes, exact.as_ref(), &solution.u);
     }
-    // A path that ended early is compared with the reference step by step, not at its end, and has no loop.
+    // A load path that ended early is compared with the reference at its steps, not at its end, and has no
+    // simulator's loop.
     let whole = solution.is_whole();
     if outcome.plan.runs(StageName::Schemes) {
         outcome.transfers = transfers(run, &request.at_end(whole), &mut counters)?;
@@ -230,7 +238,7 @@ fn loaded(
     Ok(())
 }
 
-/// Errors at the end and at every step, and how the run ended.
+/// Adds the errors at the end and at every step, and the status of the run.
 fn compare(
     outcome: &mut Outcome,
     run: &measure::Solved,
@@ -258,7 +266,7 @@ fn compare(
     Ok(())
 }
 
-/// Seconds per phase with their total, and per element and step of explicit dynamics.
+/// Times per phase with their total; for explicit dynamics also the time per element and step.
 fn phases(meters: &Meters, run: &measure::Solved) -> Vec<Timed> {
     let mut phases = meters.timings.phases().to_vec();
     phases.push(meters.timings.total());
@@ -282,7 +290,8 @@ fn size(method: &Discretisation, prepared: &Prepared, dofs: usize) -> Size {
     }
 }
 
-/// A reference that stays alive after its run: evaluates the displacement of `solved` anywhere.
+/// Converts a finished run to a reference. It keeps the tables, and so can evaluate the displacement anywhere
+/// later.
 pub(crate) fn reference(finished: Finished, targets: &[Point3]) -> Result<Reference, Failure> {
     let Finished { outcome, prepared, u } = finished;
     let at = move |points: &[Point3]| -> Result<Vec<Vector3>, Failure> {

@@ -1,4 +1,5 @@
-//! A method's problem, posed to a solver outside: its tables, what acts on its nodes, and a displacement judged as one of our own.
+//! A method's problem for an external solver: its tables, the loads on its nodes, and the comparison of the
+//! solver's displacement with the same errors as any other run.
 
 use cases::scene::Procedure;
 use contact::{ContactHistory, Drive, ToolState};
@@ -17,7 +18,7 @@ use crate::procedure::{Problem, Solution};
 use crate::scenario::Scenario;
 use crate::scenario::setup::Setup;
 
-/// A method's problem with all of its tables, not solved.
+/// A method's problem with all tables, not solved.
 pub struct Posed {
     identity: Identity,
     method: Discretisation,
@@ -26,27 +27,29 @@ pub struct Posed {
     plan: Plan,
 }
 
-/// What a solver outside found.
+/// Solution of an external solver.
 #[derive(Clone, Debug)]
 pub struct Found {
-    /// Its name.
+    /// Name of the solver.
     pub solver: String,
-    /// Nodal parameters (m), which are displacements on a mesh: at the end of each of equal load steps, or at the end alone.
+    /// Nodal parameters (m), which are displacements on a mesh. Either one field for the end of each of the
+    /// equal load steps, or one field for the end.
     pub fields: Vec<Vec<Vector3>>,
-    /// Force (N) of each tool along its way at the end; by the scene's contact law where the solver gives none.
+    /// Force of each tool along its direction of travel at the end, N. `None` if the solver gives no forces:
+    /// the scene's contact law then determines them.
     pub pushed: Option<Vec<f64>>,
-    /// What it took, s, where that is known.
+    /// Solution time if known, s.
     pub seconds: Option<f64>,
 }
 
-/// A tool of a scene.
+/// Tool of a posed problem.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PosedTool {
-    /// Its name.
+    /// Name of the tool.
     pub name: String,
-    /// Unit direction of its way.
+    /// Unit direction of travel.
     pub along: Vector3,
-    /// Its way at the end (m), where the scene drives it by that.
+    /// Travel at the end (m); `None` if the tool is force-controlled.
     pub closure: Option<f64>,
 }
 
@@ -54,8 +57,8 @@ impl Group<'_> {
     /// Fills the tables of a method without solving it.
     ///
     /// # Errors
-    /// A procedure other than linear and static, whose ends are not at rest, a cloud that follows an error, and what a run is
-    /// refused for.
+    /// Returns an error if the procedure is neither linear nor static (others do not end at rest), if the
+    /// method refines its cloud, and for every reason that a run is refused for.
     pub fn pose(&self, scenario: &Scenario) -> Result<Posed, Failure> {
         let (method, setup) = (scenario.discretise()?, scenario.setup()?);
         let (plan, _) = self.plan(scenario)?;
@@ -72,11 +75,12 @@ impl Group<'_> {
         Ok(Posed { identity: scenario.identity(), method, setup, prepared, plan })
     }
 
-    /// Measures what a solver outside found, with the errors of any other run.
+    /// Compares the solution of an external solver, with the same errors as any other run.
     ///
     /// # Errors
-    /// Fields of another number of nodes or with numbers that are not finite, more fields than load steps, and forces of
-    /// another number of tools.
+    /// Returns an error for fields with a wrong number of nodes or with numbers that are not finite, for a
+    /// number of fields that is neither one nor the number of load steps, and for a wrong number of tool
+    /// forces.
     pub fn compare(&self, posed: &Posed, found: Found) -> Result<Outcome, Failure> {
         posed.check(&found)?;
         let request = Request { watch: None, ..self.request() };
@@ -91,7 +95,7 @@ impl Group<'_> {
         let identity = Identity {
             family: Family::External,
             adapter: Some(found.solver),
-            // A projection is of our own elements.
+            // The projection of the dilation belongs to this program's own elements.
             dilation: None,
             ..posed.identity.clone()
         };
@@ -103,12 +107,12 @@ impl Group<'_> {
 }
 
 impl Posed {
-    /// Positions that nodal parameters belong to, m.
+    /// Positions of the nodes, m.
     pub fn nodes(&self) -> &[Point3] {
         self.method.nodes()
     }
 
-    /// The cells: elements, or the background of a cloud.
+    /// Mesh of the elements, or background mesh of a cloud.
     pub fn mesh(&self) -> &Mesh {
         self.method.mesh()
     }
@@ -118,7 +122,7 @@ impl Posed {
         self.method.interpolates
     }
 
-    /// Components of nodes that are prescribed, with their values.
+    /// Prescribed displacement components of nodes, with their values (m).
     pub fn fixed(&self) -> &[FixedDof] {
         self.prepared.fixed()
     }
@@ -128,7 +132,7 @@ impl Posed {
         Ok(statics::nodal_forces(&self.prepared.volume.rows, &self.prepared.loads())?)
     }
 
-    /// The tools, in the order of the scene.
+    /// Tools in the order of the scene.
     pub fn tools(&self) -> Vec<PosedTool> {
         let one = |placed: &crate::scenario::PlacedTool| PosedTool {
             name: placed.name.clone(),
@@ -141,22 +145,22 @@ impl Posed {
         self.setup.tools.iter().map(one).collect()
     }
 
-    /// The quadrature: values, gradients and weights.
+    /// Quadrature points of the body: shape function values and gradients, and weights.
     pub fn volume(&self) -> &VolumeRows {
         &self.prepared.volume.rows
     }
 
-    /// Values at points, and how many of these lie outside.
+    /// Shape function values at points (m), and the number of points that lie outside the mesh.
     pub fn at_points(&self, points: &[Point3]) -> Result<(PointRows, usize), Failure> {
         Ok(self.prepared.source.at_points(points)?)
     }
 
-    /// Values and gradients at points.
+    /// Shape function values and gradients at points (m).
     pub fn gradients_at(&self, points: &[Point3]) -> Result<GradRows, Failure> {
         Ok(self.prepared.source.gradients_at(points)?)
     }
 
-    /// Load steps of the scene; 1 of a linear procedure.
+    /// Number of load steps of the scene; 1 for a linear procedure.
     pub fn steps(&self) -> usize {
         steps(&self.setup).max(1)
     }
@@ -191,7 +195,7 @@ impl Posed {
         }
     }
 
-    /// What is left for this program to do.
+    /// Plan without the stages that the external solver performs.
     fn plan(&self, solver: &str) -> Plan {
         let mut plan = self.plan.clone();
         for stage in
@@ -202,8 +206,9 @@ impl Posed {
         plan
     }
 
-    /// Puts the tools into the steps: where they stand, and the forces that our contact law has there, with friction from step to
-    /// step; or at the end those that are given. A tool that is driven by force stands nowhere known.
+    /// Adds the tools to the load steps: their travel, and the forces by the scene's contact law, with the
+    /// friction history carried from step to step. Forces that are given replace those of the last step. The
+    /// travel of a force-controlled tool is unknown.
     fn touch(&self, solution: &mut Solution, pushed: Option<Vec<f64>>) -> Result<(), Failure> {
         let (Some(history), Some(contact)) = (&mut solution.history, self.prepared.contact()) else {
             return Ok(());

@@ -1,4 +1,5 @@
-//! A simulator's loop: the scene's loading played up and down in frames, prepared once, each frame timed.
+//! A simulator's loop: the scene's loading is ramped up and down in frames. The problem is prepared once, and
+//! every frame is timed.
 
 use std::hint::black_box;
 use std::time::Instant;
@@ -16,15 +17,16 @@ use crate::outcome::{FOR_P99, Latency, Metric, push};
 use crate::prepare::Prepared;
 use crate::procedure::{solves, static_params, with_static_problem};
 
-/// Part of the loading in a frame: up from `2 / cycle` to 1 in half a cycle and down again, never to nothing, where a tool
-/// driven by force would have none.
+/// Fraction of the loading in a frame. It rises from `2 / cycle` to 1 in half a cycle and falls again. It
+/// never reaches zero, where a force-controlled tool would have no force.
 fn part(frame: usize, cycle: usize) -> f64 {
     let (half, at) = (cycle / 2, frame % cycle);
     let step = if at < half { at + 1 } else { cycle - at };
     step as f64 / half as f64
 }
 
-/// Runs the loop after the first solution; metrics and deviations say how far it agrees with that.
+/// Runs the loop after the first solution. Metrics and deviations report how well the loop agrees with that
+/// solution.
 pub(super) fn repeated(
     ask: &Repeated,
     run: &Solved,
@@ -85,7 +87,7 @@ fn linear(
         if largest > 0.0 {
             push(metrics, &metric::REPEATED_ERROR, gap / largest);
         }
-        // Every load at a part of its own: not a multiple of one solution.
+        // Each load has its own phase, so that the frames are not multiples of one solution.
         let share = ask.cycle / (unit.len() + 1);
         latencies.push(timed("repeated", ask, |k| {
             frame(&|l| part(k + l * share, ask.cycle), part(k, ask.cycle), &mut out);
@@ -93,7 +95,8 @@ fn linear(
         })?);
     }
     let mut forces = vec![Vector3::zeros(); method.nodes().len()];
-    // Timed too: what 99 % of the frames take, and no more than a tenth of the time that the loop may take.
+    // The whole field is timed too, for at most the 100 frames that a 99 % quantile needs, within a tenth of
+    // the loop's time limit.
     let ask = Repeated { frames: ask.frames.min(FOR_P99), within: 0.1 * ask.within, ..*ask };
     let share = ask.cycle / (unit.len() + 1);
     latencies.push(timed("repeated-field", &ask, |k| {
@@ -112,7 +115,8 @@ fn field(factored: &Factored, forces: &[Vector3], supports: f64) -> Result<usize
     Ok(0)
 }
 
-/// The probes, and the mean displacement of each loaded face: what a jaw that presses there would measure.
+/// Rows of the probes and of the mean displacement of each loaded face, which a jaw pressing there would
+/// measure.
 fn outputs(
     method: &Discretisation,
     prepared: &Prepared,
@@ -183,7 +187,8 @@ fn nonlinear(ask: &Repeated, run: &Solved, params: &StaticParams) -> Result<Vec<
     })
 }
 
-/// Times each frame, which returns its iterations, until all are done or the time is spent.
+/// Times each frame until all are done or the time limit is reached. `frame` returns its number of
+/// iterations.
 fn timed(
     phase: &'static str,
     ask: &Repeated,

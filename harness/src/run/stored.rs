@@ -1,5 +1,6 @@
-//! A reference in a file: what several fine solutions of one scene agree on, and how far they differ. It is made once by
-//! `tissuebench reference`, takes too long to be made at every run, and is compared with by `[reference] record`.
+//! A reference in a file: the common result of several fine solutions of one scene, and the differences
+//! between them. `tissuebench reference` makes it once, because it takes too long for every run. A scene
+//! compares with it by `[reference] record`.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -15,55 +16,56 @@ use crate::Failure;
 use crate::measure::{OwnError, Reference, norms};
 use crate::outcome::{LoadStep, ToolStep, provenance, push, push_numbered, run_id};
 
-/// The file, as JSON. Lengths in m, forces in N.
+/// Stored reference, a JSON file. Lengths in m, forces in N.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Stored {
-    /// The scene it was made from.
+    /// Case name of the scene from which the reference was made.
     pub case: String,
-    /// BLAKE3 of that scene without its title, source, purpose and methods: what the solutions are solutions of.
+    /// BLAKE3 hash of that scene without its title, source, purpose, published data, checks and methods. It
+    /// identifies the problem that was solved.
     pub problem: String,
-    /// Version and commit of the program that made it.
+    /// Version and commit of the program that made the file.
     pub program: String,
-    /// Compiler and instruction sets: they change the last bits.
+    /// Compiler and instruction sets, which change the last bits of the results.
     pub made_on: String,
-    /// The solution whose values stand here; the others only widen the bands.
+    /// Solution whose values are stored. The others only widen the bands.
     pub source: Source,
-    /// The other solutions.
+    /// Other solutions, which widen the bands.
     pub beside: Vec<Source>,
-    /// Positions of the probes.
+    /// Positions of the probes, m.
     pub probes: Vec<[f64; 3]>,
-    /// The ends of the load steps.
+    /// Results at the end of each load step.
     pub steps: Vec<StoredStep>,
-    /// Where the displacement at the end is given.
+    /// Points at which the final displacement is given, m.
     pub points: Vec<[f64; 3]>,
-    /// The displacement there.
+    /// Final displacement at the points, m.
     pub displacement: Vec<[f64; 3]>,
-    /// Largest root mean square by which another solution's displacement differs from it.
+    /// Largest root-mean-square difference of another solution's displacement, m.
     pub displacement_band: f64,
 }
 
-/// A solution by its method and size.
+/// Method and size of a stored solution.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Source {
-    /// Id in the scene.
+    /// Id of the method in the scene.
     pub method: String,
-    /// Nodes.
+    /// Number of nodes.
     pub nodes: usize,
-    /// Its table in the scene, as TOML.
+    /// Table of the method in the scene, as TOML.
     pub table: String,
 }
 
-/// The problem of a scene, and the tables of its methods.
+/// Hash of a scene's problem, and the tables of the scene's methods.
 pub(crate) struct Problem {
     pub(crate) problem: String,
-    /// By id.
+    /// Tables by method id.
     pub(crate) methods: BTreeMap<String, String>,
 }
 
 impl Problem {
-    /// `text` is that of a scene that has been read.
+    /// Parses `text`, the source of a scene that was read successfully.
     pub(crate) fn of(text: &str) -> Problem {
         let mut table: toml::Table = text.parse().expect("a scene is TOML");
         let mut methods = BTreeMap::new();
@@ -73,7 +75,7 @@ impl Problem {
                 methods.insert(id, toml::to_string(&table).expect("a table of TOML"));
             }
         }
-        // What is said of it, and what must hold of its results, is no part of a problem.
+        // Descriptions and checks are not part of the problem.
         for words in ["title", "source", "purpose", "published", "check"] {
             table.remove(words);
         }
@@ -81,17 +83,17 @@ impl Problem {
     }
 }
 
-/// The end of a load step.
+/// Results at the end of a load step.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct StoredStep {
-    /// Part of the loading, 0 to 1.
+    /// Fraction of the loading, 0 to 1.
     pub load: f64,
-    /// One per tool.
+    /// Results of each tool.
     pub tools: Vec<StoredTool>,
-    /// Displacement at the probes.
+    /// Displacement at the probes, m.
     pub probes: Vec<[f64; 3]>,
-    /// Largest distance of another solution's displacement at a probe.
+    /// Largest difference of another solution's displacement at a probe, m.
     pub probe_band: f64,
 }
 
@@ -99,26 +101,29 @@ pub struct StoredStep {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct StoredTool {
-    /// Way from its start.
+    /// Travel from the start, m.
     pub closure: f64,
-    /// Force along its way.
+    /// Force along the direction of travel, N.
     pub force: f64,
-    /// Smallest of all solutions.
+    /// Smallest force of all solutions, N.
     pub low: f64,
-    /// Largest of all solutions.
+    /// Largest force of all solutions, N.
     pub high: f64,
 }
 
-/// Part of the largest coordinate by which probes may differ.
+/// Tolerance of probe positions, relative to the largest coordinate.
 const SAME: f64 = 1e-7;
 
 impl Stored {
-    /// Ids of the methods whose solutions it is made of.
+    /// Ids of the methods whose solutions the reference contains.
     pub fn methods(&self) -> impl Iterator<Item = &str> {
         self.beside.iter().chain([&self.source]).map(|s| s.method.as_str())
     }
 
-    /// Says what differs if this is not of the same problem and points, or by methods that the scene has in another form.
+    /// Checks that the reference belongs to the problem of the scene `text` and to `points` (m).
+    ///
+    /// # Errors
+    /// Returns a message if the problem, the points, or the scene's tables of the stored methods differ.
     pub fn belongs(&self, text: &str, points: &[Point3]) -> Result<(), String> {
         let Source { method, nodes, .. } = &self.source;
         let problem = Problem::of(text);
@@ -136,7 +141,7 @@ impl Stored {
         if same { Ok(()) } else { Err(format!("{method} on {nodes} nodes is of other points")) }
     }
 
-    /// Widens the bands so far that they reach over those of another solution of the same scene at the same points.
+    /// Widens the bands to include those of another solution of the same scene at the same points.
     pub fn widen(&mut self, other: &Stored) {
         for (step, beside) in self.steps.iter_mut().zip(&other.steps) {
             for (tool, beside) in step.tools.iter_mut().zip(&beside.tools) {
@@ -153,11 +158,14 @@ impl Stored {
         let apart = norms::difference(&there, &here).rms_magnitude;
         self.displacement_band = self.displacement_band.max(apart + other.displacement_band);
         self.beside.extend(other.beside.iter().chain([&other.source]).cloned());
-        // Not by the order in which they were joined.
+        // The result must not depend on the order in which solutions are joined.
         self.beside.sort_by(|a, b| a.method.cmp(&b.method));
     }
 
-    /// Reads a file; says what is wrong with it.
+    /// Reads a file.
+    ///
+    /// # Errors
+    /// Returns a message with the path and the reason if the file cannot be read or parsed.
     pub fn read(path: &Path) -> Result<Stored, String> {
         Stored::parsed(path).map_err(|problem| format!("{}: {problem}", path.display()))
     }
@@ -170,7 +178,10 @@ impl Stored {
         Stored::parse(&text)
     }
 
-    /// Reads the text of a file; says what is wrong with it.
+    /// Parses the text of a file.
+    ///
+    /// # Errors
+    /// Returns a message if the text is no reference, or if the numbers of points and displacements differ.
     pub fn parse(text: &str) -> Result<Stored, String> {
         let stored: Stored = serde_json::from_str(text).map_err(|bad| format!("is no reference: {bad}"))?;
         let (points, values) = (stored.points.len(), stored.displacement.len());
@@ -181,13 +192,16 @@ impl Stored {
         }
     }
 
-    /// Reads the record that a scene compares with and holds it against the scene's probes.
+    /// Reads the stored reference of a scene.
+    ///
+    /// # Errors
+    /// Returns an error at `reference.record` if the file cannot be read or was made for other probes.
     pub fn load(scene: &Scene, path: &Path) -> Result<Stored, Failure> {
         let wrong = |problem: String, help: &str| {
             Failure::of_scene(scene, ErrorKind::Invalid, "reference.record", &problem, help)
         };
         let remake = "make it with tissuebench reference SCENE";
-        // The message has the file's name as the value of the key.
+        // The message contains the file's name as the value of the key.
         let stored = Stored::parsed(path).map_err(|problem| wrong(problem, remake))?;
         let probes = &scene.output.probes;
         let size = probes.iter().flatten().fold(0.0, |size: f64, x| size.max(x.abs()));
@@ -201,12 +215,12 @@ impl Stored {
         Ok(stored)
     }
 
-    /// The points whose displacement is given, m.
+    /// Points at which the displacement is given, mirrored to the modelled half, m.
     pub(crate) fn targets(&self, mirror: Mirror) -> Vec<Point3> {
         self.points.iter().map(|&x| mirror.place(&x.into())).collect()
     }
 
-    /// As a run's reference.
+    /// Converts the file to the reference of a run.
     pub(crate) fn reference(&self, mirror: Mirror) -> Reference {
         let vectors = |all: &[[f64; 3]]| -> Vec<Vector3> { all.iter().map(|&v| v.into()).collect() };
         let at_points = self.points.iter().zip(&self.displacement);
@@ -236,7 +250,7 @@ impl Stored {
         }
     }
 
-    /// How far the other solutions are off, relative, at the end.
+    /// Relative differences of the other solutions at the end.
     fn own_error(&self) -> OwnError {
         let mut own = OwnError::default();
         if self.beside.is_empty() {
@@ -259,7 +273,8 @@ impl Stored {
         own
     }
 
-    /// Its forces and their bands as rows of the long table; `case` has the name and purpose of the case and its Poisson's ratio.
+    /// Forces and their bands as rows of the long table. `case` provides the case's name, purpose and
+    /// Poisson's ratio.
     pub fn records(&self, case: &Record) -> Vec<Record> {
         let own = Record {
             method: "reference".into(),
@@ -293,7 +308,7 @@ impl Stored {
 mod tests {
     use super::*;
 
-    /// By one method, of one point, one probe and one tool: all lengths are `u`, the force is 10 `u`.
+    /// Solution with one point, one probe and one tool. All lengths are `u`, the force is 10 `u`.
     fn solution(method: &str, u: f64) -> Stored {
         let tool = StoredTool { closure: u, force: 10.0 * u, low: 10.0 * u, high: 10.0 * u };
         let probes = vec![[u, 0.0, 0.0]];
@@ -312,7 +327,7 @@ mod tests {
         }
     }
 
-    /// A band reaches as far as the farthest solution, and what that one had joined before.
+    /// A band includes the farthest solution and the bands that this solution already had.
     #[test]
     fn bands_reach_over_every_solution() {
         let mut fine = solution("fine", 2.0);
@@ -325,7 +340,7 @@ mod tests {
         let mut soft = solution("soft", 3.0);
         soft.widen(&solution("softest", 3.25));
         fine.widen(&soft);
-        // 1 to the soft one, and 0.25 from there.
+        // 1 to the soft solution, and 0.25 from there.
         assert_eq!(band(&fine), (15.0, 20.0, 32.5, 1.25, 1.25));
         assert_eq!(fine.methods().collect::<Vec<_>>(), ["soft", "softest", "stiff", "fine"]);
     }

@@ -1,13 +1,13 @@
-//! The own error of a reference that is a method: its distance to the same method on a coarser mesh, and of a
-//! method of first order also to elements of second order. A mesh from a file has no coarser one: a method of
-//! first order is compared with elements of second order on the same cells, one of second order with none.
+//! Own error of a reference method: its distance to the same method on a coarser mesh; for a first-order
+//! method also its distance to second-order elements. A mesh from a file has no coarser mesh: a first-order
+//! method is compared with second-order elements on the same cells, a second-order method with nothing.
 //!
-//! The distance to a mesh of twice the spacing is what is left where errors fall with the spacing
-//! (Richardson's extrapolation at first order): slower orders are those of methods that lock. A method that
-//! locks changes little from size to size. Elements of second order on as many nodes lock less, so that both
-//! distances together see it. It is an estimate, no bound: on 24 blocks each the true error of a reference of
-//! first order was 0.19 to 0.95 times the sum at a Poisson's ratio of 0.3, up to 2.3 times at 0.495 (5 above
-//! 1, all sheared), up to 2.6 at 0.4999 (10 above 1).
+//! The distance to a mesh of twice the spacing equals the remaining error if errors fall linearly with the
+//! spacing (Richardson extrapolation at first order). Methods that lock converge more slowly and change
+//! little from size to size. Second-order elements with as many nodes lock less, so that the two distances
+//! together reveal locking. The sum is an estimate, not a bound: on 24 blocks each, the true error of a
+//! first-order reference was 0.19 to 0.95 times the sum at a Poisson's ratio of 0.3, up to 2.3 times at 0.495
+//! (5 above 1, all sheared) and up to 2.6 times at 0.4999 (10 above 1).
 
 use cases::scene::{Cloud, Dilation, Element, Family, Fem, Method, Size};
 use catalogue::Dimension;
@@ -19,10 +19,11 @@ use crate::measure::{OwnError, Reference};
 use crate::outcome::{Counters, Metric};
 use crate::procedure::{Wanted, plan};
 
-/// Nodes of a mesh over those of one of twice the spacing.
+/// Ratio of the nodes of a mesh to those of a mesh of twice the spacing.
 const COARSER: usize = 8;
 
-/// The own error of the reference of a group, which is this method; and what it took.
+/// Estimates the own error of a group's reference, which was solved with `method`. Also returns the counters
+/// of the solutions that the estimate needs.
 pub(super) fn own_error(group: &Group, method: &Method, reference: &Reference) -> (OwnError, Counters) {
     let mut own = OwnError::default();
     let mut counters = Counters::default();
@@ -41,7 +42,7 @@ pub(super) fn own_error(group: &Group, method: &Method, reference: &Reference) -
     (own, counters)
 }
 
-/// Relative errors of a method against the reference, with its nodes.
+/// Number of nodes of a witness, and its relative errors against the reference.
 fn distances(
     group: &Group,
     witness: Method,
@@ -80,7 +81,7 @@ fn is_error(metric: &Metric) -> bool {
     against && error && metric.entry.dimension == Dimension::None
 }
 
-/// The methods that a reference of so many nodes is held against, or why there are none.
+/// Methods that a reference with this number of nodes is compared with, or the reason why there are none.
 fn witnesses(reference: &Method, nodes: usize) -> Result<Vec<Method>, String> {
     let size = fineness(reference);
     let second = is_first_order(&reference.family).then(|| match elements(&reference.family) {
@@ -95,7 +96,8 @@ fn witnesses(reference: &Method, nodes: usize) -> Result<Vec<Method>, String> {
     if let Size::File(file) = &size {
         let name = file.path.file_name().unwrap_or_default().to_string_lossy();
         return match second {
-            // The cells of the file with nodes on their edges: an error of first order is nearly all of the distance.
+            // Second-order elements on the file's cells: nearly all of the distance is the error of the
+            // first-order method.
             Some(element) if !has_nodes_alone(&reference.family) => Ok(vec![of_second(element, size)]),
             Some(_) => Err(format!("its nodes are of the file {name}, and no coarser ones are known")),
             None => Err(format!(
@@ -132,12 +134,12 @@ fn elements(family: &Family) -> Option<&Fem> {
     }
 }
 
-/// Whether its functions hold polynomials of first order, as far as is known.
+/// Whether the method's shape functions reproduce only linear polynomials, as far as is known.
 fn is_first_order(family: &Family) -> bool {
     elements(family).is_none_or(|fem| matches!(fem.element, Element::Tet4 | Element::Hex8))
 }
 
-/// How fine a method is.
+/// Size setting of a method.
 fn fineness(method: &Method) -> Size {
     let of_cloud = |cloud: &Cloud| match cloud {
         Cloud::Mesh { size, .. } => size.clone(),
@@ -154,7 +156,7 @@ fn fineness(method: &Method) -> Size {
     }
 }
 
-/// Twice as coarse as a size that gave so many nodes, or why there is no such size.
+/// Size of twice the spacing for a size that gave this number of nodes, or the reason why there is none.
 fn coarser(size: Size, nodes: usize) -> Result<Size, String> {
     match size {
         Size::Nodes(_) | Size::Level(1) => Ok(Size::Nodes(nodes.div_ceil(COARSER))),
@@ -170,7 +172,7 @@ fn coarser(size: Size, nodes: usize) -> Result<Size, String> {
 mod tests {
     use super::*;
 
-    /// Ids and sizes of what a method of a block is held against.
+    /// Ids and sizes of the witnesses of a method on a block.
     fn held_against(method: &str, nodes: usize) -> Result<Vec<(String, Size)>, String> {
         let text = format!(
             "title = \"A block\"\nbody = {{ shape = \"box\", size = [\"40 mm\", \"40 mm\", \"20 mm\"] }}\n\

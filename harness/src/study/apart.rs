@@ -1,5 +1,5 @@
-//! `--isolate`: each run of a study in a process of its own. The program starts itself with the hidden command `experiment`; what
-//! ends that process, or the time it may take, costs its run alone.
+//! `--isolate`: every run of a study in its own process. The program starts itself with the hidden command
+//! `experiment`. A crash or an exceeded time limit affects only that run.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitStatus, Stdio};
@@ -15,15 +15,15 @@ use crate::adapter;
 use crate::process::{Started, group, last_words};
 use crate::run::case_name;
 
-/// Times between two looks whether a process has ended.
+/// Shortest and longest time between two checks whether a process has ended.
 const SHORTEST_PAUSE: Duration = Duration::from_micros(200);
 const LONGEST_PAUSE: Duration = Duration::from_millis(50);
 
 /// How runs are kept apart from each other.
 #[derive(Args)]
 pub struct ApartArgs {
-    /// Run each experiment in a process of its own: a crash, an endless run or one that takes too much memory costs that one
-    /// alone. Its reference is solved there too
+    /// Run each experiment in a process of its own: a crash, an endless run or one that takes too much memory
+    /// costs that one alone. Its reference is solved there too
     #[arg(long)]
     pub isolate: bool,
     /// Seconds that a run may take, its reference included
@@ -66,16 +66,16 @@ fn seconds(text: &str) -> Result<Duration, String> {
     if limit.is_zero() { Err(fix.into()) } else { Ok(limit) }
 }
 
-/// Starts a process for each run.
+/// Runner that starts a process for each run.
 pub(super) struct Apart<'a> {
     args: &'a VerifyArgs,
     study: PathBuf,
     store: &'a Store,
 }
 
-/// How a process ended.
+/// End of a process.
 struct Ended {
-    /// `None` if it took too long.
+    /// Exit status; `None` if the process exceeded its time limit.
     status: Option<ExitStatus>,
     last_words: String,
 }
@@ -85,18 +85,18 @@ impl<'a> Apart<'a> {
         Apart { args, study: args.path(), store }
     }
 
-    /// Runs a task; its result, or the failure that the end of its process means.
+    /// Runs a task and returns its result, or the failure that corresponds to the end of its process.
     pub(super) fn run(&self, plan: &Plan, index: usize, key: &str) -> TaskResult {
         let task = &plan.tasks[index];
         let answer = self.store.answer(key);
         let _ = disk::remove(&answer);
-        // It may be killed, and leaves its temporary files then.
+        // A killed process leaves its temporary files behind, so it gets its own folder.
         let work = adapter::Folder::new().map_err(std::io::Error::other);
         let ended = work.and_then(|work| {
             let mut command = self.command(&task.runs, key, &answer)?;
             self.watch(command.env("TMPDIR", work.path()))
         });
-        // It is whole or not there.
+        // The answer file is either complete or absent.
         let result = disk::read_text(&answer, disk::Kind::RESULTS)
             .ok()
             .and_then(|text| serde_json::from_str(&text).ok());
@@ -128,7 +128,7 @@ impl<'a> Apart<'a> {
         Ok(command)
     }
 
-    /// Waits for a process as long as it may take, then ends all that it has started.
+    /// Waits for a process up to its time limit, then ends everything that the process has started.
     fn watch(&self, command: &mut Command) -> std::io::Result<Ended> {
         let mut started = Started::new(command)?;
         let stderr = started.child().stderr.take();
@@ -141,7 +141,8 @@ impl<'a> Apart<'a> {
             if self.args.apart.time_limit.is_some_and(|limit| began.elapsed() > limit) {
                 break false;
             }
-            // A tenth of what it took so far: no run is seen to end much later than it does.
+            // The pause is a tenth of the elapsed time, so that the end of a run is noticed without a
+            // relevant delay.
             std::thread::sleep((began.elapsed() / 10).clamp(SHORTEST_PAUSE, LONGEST_PAUSE));
         };
         let status = started.end()?;
@@ -167,9 +168,9 @@ impl<'a> Apart<'a> {
     }
 }
 
-/// The command `experiment`: runs the task and writes its result.
+/// Executes the command `experiment`: runs the task and writes its result.
 pub(crate) fn experiment(args: &ExperimentArgs) -> Result<(), Failure> {
-    // What the libraries keep for good is not the run's.
+    // Buffers that the libraries keep for good do not count towards the run's memory limit.
     algebra::reserve_workspaces();
     group::limit(args.parent, args.memory_limit).map_err(|bad| Failure::Run(bad.to_string()))?;
     let unreadable = |errors: Vec<cases::scene::SceneError>| {

@@ -1,4 +1,4 @@
-//! Which runs of a study are made, and where their results go.
+//! Arguments that select the runs of a study and the folder of their results.
 
 use std::path::{Path, PathBuf};
 
@@ -30,8 +30,8 @@ pub struct VerifyArgs {
     /// Keep stored results of runs whose scene, method and program have not changed
     #[arg(long)]
     pub resume: bool,
-    /// Work on the study together with other processes in the same folder, which give this too: each run is made once. Keeps
-    /// stored results as --resume does
+    /// Work on the study together with other processes in the same folder, which give this too: each run is
+    /// made once. Keeps stored results as --resume does
     #[arg(long)]
     pub join: bool,
     /// How runs are kept apart.
@@ -59,12 +59,12 @@ pub struct VerifyArgs {
 }
 
 impl VerifyArgs {
-    /// The study file.
+    /// Path of the study file.
     pub fn path(&self) -> PathBuf {
         self.study.clone().unwrap_or_else(|| "cases/studies/verify.toml".into())
     }
 
-    /// What is meant where nothing but the study is given.
+    /// Default arguments for a study.
     pub fn of(study: &Path) -> VerifyArgs {
         VerifyArgs {
             study: Some(study.into()),
@@ -85,7 +85,7 @@ impl VerifyArgs {
         }
     }
 
-    /// How much is said of its progress.
+    /// Verbosity of the progress reports.
     pub fn loudness(&self) -> Loudness {
         match (self.quiet, self.verbose) {
             (true, _) => Loudness::Quiet,
@@ -95,12 +95,12 @@ impl VerifyArgs {
     }
 }
 
-/// How much is said of a study's progress.
+/// Verbosity of a study's progress reports.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Loudness {
     /// Errors only.
     Quiet,
-    /// A bar, or a line now and then.
+    /// A progress bar, or a line every ten seconds.
     #[default]
     Plain,
     /// A line for each run.

@@ -3,8 +3,8 @@
 use catalogue::warning;
 use reports::{Busy, Machine, Record, RunSet, Seconds, Took, Warning};
 
-/// Adds a warning to results whose machine was busy: which seconds are compared instead, and how far those on
-/// the wall are off.
+/// Adds a warning to results from a busy machine. It names the clock by which runs are compared instead, and
+/// the deviation of the wall-clock times.
 pub fn warn_if_busy(set: &mut RunSet) {
     let machine = &set.provenance.machine;
     set.warnings.extend(Busy::of(&set.records, machine).map(|busy| row(&busy, machine)));
@@ -48,7 +48,7 @@ fn disturbed(busy: &Busy, run: &Record, took: &Took) -> String {
 mod tests {
     use super::*;
 
-    /// Results of one run with its seconds on the wall and of the processors, on a machine.
+    /// Results of one run with its wall-clock and CPU times (s) on a machine.
     fn results(wall: f64, cpu: f64, machine: Machine) -> RunSet {
         let record = |quantity: &str, value: f64| Record {
             run: "r".into(),

@@ -1,4 +1,4 @@
-//! What happens in a study, as it happens: one JSON object a line, for programs that watch.
+//! Events of a study as they happen, one JSON object per line, for programs that watch.
 
 use std::io::{self, Write};
 use std::path::Path;
@@ -8,33 +8,33 @@ use std::time::Instant;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-/// An event.
+/// Event of a study.
 #[derive(Serialize, JsonSchema)]
 #[serde(tag = "event", rename_all = "kebab-case")]
 pub(crate) enum Event<'a> {
     /// The study begins.
     Begin {
-        /// Version of the events.
+        /// Version of the event format.
         format: u32,
-        /// Runs to be made.
+        /// Number of runs to be made.
         runs: usize,
     },
     /// A run begins.
     Start {
-        /// The case.
+        /// Name of the case.
         case: &'a str,
-        /// The method's id.
+        /// Id of the method.
         method: &'a str,
-        /// Place of the run in the study, from 0: what distinguishes runs of one method.
+        /// Index of the run in the study, from 0. It distinguishes runs of one method.
         run: usize,
     },
-    /// A run has ended with numbers, taken from an earlier one where `stored`.
+    /// A run has ended with results, which come from an earlier run if `stored` is true.
     Done { case: &'a str, method: &'a str, run: usize, seconds: f64, stored: bool },
-    /// A run has ended without numbers, or early.
+    /// A run has ended early or without results.
     Failed { case: &'a str, method: &'a str, run: usize, seconds: f64, reason: &'a str },
     /// The study has ended.
     End {
-        /// Counts of checks.
+        /// Number of passed checks.
         passed: usize,
         failed: usize,
         known: usize,
@@ -44,7 +44,7 @@ pub(crate) enum Event<'a> {
     },
 }
 
-/// A line of the file of events.
+/// Line of the event file.
 #[derive(Serialize, JsonSchema)]
 pub(crate) struct Line<'a> {
     /// Seconds since the study began.
@@ -53,19 +53,19 @@ pub(crate) struct Line<'a> {
     event: &'a Event<'a>,
 }
 
-/// Version of events. A change that a reader of them would notice raises it.
+/// Version of the event format, raised by every change that a reader of events would notice.
 const FORMAT: u32 = 1;
 
-/// Where events go.
+/// Output of events.
 pub struct Events {
     out: Mutex<Box<dyn Write + Send>>,
-    /// Why a line could not be written.
+    /// First error of writing a line.
     lost: Mutex<Option<io::Error>>,
     begin: Instant,
 }
 
 impl Events {
-    /// To a file, `-` being stdout.
+    /// Writes events to a file; `-` is stdout.
     pub(crate) fn to(path: &Path) -> io::Result<Events> {
         let out: Box<dyn Write + Send> = if path == Path::new("-") {
             Box::new(crate::print::Stdout)
@@ -80,18 +80,18 @@ impl Events {
         self.send(&Event::Begin { format: FORMAT, runs });
     }
 
-    /// To whatever takes lines.
+    /// Writes events to any writer.
     pub fn new(out: Box<dyn Write + Send>) -> Events {
         Events { out: Mutex::new(out), lost: Mutex::default(), begin: Instant::now() }
     }
 
-    /// Why the events are not whole; a reader that has gone away has what it wants.
+    /// Error that made the events incomplete, if any. A reader that closed the pipe is not an error.
     pub(crate) fn lost(self) -> Option<io::Error> {
         let lost = self.lost.into_inner().unwrap_or_else(PoisonError::into_inner);
         lost.filter(|bad| bad.kind() != io::ErrorKind::BrokenPipe)
     }
 
-    /// Writes one line at once. A reader that has gone away, or a full disk, ends no study.
+    /// Writes and flushes one line. Neither a closed pipe nor a full disk ends the study.
     pub(crate) fn send(&self, event: &Event) {
         let at = (self.begin.elapsed().as_secs_f64() * 1e3).round() / 1e3;
         let Ok(line) = serde_json::to_string(&Line { at, event }) else { return };

@@ -1,4 +1,5 @@
-//! The runs of a study, one after the other or by several processes together; each is stored as soon as it is finished.
+//! Execution of a study's runs, in sequence or by several processes together. Every result is stored as soon
+//! as its run is finished.
 
 use std::any::Any;
 use std::borrow::Cow;
@@ -20,29 +21,29 @@ use crate::Failure;
 use crate::outcome::Counters;
 use crate::run::{Group, RunOptions, case_name};
 
-/// Time between two looks for the result of another process.
+/// Time between two checks for the results of other processes.
 const LOOK: Duration = Duration::from_millis(20);
 
-/// A study that is being run.
+/// State of a running study.
 pub(super) struct Work<'a> {
     pub(super) plan: &'a Plan,
     pub(super) args: &'a VerifyArgs,
     pub(super) store: &'a Store,
-    /// Runs each task in a process of its own, where asked for.
+    /// Runner that starts a process for each task, if requested.
     pub(super) apart: Option<Apart<'a>>,
     pub(super) progress: Progress<'a>,
     pub(super) done: Mutex<BTreeMap<usize, TaskResult>>,
-    /// Results that were there already, or that other processes made.
+    /// Number of results that were already stored or that other processes made.
     pub(super) stored: AtomicUsize,
 }
 
-/// Whose turn a task is.
+/// Owner of a task.
 enum Turn {
-    /// It has a result.
+    /// The task has a stored result.
     Stored(Box<TaskResult>),
-    /// This process's; nobody else may run it until the file is closed.
+    /// The task belongs to this process. No other process may run it until the file is closed.
     Ours(Option<File>),
-    /// Another process is at it.
+    /// Another process runs the task.
     Theirs,
 }
 
@@ -56,11 +57,12 @@ impl Work<'_> {
             for _ in 0..self.args.jobs {
                 scope.spawn(|| {
                     while let Some(members) = groups.get(next.fetch_add(1, Ordering::Relaxed)) {
-                        // Another process is at this scene: its reference is made once, if there are others to do.
+                        // A scene on which another process works is left for later, so that its reference is
+                        // solved only once.
                         let rest = self.group(members, false);
                         left.lock().expect("no worker panicked").push(rest);
                     }
-                    // The lock is not held while they are run.
+                    // The lock must not be held during the runs.
                     let pop = || left.lock().expect("no worker panicked").pop();
                     while let Some(members) = pop() {
                         let rest = self.group(&members, true);
@@ -75,10 +77,11 @@ impl Work<'_> {
         self.progress.finish();
     }
 
-    /// Runs tasks that share a reference; returns those that others are at. Unless it is to be `thorough`, it leaves all after
-    /// the first of these.
+    /// Runs tasks that share a reference, and returns the tasks that other processes are running. Unless
+    /// `thorough` is true, it stops at the first of these.
     fn group(&self, members: &[usize], thorough: bool) -> Vec<usize> {
-        // Made when first needed: with all members stored, not even the reference is run.
+        // The group is created when it is first needed: if all members are stored, not even the reference is
+        // solved.
         let mut group: Option<Result<Group, Failure>> = None;
         let mut left = Vec::new();
         for (at, &index) in members.iter().enumerate() {
@@ -102,7 +105,7 @@ impl Work<'_> {
                         Some(apart) => apart.run(self.plan, index, &key),
                         None => self.plan.run(index, self.args, &mut group),
                     };
-                    // A run that was ended half-way has no result.
+                    // An interrupted run has no result.
                     if self.plan.is_stopped() {
                         return Vec::new();
                     }
@@ -136,7 +139,7 @@ impl Work<'_> {
             return Turn::Ours(None);
         }
         match self.store.claim(key) {
-            // It may have been finished since.
+            // Another process may have finished the task in the meantime.
             Ok(Some(claim)) => stored().unwrap_or(Turn::Ours(Some(claim))),
             Ok(None) => Turn::Theirs,
             Err(bad) => {
@@ -160,7 +163,8 @@ impl Work<'_> {
 }
 
 impl Plan {
-    /// Indices of tasks that share scene and Poisson's ratio, in order of their first.
+    /// Indices of the tasks, grouped by scene and Poisson's ratio, in the order of the first task of each
+    /// group.
     fn groups(&self) -> Vec<Vec<usize>> {
         let mut groups: Vec<Vec<usize>> = Vec::new();
         let mut known = BTreeMap::new();
@@ -175,7 +179,8 @@ impl Plan {
         groups
     }
 
-    /// What a task's result is stored under: a hash of all that it depends on but who runs it.
+    /// Key under which a task's result is stored: a hash of everything that the result depends on except the
+    /// program and the machine.
     pub(super) fn key(&self, index: usize, args: &VerifyArgs) -> String {
         let task = &self.tasks[index];
         let (_, text, scene) = &self.scenes[task.scene];
@@ -192,13 +197,13 @@ impl Plan {
 
     fn options(&self, task: &Task, args: &VerifyArgs) -> RunOptions {
         let split = self.tables(task).find_map(|run| run.split);
-        // Clouds of many seeds are of one kind: one loop is enough for them all.
+        // Clouds that differ only in their seed do not need a loop each.
         let played = !args.quick || self.tables(task).any(|run| run.quick && run.loops);
         let frames = played && !self.is_one_of_many(task);
         RunOptions { picture: task.picture, states: false, frames, split }
     }
 
-    /// Runs a task with the reference of its group. A panic is the failure of this run alone.
+    /// Runs a task with the reference of its group. A panic fails only this run.
     pub(super) fn run<'a>(
         &'a self,
         index: usize,
@@ -226,7 +231,7 @@ impl Plan {
         result
     }
 
-    /// The result of one method; where its reference ended early that is its failure.
+    /// Result of one method. If its reference ended early, that is the result's failure.
     fn compared(&self, task: &Task, group: &Group, options: RunOptions) -> TaskResult {
         let (case, method) = (case_name(&self.scenes[task.scene].2), &task.method);
         let run = || group.run(&group.scenario(task.method.clone(), task.level), options);
@@ -245,7 +250,7 @@ impl Plan {
     }
 }
 
-/// What a function returns, or the failure of one that panics.
+/// Returns the result of a function, or a failure if the function panics.
 fn caught<T>(function: impl FnOnce() -> T) -> Result<T, Failure> {
     let message = |panic: Box<dyn Any + Send>| {
         let text = panic.downcast_ref::<&str>().map(ToString::to_string);

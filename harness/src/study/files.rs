@@ -1,4 +1,4 @@
-//! The files that the runs of a scene depend on.
+//! Files that the runs of a scene depend on.
 
 use std::path::{Path, PathBuf};
 
@@ -8,8 +8,8 @@ use super::Plan;
 use super::tasks::Task;
 use crate::adapter::{self, Found};
 
-/// Files that a scene names, and those of the adapters of one of its methods and of its reference: a changed mesh or program is a
-/// changed run.
+/// Files that a scene names, and the files of the external solvers of a method and of the scene's reference.
+/// A change of a mesh or of a solver makes a stored run invalid.
 pub(super) fn files(scene: &Scene, method: &scene::Method) -> Vec<PathBuf> {
     let mut found: Vec<PathBuf> = scene.methods.iter().flat_map(scene::Method::files).collect();
     if let scene::Body::File(file) = &scene.body {
@@ -41,26 +41,27 @@ pub(super) fn files(scene: &Scene, method: &scene::Method) -> Vec<PathBuf> {
     found
 }
 
-/// Notes the files that the methods of a scene read: none of them is an output.
+/// Registers all files that the runs read as inputs, so that no output overwrites them.
 pub(crate) fn note_inputs(scene: &Scene) {
     scene.methods.iter().flat_map(|method| files(scene, method)).for_each(|file| disk::input(&file));
 }
 
 impl Plan {
-    /// Notes the files that the runs will read: none of them is an output.
+    /// Registers all files that the runs read as inputs, so that no output overwrites them.
     pub(crate) fn note_inputs(&self) {
         let of = |task: &Task| files(&self.scenes[task.scene].2, &task.method);
         self.tasks.iter().flat_map(of).for_each(|file| disk::input(&file));
     }
 }
 
-/// What the solvers of a method and of its reference say of their versions: another one is another run.
+/// Versions of the external solvers of a method and of the scene's reference. Another version makes a stored
+/// run invalid.
 pub(super) fn versions(scene: &Scene, method: &scene::Method) -> Vec<Option<String>> {
     let version = |adapter: &Found| adapter::ready(adapter).ok().and_then(|()| adapter::version(adapter));
     adapters(scene, method).iter().map(version).collect()
 }
 
-/// The adapters of a method and of its reference. The files of those that this program brings with it are part of the program.
+/// Adapters of a method and of the scene's reference. Files of built-in adapters are part of the program.
 fn adapters(scene: &Scene, method: &scene::Method) -> Vec<Found> {
     let reference = match &scene.reference {
         Some(scene::Reference::Method { id, .. }) => scene.method(id),

@@ -1,4 +1,4 @@
-//! Which runs of a study are made: by case, method and tag.
+//! Selection of a study's runs by case, method and tag.
 
 use cases::scene::{self, Scene};
 use clap::Args;
@@ -15,8 +15,8 @@ pub struct Filters {
     /// Only these methods; `*` stands for any text (may be given several times)
     #[arg(long = "method", value_name = "ID")]
     pub methods: Vec<String>,
-    /// Only runs with one of these tags: a tag of the study, what the scene is for (patch, smooth, ...), its procedure, the
-    /// method's family, or quick (may be given several times)
+    /// Only runs with one of these tags: a tag of the study, what the scene is for (patch, smooth, ...), its
+    /// procedure, the method's family, or quick (may be given several times)
     #[arg(long = "tag", value_name = "TAG")]
     pub tags: Vec<String>,
     /// No runs whose case or method contains this text or that have this tag (may be given several times)
@@ -25,7 +25,7 @@ pub struct Filters {
 }
 
 impl Filters {
-    /// Whether a run is chosen.
+    /// Whether a run is selected.
     pub fn fits(&self, case: &str, method: &str, tags: &[&str]) -> bool {
         let any = |wanted: &[String], name: &str| wanted.is_empty() || wanted.iter().any(|w| like(w, name));
         let tagged = |wanted: &String| tags.contains(&wanted.as_str());
@@ -36,13 +36,13 @@ impl Filters {
             && !self.not.iter().any(|text| refused(text) || tagged(text))
     }
 
-    /// Whether nothing is left out.
+    /// Whether no filter is set.
     pub fn is_empty(&self) -> bool {
         [&self.cases, &self.methods, &self.tags, &self.not].into_iter().all(Vec::is_empty)
     }
 }
 
-/// What a run can be chosen by, beside its names.
+/// Tags by which a run can be selected, in addition to its case and method.
 pub(super) fn tags<'a>(task: &Task, runs: &'a [scene::Run], scene: &'a Scene) -> Vec<&'a str> {
     let own = task.runs.iter().map(|&run| &runs[run]);
     let named = own.clone().flat_map(|run| run.tags.iter().map(String::as_str));
@@ -51,7 +51,7 @@ pub(super) fn tags<'a>(task: &Task, runs: &'a [scene::Run], scene: &'a Scene) ->
     named.chain(quick).chain(of_scene).collect()
 }
 
-/// Whether a name is as the pattern has it, in which `*` stands for any text.
+/// Whether a name matches the pattern, in which `*` stands for any text.
 pub(crate) fn like(pattern: &str, name: &str) -> bool {
     let Some((first, rest)) = pattern.split_once('*') else { return pattern == name };
     let Some(mut left) = name.strip_prefix(first) else { return false };

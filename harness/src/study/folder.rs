@@ -1,5 +1,5 @@
-//! The folder that results go to: those of one study or scene, which another one does not replace, and of one process at a time
-//! unless all of them work on it together.
+//! Output folder of a study or scene. Results of another study or scene do not replace those in the folder.
+//! Only one process uses the folder at a time, unless all processes join the same study.
 
 use std::collections::BTreeSet;
 use std::fs::{File, TryLockError};
@@ -9,35 +9,37 @@ use std::time::{Duration, Instant};
 
 use crate::Failure;
 
-/// Locked by whoever works on a folder, with the numbers of the processes in it. The system takes the lock of one that dies.
+/// Lock file, which contains the ids of the processes in the folder. The system releases the lock of a
+/// process that dies.
 const LOCK: &str = ".lock";
-/// How long another process takes at most to look through a folder before others join it.
+/// Longest time for which the first process inspects a folder before others may join.
 const ENTRY: Duration = Duration::from_secs(10);
 
-/// A folder that this process has taken.
+/// Output folder that this process has locked.
 pub(crate) struct Folder {
     path: PathBuf,
-    /// Held as long as the file is open.
+    /// Lock, held as long as the file is open.
     lock: File,
-    /// Whether its results were whole when it was taken.
+    /// Whether the results in the folder were complete when the folder was locked.
     whole: bool,
 }
 
-/// What the results in a folder are called: the name of the study's or scene's file.
+/// Name of the results in a folder: the file name of the study or scene.
 pub(crate) fn source(file: &Path) -> String {
     file.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default()
 }
 
-/// Makes the folder before anything is solved, so that no finished run loses its results, and locks it.
+/// Creates and locks the folder before anything is solved, so that no finished run loses its results.
 ///
 /// # Errors
-/// A file of that name, a folder that can't be written or is in use, or one with the results of another scene or study.
+/// Returns an error if `out` is a file, if the folder cannot be written or is in use, and if it holds the
+/// results of another scene or study.
 pub(crate) fn take(file: &Path, out: &Path) -> Result<Folder, Failure> {
     let mut lock = open(file, out)?;
     match lock.try_lock() {
         Ok(()) => {}
         Err(TryLockError::WouldBlock) => return Err(in_use(out, &mut lock)),
-        // A file system without locks: as before there were any.
+        // The file system has no locks: the user has to keep other processes out.
         Err(TryLockError::Error(_)) => {
             eprintln!("{}: can't be locked; see that no other process uses it", out.display())
         }
@@ -45,7 +47,8 @@ pub(crate) fn take(file: &Path, out: &Path) -> Result<Folder, Failure> {
     enter(out, lock, true)
 }
 
-/// The same for processes that work on a folder together. The first of them calls `prepare` while it is alone.
+/// Same as [`take`] for processes that work on a folder together. The first process calls `prepare` while it
+/// is alone.
 pub(crate) fn join(file: &Path, out: &Path, prepare: impl FnOnce()) -> Result<Folder, Failure> {
     let mut lock = open(file, out)?;
     let first = lock.try_lock().is_ok();
@@ -82,7 +85,7 @@ fn open(file: &Path, out: &Path) -> Result<File, Failure> {
     opened().map_err(|bad| unwritable(out, &bad))
 }
 
-/// Signs in; shows by it that there is space for a few bytes.
+/// Adds the process id to the lock file, which also shows that the disk has space for a few bytes.
 fn enter(out: &Path, mut lock: File, first: bool) -> Result<Folder, Failure> {
     let mut sign = || {
         if first {
@@ -106,7 +109,8 @@ fn in_use(out: &Path, lock: &mut File) -> Failure {
     ))
 }
 
-/// Without space or rights nothing can be run; another name is not what is wrong.
+/// Error of a folder that cannot be written. Missing space or permissions stop the run; any other cause is
+/// invalid input.
 fn unwritable(out: &Path, bad: &std::io::Error) -> Failure {
     let problem = format!("--out {}: {bad}; give a folder that can be written", out.display());
     match bad.kind() {
@@ -118,22 +122,23 @@ fn unwritable(out: &Path, bad: &std::io::Error) -> Failure {
 }
 
 impl Folder {
-    /// Marks the results as incomplete until they are written; not while another process writes them, which it reads again for its
-    /// report.
+    /// Marks the results as incomplete until they are written. It waits while another process writes its
+    /// results, which that process reads again for its report.
     pub(crate) fn begin(&self, file: &Path) -> Result<(), Failure> {
         let _lock = self.writing();
         reports::begin(&self.path, &source(file)).map_err(|bad| Failure::Run(bad.to_string()))
     }
 
-    /// Nothing was run: what is there is as whole as it was.
+    /// Restores the mark of complete results if nothing was run.
     pub(crate) fn leave(self) {
         if self.whole {
             let _ = reports::end(&self.path);
         }
     }
 
-    /// Locks out the others that work on it, which may write their results at the same time. Their results are the same: whether
-    /// they have written them.
+    /// Locks out other processes of the same study, which may write their results at the same time. All
+    /// processes write the same results. The second value says whether another process has already written
+    /// them.
     pub(crate) fn writing(&self) -> (Option<File>, bool) {
         let file = disk::create_lock(&self.path.join(".writing")).ok();
         if let Some(file) = &file {
@@ -142,7 +147,7 @@ impl Folder {
         (file, !reports::is_incomplete(&self.path))
     }
 
-    /// Calls `clean` if no other process is left in the folder.
+    /// Releases the folder. Calls `clean` if no other process is left in it.
     pub(crate) fn close(self, clean: impl FnOnce()) {
         if self.lock.unlock().is_ok() && self.lock.try_lock().is_ok() {
             let _ = disk::remove(&self.path.join(".writing"));
@@ -151,7 +156,7 @@ impl Folder {
     }
 }
 
-/// Refuses a file that can't be written where it is to go, as [`take`] does for folders.
+/// Refuses an output file that cannot be written, as [`take`] does for folders.
 pub(crate) fn ready_file(out: &Path) -> Result<(), String> {
     if out.is_dir() {
         return Err(format!("--out {}: is a folder; give a file", out.display()));
@@ -160,7 +165,7 @@ pub(crate) fn ready_file(out: &Path) -> Result<(), String> {
         .map_err(|bad| format!("--out {}: {bad}; give a file that can be written", out.display()))
 }
 
-/// What the results in a folder are of, all of which a new run replaces; `None` where there are none.
+/// Description of the results in a folder, which a new run replaces; `None` if there are none.
 pub(crate) fn replaced(out: &Path) -> Option<String> {
     let held = reports::read_run(out).ok()?;
     let methods: BTreeSet<_> = held.plans.iter().map(|plan| (&plan.case, &plan.method)).collect();
@@ -173,7 +178,7 @@ pub(crate) fn replaced(out: &Path) -> Option<String> {
     }
 }
 
-/// Refuses a folder with the results of another file.
+/// Refuses a folder that holds the results of another file.
 fn free_for(file: &Path, out: &Path) -> Result<(), String> {
     let (here, wanted) = (reports::source_of(out), source(file));
     match here {

@@ -1,5 +1,5 @@
-//! Expected times of a study's runs: the stored time if there is one, otherwise an estimate that is scaled by
-//! the stored ones.
+//! Expected times of a study's runs: the stored time if there is one, otherwise an estimate scaled by the
+//! stored times.
 
 use std::collections::BTreeMap;
 
@@ -7,20 +7,19 @@ use super::tasks::Task;
 use super::{Plan, QUICK, REPEATS, VerifyArgs, store};
 use crate::scenario::{estimate, of_reference};
 
-/// Seconds of the tasks of a plan, all repeats included.
+/// Expected times of the tasks of a plan, all repeats included.
 pub(super) struct Foreseen {
-    /// By task.
+    /// Times by task, s.
     seconds: Vec<f64>,
-    /// Whether they are stored.
+    /// Whether each task's time is a stored measurement.
     known: Vec<bool>,
-    /// Seconds that were measured over those estimated, of the tasks of a scene that are stored; and of all
-    /// of them.
+    /// Median ratios of measured to estimated time, by scene and over all scenes.
     of_scene: BTreeMap<usize, f64>,
     of_all: f64,
 }
 
 impl Plan {
-    /// Expected seconds of the tasks, from the times stored in the folder `--times`.
+    /// Expected times of the tasks, from the times stored in the folder `--times`.
     pub(super) fn foreseen(&self, args: &VerifyArgs) -> Foreseen {
         let estimated: Vec<f64> = self.tasks.iter().map(|task| self.estimated(task, args)).collect();
         let stored = args
@@ -48,7 +47,7 @@ impl Plan {
         foreseen
     }
 
-    /// An estimate of what a task takes with its repeats.
+    /// Estimated time of a task with its repeats, s.
     fn estimated(&self, task: &Task, args: &VerifyArgs) -> f64 {
         let repeats = if args.quick { QUICK } else { REPEATS };
         let once = estimate(&self.scenes[task.scene].2, &task.method.family).seconds;
@@ -56,34 +55,35 @@ impl Plan {
         once * (1.0 + repeats.seconds / once).min(repeats.most as f64)
     }
 
-    /// Seconds that the reference of a scene takes with what it is held against, where it is solved.
+    /// Expected time to solve the reference of a scene and to estimate its own error, s; 0 if the reference
+    /// is not solved.
     pub(super) fn reference_seconds(&self, scene: usize, foreseen: &Foreseen) -> f64 {
         let once = of_reference(&self.scenes[scene].2).map_or(0.0, |reference| reference.seconds);
         WITH_WITNESS * once * foreseen.factor(scene)
     }
 }
 
-/// A reference with the same method on a coarser mesh over the reference alone.
+/// Cost ratio of a reference with its coarser mesh to the reference alone.
 const WITH_WITNESS: f64 = 1.125;
 
 impl Foreseen {
-    /// Seconds of a task.
+    /// Expected time of a task, s.
     pub(super) fn of(&self, task: usize) -> f64 {
         self.seconds[task]
     }
 
-    /// Whether a task took its seconds before.
+    /// Whether a task's time is a stored measurement.
     pub(super) fn is_stored(&self, task: usize) -> bool {
         self.known[task]
     }
 
-    /// Factor on the estimates of a scene.
+    /// Ratio of measured to estimated time of a scene.
     pub(super) fn factor(&self, scene: usize) -> f64 {
         self.of_scene.get(&scene).copied().unwrap_or(self.of_all)
     }
 }
 
-/// 1 of no numbers.
+/// Median; 1 for an empty list.
 fn median(mut numbers: Vec<f64>) -> f64 {
     numbers.sort_by(f64::total_cmp);
     match numbers.len() {

@@ -1,4 +1,4 @@
-//! The runs of a study by name, before they are made.
+//! List of a study's runs before they are made.
 
 use std::collections::BTreeSet;
 
@@ -9,26 +9,26 @@ use super::{Plan, VerifyArgs};
 use crate::run::case_name;
 use crate::scenario::{Estimate, estimate};
 
-/// A run that would be made.
+/// Planned run.
 pub struct Planned {
-    /// Its case.
+    /// Name of the case.
     pub case: String,
-    /// The method, with what the study changes of it.
+    /// Method id with the settings that the study varies.
     pub name: String,
     /// Expected cost with all of its repeats.
     pub(crate) takes: Estimate,
-    /// Whether its seconds are those that it took before.
+    /// Whether the time is a stored measurement.
     pub(crate) stored: bool,
 }
 
 impl Plan {
-    /// The runs in their order.
+    /// Planned runs in the order of the study.
     pub fn planned(&self, args: &VerifyArgs) -> Vec<Planned> {
         let foreseen = self.foreseen(args);
         let mut referenced = BTreeSet::new();
         let each = self.tasks.iter().enumerate().map(|(index, task)| {
             let mut planned = self.one(task, foreseen.of(index), foreseen.is_stored(index));
-            // Its reference is solved before the first run of a scene.
+            // The reference is solved before the first run of a scene.
             if referenced.insert((task.scene, task.poisson.map(f64::to_bits))) {
                 planned.takes.seconds += self.reference_seconds(task.scene, &foreseen);
             }
@@ -50,7 +50,7 @@ impl Plan {
     }
 }
 
-/// The method's id with what the tables vary.
+/// Method id with the settings that the run tables vary.
 fn name<'a>(task: &Task, tables: impl Iterator<Item = &'a scene::Run>) -> String {
     let mut name = task.method.id.clone();
     if task.level > 0 {

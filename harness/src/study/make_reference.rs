@@ -1,4 +1,4 @@
-//! Solves a scene by every method that a reference is made of, and stores what they agree on.
+//! Creation of stored references: a scene is solved by several methods, whose differences become the bands.
 
 use cases::scene::Scene;
 use geometry::Point3;
@@ -9,15 +9,19 @@ use crate::run::mirror::Mirror;
 use crate::run::stored::{Problem, Source, Stored, StoredStep, StoredTool};
 use crate::run::{Group, case_name};
 
-/// A line for those who wait an hour for the end, and all that is left where there is none.
+/// Prints the state of a load step. A solution may take an hour, and the lines remain if it does not finish.
 fn waiting(step: &LoadStep) {
     let force = |tool: &ToolStep| format!(", {:.3} mm {:.5} N", 1e3 * tool.closure, tool.pushed);
     let tools: String = step.tools.iter().map(force).collect();
     eprintln!("{:6.2} % of the load in {} iterations{tools}", 100.0 * step.load, step.iterations);
 }
 
-/// Runs the named methods of the scene, or all of them. The last one's values are stored, all of them span the bands.
-/// `points` below z = 0 are evaluated at their mirror images if the scene has only the half above.
+/// Runs the methods named in `only`, or all methods of the scene if `only` is empty. The values of the last
+/// method are stored, and all methods span the bands. Points (m) below z = 0 are evaluated at their mirror
+/// images if the scene models only the half above.
+///
+/// # Errors
+/// Returns the failure of any method, and an error if no method is left.
 pub fn make(scene: &Scene, text: &str, points: &[Point3], only: &[String]) -> Result<Stored, Failure> {
     let mut all = Vec::new();
     for method in scene.methods.iter().filter(|m| only.is_empty() || only.contains(&m.id)) {
@@ -33,7 +37,7 @@ pub fn make(scene: &Scene, text: &str, points: &[Point3], only: &[String]) -> Re
     Ok(stored)
 }
 
-/// The solution by one method, without bands.
+/// Solves the scene by one method, without bands.
 fn by(scene: &Scene, text: &str, points: &[Point3], method: &str) -> Result<Stored, Failure> {
     let mirror = Mirror::of(&scene.body);
     let images = points.iter().map(|x| mirror.place(x)).collect();

@@ -1,4 +1,4 @@
-//! The shares of a study, each run into a folder of its own, joined to the results of one run.
+//! Merge of the shares of a study, each run into its own folder, into the results of the whole study.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -14,7 +14,7 @@ use crate::Failure;
 use crate::outcome::provenance;
 use crate::run::case_name;
 
-/// Says in a folder of results what study they are a share of.
+/// File in a folder of results that records the study and the selection of its runs.
 const NOTE: &str = "study.json";
 
 /// Arguments of `merge`.
@@ -30,7 +30,7 @@ pub struct MergeArgs {
     pub study: Option<PathBuf>,
 }
 
-/// What selects the runs of a study, but for the share.
+/// Selection of a study's runs, without the share.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 struct Note {
     study: PathBuf,
@@ -40,22 +40,22 @@ struct Note {
     filters: Filters,
 }
 
-/// Why shares can't be joined.
+/// Reason why shares cannot be merged.
 pub(crate) enum Unmerged {
     Scenes(Vec<SceneError>),
     Other(Failure),
 }
 
-/// The results of the shares together.
+/// Merged results of the shares.
 pub(crate) struct Merged {
     pub(crate) finished: Finished,
-    /// Runs that no share has.
+    /// Labels of the runs that no share has.
     pub(crate) missing: Vec<String>,
-    /// Kinds of machines that they were made on.
+    /// Number of different machines on which the results were made.
     pub(crate) machines: usize,
 }
 
-/// Notes in a folder of results what study they are of.
+/// Records in a folder of results which study the results belong to.
 pub(crate) fn note(args: &VerifyArgs, study: &Path) -> Result<(), Failure> {
     let study = study.canonicalize().unwrap_or_else(|_| study.into());
     let note = Note { study, quick: args.quick, filter: args.filter.clone(), filters: args.filters.clone() };
@@ -80,7 +80,7 @@ fn is_same(one: &Path, other: &Path) -> bool {
     disk::Identity::of(one).is_some_and(|one| disk::Identity::of(other) == Some(one))
 }
 
-/// The study that the folders are shares of, with its runs.
+/// Reads the study of the shares, with its runs and arguments.
 pub(crate) fn plan(args: &MergeArgs) -> Result<(PathBuf, Plan, VerifyArgs), Unmerged> {
     let other = Unmerged::Other;
     if let Some(share) = args.shares.iter().find(|share| is_same(share, &args.out)) {
@@ -111,7 +111,7 @@ pub(crate) fn plan(args: &MergeArgs) -> Result<(PathBuf, Plan, VerifyArgs), Unme
 }
 
 impl Plan {
-    /// Takes every result from the first share that has it, and keeps a copy in the folder of the whole.
+    /// Takes every result from the first share that has it, and copies it to the folder of the whole study.
     pub(crate) fn merge(&self, args: &VerifyArgs, shares: &[PathBuf]) -> Result<Merged, Failure> {
         let unwritten = |bad: reports::ReportError| Failure::Run(bad.to_string());
         let mut found = Share::default();

@@ -1,4 +1,4 @@
-//! A study: many scenes and methods, run in a fixed order, checked, written out.
+//! A study: many scenes and methods, run in a fixed order, checked and written to files.
 
 pub(crate) mod apart;
 mod args;
@@ -58,49 +58,53 @@ pub use merge::MergeArgs;
 pub use summary::RunSummary;
 pub use task::{failed, stalled};
 
-/// Repeats of the timed part in a study: medians of five where a run is short, one where it is long.
+/// Repeats of the timed part in a study: the median of five passes for short runs, a single pass for long
+/// runs.
 const REPEATS: Repeats = Repeats { most: 5, seconds: 0.4 };
-/// Repeats in the quick tier, whose purpose is the checks: medians of three for runs below 20 ms.
+/// Repeats in the quick tier, whose purpose is the checks: the median of three passes for runs below 20 ms.
 const QUICK: Repeats = Repeats { most: 3, seconds: 0.05 };
 
-/// A study with its scenes read.
+/// Study with its parsed scenes.
 pub struct Plan {
     study: Study,
     scenes: Vec<(PathBuf, String, Scene)>,
-    /// Where among these the scenes as they are in their files are, by path.
+    /// Indices of the unmodified scenes, by path.
     as_they_are: BTreeMap<PathBuf, usize>,
-    /// The files of the cases by name.
+    /// Files of the cases, by case name.
     cases: BTreeMap<String, PathBuf>,
     tasks: Vec<Task>,
-    /// Values of axes at which there is no scene.
+    /// Axis values at which the scene is refused.
     refused: Vec<RefusedScene>,
-    /// Who waits for the runs.
+    /// Watch of the runs.
     watch: Option<Arc<Watch>>,
 }
 
-/// What a study came to.
+/// Results of a study.
 pub struct Finished {
-    /// Everything to be written.
+    /// Results to be written.
     pub set: RunSet,
     /// Exit codes of runs that failed.
     pub failed: Vec<u8>,
-    /// What became of each run, then of the checks of several runs together.
+    /// Summaries of the runs, followed by those of the checks of several runs together.
     pub runs: Vec<RunSummary>,
-    /// Runs done.
+    /// Number of finished runs.
     pub ran: usize,
-    /// How many of them were stored, by an earlier study or by other processes.
+    /// Number of finished runs whose results came from an earlier study or from other processes.
     pub stored: usize,
-    /// Counts of what was done now, references included; stored runs took none.
+    /// Counters of this execution, references included; stored runs count nothing.
     pub counters: Counters,
 }
 
 impl Plan {
     /// Reads the scenes of a study and lists its runs.
+    ///
+    /// # Errors
+    /// Returns the errors of all scenes.
     pub fn new(study: Study) -> Result<Plan, Vec<scene::SceneError>> {
         Plan::read(study, |_| true)
     }
 
-    /// Reads the scene of these run tables alone, and lists its runs that they ask for.
+    /// Reads only the scene of these run tables, and lists the runs that they request.
     pub(crate) fn of_tables(study: Study, tables: &[usize]) -> Result<Plan, Vec<scene::SceneError>> {
         let first = tables.first().and_then(|&table| study.runs.get(table));
         let scene = first.map(|run| run.scene.clone());
@@ -112,7 +116,7 @@ impl Plan {
         Ok(plan)
     }
 
-    /// Reads the scenes of the run tables that are wanted.
+    /// Reads the scenes of the run tables for which `wanted` returns true.
     fn read(study: Study, wanted: impl Fn(&scene::Run) -> bool) -> Result<Plan, Vec<scene::SceneError>> {
         let mut plan = Plan {
             study,
@@ -143,7 +147,7 @@ impl Plan {
         if errors.is_empty() { Ok(plan) } else { Err(errors) }
     }
 
-    /// A run's scene as it is in its file.
+    /// Reads the unmodified scene of a run table.
     fn read_scene(&self, run: &scene::Run) -> Result<Scene, Vec<scene::SceneError>> {
         match self.study.scenes.get(&run.scene) {
             Some(scene) => Ok(scene.clone()),
@@ -151,7 +155,7 @@ impl Plan {
         }
     }
 
-    /// The place of a run's scene among those read.
+    /// Index of a run table's unmodified scene, which is read if necessary.
     fn scene(&mut self, run: &scene::Run) -> Result<usize, Vec<scene::SceneError>> {
         if let Some(&at) = self.as_they_are.get(&run.scene) {
             return Ok(at);
@@ -176,7 +180,8 @@ impl Plan {
         Ok(self.scenes.len() - 1)
     }
 
-    /// The scene at each value of an axis. A value that it is refused for is a result; at the base it has to be sound.
+    /// Adds the scene at each value of an axis. A refused scene is a result, except at the base value, where
+    /// it is an error.
     fn along(
         &mut self,
         index: usize,
@@ -217,7 +222,7 @@ impl Plan {
         }
     }
 
-    /// Refusals of runs that take more than anyone means to spend.
+    /// Errors of the runs that exceed the limits on memory or time.
     pub(crate) fn too_large(&self, args: &VerifyArgs) -> Vec<scene::SceneError> {
         let foreseen = self.foreseen(args);
         let of =
@@ -225,22 +230,22 @@ impl Plan {
         self.tasks.iter().filter_map(of).collect()
     }
 
-    /// The run tables that ask for a task.
+    /// Run tables that request a task.
     fn tables<'a>(&'a self, task: &'a Task) -> impl Iterator<Item = &'a scene::Run> {
         task.runs.iter().map(|&run| &self.study.runs[run])
     }
 
-    /// Whether it is asked for as one of many clouds only.
+    /// Whether the task is requested only as one of many clouds.
     fn is_one_of_many(&self, task: &Task) -> bool {
         self.tables(task).all(|run| run.seeds > 0)
     }
 
-    /// Whether it is a run along an axis.
+    /// Whether the task is a run along an axis.
     fn is_driven(&self, task: &Task) -> bool {
         self.scenes[task.scene].2.varied.is_some()
     }
 
-    /// What became of the methods along every axis that was run.
+    /// Trials of the methods along every axis that was run.
     fn axes(&self, results: &BTreeMap<usize, TaskResult>) -> Vec<Axis> {
         let mut out = Vec::new();
         for (index, run) in self.study.runs.iter().enumerate() {
@@ -273,12 +278,12 @@ impl Plan {
         self.tasks.is_empty()
     }
 
-    /// Runs everything. Results come in the order of the study, whatever the number of jobs.
+    /// Runs everything. Results are in the order of the study, whatever the number of jobs.
     pub fn execute(&self, args: &VerifyArgs) -> Finished {
         self.execute_watched(args, None)
     }
 
-    /// As [`execute`](Plan::execute), with what happens reported as it happens.
+    /// Same as [`execute`](Plan::execute), and reports events as they happen.
     pub(crate) fn execute_watched(&self, args: &VerifyArgs, events: Option<&Events>) -> Finished {
         let machine = Machine { at_once: args.jobs.into(), ..provenance::machine() };
         let store = store(args);
@@ -309,7 +314,7 @@ impl Plan {
             set.warnings.extend(result.warnings.iter().cloned());
             compared_with(&mut set, result.reference.as_ref());
             for field in &result.fields {
-                // Of a method at several sizes the finest is shown.
+                // Of a method at several sizes, the finest is shown.
                 let same =
                     |other: &&mut SurfaceField| other.case == field.case && other.method == field.method;
                 match set.fields.iter_mut().find(same) {
@@ -320,13 +325,13 @@ impl Plan {
             }
             let verdicts = self.verdicts(task, result);
             let mut run = self.summary(task, result, &verdicts);
-            // Along an axis it is a result how a run ends.
+            // Along an axis, the way in which a run ends is a result.
             if let Some((failure, code)) = result.failure.as_ref().filter(|_| !self.is_driven(task)) {
                 set.failures.push(failure.clone());
-                // What a solver does not offer is a result about it.
+                // A feature that a solver does not offer is a result, not a failure.
                 let offered = failure.status != ForeignStatus::NotOffered.name();
-                // Of many clouds one may stall: how many did is a result. One without any numbers is in no count. So is
-                // a path known to end where it does.
+                // If one of many clouds stalls, the number of stalled clouds is a result. A run without any
+                // metrics is not counted. A load path that is known to end early is no failure either.
                 let counted = self.is_one_of_many(task) && !result.records.is_empty();
                 let known =
                     |v: &Verdict| v.metric == "load-carried" && v.status == reports::Status::KnownFailure;
@@ -358,7 +363,8 @@ impl Plan {
         Finished { set, failed, runs, ran: results.len(), stored: 0, counters }
     }
 
-    /// Checks of one run: the scene's own (of its own cloud) and those of the study's run table.
+    /// Checks of one run: those of the scene, which concern the scene's own cloud, and those of the study's
+    /// run table.
     fn verdicts(&self, task: &Task, result: &TaskResult) -> Vec<Verdict> {
         let scene = &self.scenes[task.scene].2;
         let label = label(task, &result.records, self.is_one_of_many(task));
@@ -378,13 +384,14 @@ impl Plan {
 
     fn checks<'a>(&'a self, task: &'a Task) -> impl Iterator<Item = &'a Check> {
         let scene = &self.scenes[task.scene].2;
-        // A scene's checks are of its own cloud.
+        // The checks of a scene concern the scene's own cloud.
         let own = if self.is_one_of_many(task) || self.is_driven(task) { &[] } else { &scene.checks[..] };
         let all = own.iter().chain(self.tables(task).flat_map(|run| &run.checks));
         all.filter(|c| c.methods.is_empty() || c.methods.contains(&task.method.id))
     }
 
-    /// The runs that a run table has of each method and Poisson's ratio together, in the order of the first result of each.
+    /// Runs of each run table, grouped by method and Poisson's ratio, in the order of the first result of
+    /// each group.
     fn families<'a>(&'a self, results: &'a BTreeMap<usize, TaskResult>) -> Vec<Family<'a>> {
         let mut families: Vec<Family> = Vec::new();
         let same = |a: &Task, b: &Task| a.method.id == b.method.id && a.poisson == b.poisson;
@@ -400,7 +407,8 @@ impl Plan {
         families
     }
 
-    /// Checks of orders and shares: once for each method and Poisson's ratio of a run table.
+    /// Checks of convergence orders and of the fraction of clouds that reach the load: one for each run
+    /// table, method and Poisson's ratio.
     fn family_verdicts(&self, families: &[Family]) -> Vec<Verdict> {
         let mut verdicts = Vec::new();
         for Family { run, first, members } in families {
@@ -423,7 +431,8 @@ impl Plan {
         verdicts
     }
 
-    /// Of many clouds some may stall; where none carried the load there is no result.
+    /// Exit codes of the groups of clouds in which no cloud reached the whole load. Some of many clouds may
+    /// stall.
     fn without_any(&self, families: &[Family]) -> Vec<u8> {
         let seeded = families.iter().filter(|family| self.study.runs[family.run].seeds > 0);
         let none = seeded.filter(|f| !f.members.iter().any(|member| check::carried(&member.records)));
@@ -432,21 +441,22 @@ impl Plan {
     }
 }
 
-/// The runs that a run table has of one method at one Poisson's ratio: its levels, or its clouds.
+/// Runs of a run table with one method and one Poisson's ratio: its levels or its clouds.
 struct Family<'a> {
     run: usize,
     first: &'a Task,
     members: Vec<&'a TaskResult>,
 }
 
-/// Adds what a run is compared with, which others may have in common with it.
+/// Adds the reference of a run unless it is already in the set. Several runs may have the same reference.
 pub fn compared_with(set: &mut RunSet, reference: Option<&Reference>) {
     if let Some(reference) = reference.filter(|reference| !set.references.contains(reference)) {
         set.references.push(reference.clone());
     }
 }
 
-/// The rows of a stored reference; one that can't be read has failed every method that asked for it.
+/// Rows of a scene's stored reference; empty if the scene has none or the file cannot be read. A file that
+/// cannot be read has already failed every method that needs it.
 pub fn reference_records(scene: &Scene) -> Vec<Record> {
     let Some(scene::Reference::Record(path)) = &scene.reference else { return Vec::new() };
     let case = Record {
@@ -459,28 +469,30 @@ pub fn reference_records(scene: &Scene) -> Vec<Record> {
     Stored::load(scene, path).map(|s| s.records(&case)).unwrap_or_default()
 }
 
-/// Removes what killed processes left among the stored results. Only for a process that is alone in the folder.
+/// Removes files that killed processes left among the stored results. Call it only if no other process uses
+/// the folder.
 pub(crate) fn clean(args: &VerifyArgs) {
     store::clean(&args.out);
 }
 
-/// Keeps nothing but finished results of this program on this machine. Only for the first of the processes that work on a study.
+/// Removes all results except finished ones of this program on this machine. Call it only in the first of the
+/// processes that join a study.
 pub(crate) fn sweep(args: &VerifyArgs) {
     clean(args);
     store(args).sweep();
 }
 
-/// Whether a folder of results has any of single runs.
+/// Whether a folder of results contains stored results of single runs.
 pub fn has_stored(out: &Path) -> bool {
     store::any(out)
 }
 
-/// Where the results of single runs are stored.
+/// Store of the results of single runs.
 fn store(args: &VerifyArgs) -> Store {
     Store::new(&args.out, Maker::new(&provenance::program(), &provenance::machine()))
 }
 
-/// Method id with what tells this run from others of the same id.
+/// Method id with the settings that distinguish the run from others of the same method.
 fn label(task: &Task, records: &[Record], seeded: bool) -> String {
     let mut text = task.method.id.clone();
     if task.level > 0 {

@@ -1,4 +1,5 @@
-//! How far a study is: a bar on a terminal, a line now and then elsewhere, such as in the log of a continuous integration.
+//! Progress of a study: a bar on a terminal, otherwise occasional lines, such as in the log of a continuous
+//! integration.
 
 use std::sync::Mutex;
 use std::time::{Duration, Instant};
@@ -10,13 +11,13 @@ use super::task::TaskResult;
 use super::{Loudness, summary};
 use crate::print::shown;
 
-/// Time between two lines.
+/// Shortest time between two lines.
 const EVERY: Duration = Duration::from_secs(10);
 
-/// Progress through a number of runs, on stderr; and as events, where asked for.
+/// Progress through a number of runs, on stderr and, if requested, as events.
 pub(crate) struct Progress<'a> {
     bar: ProgressBar,
-    /// When the last line was written; none on a terminal, nor where nothing is to be said.
+    /// Time of the last line; `None` on a terminal, or if progress is not printed in lines.
     last_line: Option<Mutex<Instant>>,
     loudness: Loudness,
     events: Option<&'a Events>,
@@ -26,13 +27,13 @@ pub(crate) struct Progress<'a> {
 pub(crate) struct Running {
     case: String,
     method: String,
-    /// Its place in the study.
+    /// Index of the run in the study.
     run: usize,
     begin: Instant,
 }
 
 impl<'a> Progress<'a> {
-    /// Of so many runs.
+    /// Progress of a study with this number of runs.
     pub(crate) fn new(runs: usize, loudness: Loudness, events: Option<&'a Events>) -> Progress<'a> {
         let bar = ProgressBar::new(runs as u64);
         if loudness == Loudness::Quiet {
@@ -48,7 +49,7 @@ impl<'a> Progress<'a> {
         Progress { bar, last_line, loudness, events }
     }
 
-    /// What is running now.
+    /// Reports the start of a run.
     pub(crate) fn running(&self, case: String, method: String, run: usize) -> Running {
         self.bar.set_message(shown(&format!("{case} {method}"), false).into_owned());
         if let Some(events) = self.events {
@@ -57,7 +58,7 @@ impl<'a> Progress<'a> {
         Running { case, method, run, begin: Instant::now() }
     }
 
-    /// One more run is done.
+    /// Reports the end of a run.
     pub(crate) fn done(&self, running: &Running, result: &TaskResult, stored: bool) {
         let (Running { case, method, begin, .. }, run) = (running, running.run);
         let reason = result.failure.as_ref().map(|(failure, _)| failure.reason.as_str());
@@ -85,7 +86,7 @@ impl<'a> Progress<'a> {
         }
     }
 
-    /// A warning that stays.
+    /// Prints a warning, which stays visible above the bar.
     pub(crate) fn warn(&self, text: String) {
         self.say(text);
     }
@@ -98,13 +99,14 @@ impl<'a> Progress<'a> {
         }
     }
 
-    /// Takes the bar away.
+    /// Removes the bar.
     pub(crate) fn finish(&self) {
         self.bar.finish_and_clear();
     }
 }
 
-/// `120 of 337 runs in 40 s, about 72 s left`: as if runs took as long as those before.
+/// Formats `120 of 337 runs in 40 s, about 72 s left`. The remaining runs are assumed to take as long as
+/// those before.
 fn line(done: u64, all: u64, elapsed: Duration) -> String {
     let seconds = elapsed.as_secs_f64();
     let left = seconds * all.saturating_sub(done) as f64 / done.max(1) as f64;

@@ -1,4 +1,4 @@
-//! The project's own verification, held against its scenes and its baseline.
+//! Tests of the project's own verification study against its scenes and its baseline.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -16,7 +16,7 @@ fn verification() -> Plan {
     Plan::new(study).unwrap_or_else(|errors| panic!("{errors:?}"))
 }
 
-/// Whether any check, of its own or of many runs together, is of a task.
+/// Whether any check applies to a task, either a check of one run or of several runs together.
 fn is_checked(plan: &Plan, task: &Task) -> bool {
     let of_tables = plan.tables(task).flat_map(|run| &run.checks).filter(|check| check::is_of_many(check));
     let mut of_tables = of_tables.filter(|c| c.methods.is_empty() || c.methods.contains(&task.method.id));
@@ -32,7 +32,7 @@ fn every_run_of_the_verification_is_checked() {
     assert!(named.is_empty(), "no check is of\n{}", named.into_iter().collect::<Vec<_>>().join("\n"));
 }
 
-/// Scenes in a folder and below it.
+/// Collects the scenes in a folder and its subfolders.
 fn scenes(folder: &Path, found: &mut Vec<PathBuf>) {
     for entry in std::fs::read_dir(folder).expect("a folder") {
         let path = entry.expect("an entry").path();
@@ -62,7 +62,7 @@ fn every_scene_of_the_project_has_a_check_of_what_it_is_for() {
 fn the_quick_tier_has_the_cases_of_the_baseline_and_no_others() {
     let path = root().join("tests/baseline/quick.toml");
     let baseline = reports::baseline::Baseline::load(&path).expect("a baseline");
-    // A run's name begins with its case and method. A stored reference is there in either tier.
+    // A run's name begins with its case and method. Stored references belong to both tiers.
     let names = baseline.runs.keys().filter_map(|run| run.split_once(' '));
     let solved = names.filter(|(_, method)| !method.starts_with("reference "));
     let accepted: BTreeSet<&str> = solved.map(|(case, _)| case).collect();

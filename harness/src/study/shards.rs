@@ -1,4 +1,4 @@
-//! The shares of a study that several machines run: equal in what they take, as far as that is known before.
+//! Division of a study into shares for several machines, of equal expected time.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -6,11 +6,11 @@ use super::foreseen::Foreseen;
 use super::tasks::Task;
 use super::{Plan, VerifyArgs};
 
-/// Tasks that belong together, and the seconds that they take.
+/// Tasks that must stay in one share, with their expected time in seconds.
 struct Unit {
     tasks: Vec<usize>,
     seconds: f64,
-    /// The groups, of one reference each, that they are of.
+    /// Scenes and Poisson's ratios of the tasks; each such group has one reference.
     groups: BTreeSet<(usize, Option<u64>)>,
 }
 
@@ -24,7 +24,8 @@ impl Unit {
 }
 
 impl Plan {
-    /// The tasks of the k-th of n shares. The costliest unit goes first, each to the share that is ready first with it.
+    /// Tasks of the k-th of n shares. The units are assigned in descending order of time, each to the share
+    /// that would finish first with it.
     pub(super) fn share(&self, args: &VerifyArgs, (k, n): (usize, usize)) -> BTreeSet<usize> {
         let foreseen = self.foreseen(args);
         let mut units = self.units(&foreseen);
@@ -46,8 +47,8 @@ impl Plan {
         shares.swap_remove(k - 1).tasks.into_iter().collect()
     }
 
-    /// Orders and shares of clouds are of all runs that a run table has of a method at a Poisson's ratio: these stay together,
-    /// and so do families that have a run in common.
+    /// Units of tasks that must stay together. Checks of orders and of clouds need all runs of a run table
+    /// with the same method and Poisson's ratio. Families with a common run also stay together.
     fn units(&self, foreseen: &Foreseen) -> Vec<Unit> {
         let mut units: Vec<Option<Unit>> = Vec::new();
         let mut of_family: BTreeMap<Family, usize> = BTreeMap::new();
@@ -66,7 +67,7 @@ impl Plan {
                 0 => units.push(Some(unit)),
                 1 => units[at] = Some(unit),
                 _ => {
-                    // Whatever pointed to the units that were joined points here.
+                    // All families of the merged units now refer to this unit.
                     let all = unit.tasks.iter().flat_map(|&task| families(&self.tasks[task]));
                     of_family.extend(all.map(|family| (family, at)));
                     units[at] = Some(unit);

@@ -1,4 +1,5 @@
-//! Results of single runs in the folder of a study: one file each, written as soon as the run is finished.
+//! Stored results of single runs in the folder of a study: one file per run, written as soon as the run is
+//! finished.
 
 use std::collections::BTreeSet;
 use std::fs::{self, File, TryLockError};
@@ -11,16 +12,16 @@ use serde::{Deserialize, Serialize};
 
 use super::task::TaskResult;
 
-/// Below the folder of results.
+/// Folder of the stored results, relative to the folder of results.
 const TASKS: &str = "tasks";
 
-/// Who made a result.
+/// Program and machine that made a result.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) struct Maker {
-    /// The program by its version and bytes: results of another build are not taken for this one's.
+    /// Version and hash of the program. Results of another build are not reused.
     program: String,
-    /// Processor and number of threads: times of another machine are not taken for this one's. The load is none of it: a study
-    /// is resumed at another moment.
+    /// Processor and number of threads, because times of another machine are not comparable. The load is not
+    /// included: a study is resumed at another time.
     machine: String,
 }
 
@@ -36,14 +37,14 @@ impl Maker {
     }
 }
 
-/// Which results are as good as those of a run of one's own.
+/// Stored results that may replace a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Accept {
-    /// None.
+    /// No stored results.
     Nothing,
-    /// Those of this program on this machine that did not fail.
+    /// Results of this program on this machine that did not fail.
     Finished,
-    /// All of this program: those of other processes that work on the study.
+    /// All results of this program, including those of other processes that work on the study.
     All,
 }
 
@@ -59,25 +60,25 @@ struct Read {
     result: TaskResult,
 }
 
-/// The hash of a stored result stands in front of it: `{"hash":"...",` and the rest that it is of.
+/// Prefix of a stored result, which is followed by the hash: `{"hash":"...",` and the rest of the object.
 const HASH: &str = "{\"hash\":\"";
 const DIGITS: usize = 64;
 
-/// Of what is stored and of the key that it is stored under: a result is no other run's.
+/// Hash of a stored result and of its key, so that a result cannot be taken for that of another run.
 fn hash(key: &str, rest: &str) -> String {
     let mut hasher = blake3::Hasher::new();
     hasher.update(key.as_bytes()).update(rest.as_bytes());
     hasher.finalize().to_hex().to_string()
 }
 
-/// Text of a stored result.
+/// Text of a stored result with its hash.
 fn sealed(key: &str, stored: &Stored) -> serde_json::Result<String> {
     let text = serde_json::to_string(stored)?;
     let rest = &text[1..];
     Ok(format!("{HASH}{}\",{rest}", hash(key, rest)))
 }
 
-/// A stored result; refused if anything of it has changed since it was stored.
+/// Parses a stored result. A result that has changed since it was stored is refused.
 fn unsealed(path: &Path, key: &str, text: &str) -> Result<Read, String> {
     let hashed = text.strip_prefix(HASH).and_then(|text| text.split_at_checked(DIGITS));
     let parts = hashed.and_then(|(hash, rest)| Some((hash, rest.strip_prefix("\",")?)));
@@ -90,7 +91,7 @@ fn unsealed(path: &Path, key: &str, text: &str) -> Result<Read, String> {
     serde_json::from_str(text).map_err(|bad| format!("{}: {bad}", path.display()))
 }
 
-/// The text of a stored result; `None` where there is none.
+/// Reads the text of a stored result; `None` if there is none.
 fn stored(path: &Path) -> Result<Option<String>, String> {
     match disk::read_text(path, Kind::RESULTS) {
         Ok(text) => Ok(Some(text)),
@@ -99,7 +100,7 @@ fn stored(path: &Path) -> Result<Option<String>, String> {
     }
 }
 
-/// The folder of stored results.
+/// Folder of stored results.
 pub(super) struct Store {
     folder: PathBuf,
     by: Maker,
@@ -114,15 +115,15 @@ impl Store {
         self.folder.join(format!("{key}.json"))
     }
 
-    /// Where a process of its own writes the result under a key, before it is accepted.
+    /// File to which an isolated process writes the result of a key, before the result is accepted.
     pub(super) fn answer(&self, key: &str) -> PathBuf {
         self.folder.join(format!("{key}.answer"))
     }
 
-    /// The result under a key, if there is one that is accepted.
+    /// Returns the stored result of a key if `accept` allows the result; otherwise `None`.
     ///
     /// # Errors
-    /// One that can't be read, or has changed since it was stored.
+    /// Returns a message if the result cannot be read or has changed since it was stored.
     pub(super) fn load(&self, key: &str, accept: Accept) -> Result<Option<TaskResult>, String> {
         if accept == Accept::Nothing {
             return Ok(None);
@@ -138,7 +139,8 @@ impl Store {
         Ok(good.then_some(result))
     }
 
-    /// Seconds that the task under a key took on this machine, by whatever program, where it did not fail.
+    /// Time of the task with this key on this machine (s), from any build of the program; `None` if the task
+    /// failed.
     pub(super) fn seconds(&self, key: &str) -> Option<f64> {
         let path = self.file(key);
         let Read { by, result } = unsealed(&path, key, &stored(&path).ok()??).ok()?;
@@ -147,7 +149,8 @@ impl Store {
             .filter(|s| *s > 0.0)
     }
 
-    /// Stores a result; written beside and renamed, so that a stop leaves no half file.
+    /// Stores a result. The file is written under another name and renamed, so that an interruption leaves no
+    /// partial file.
     pub(super) fn save(&self, key: &str, result: &TaskResult) -> Result<(), ReportError> {
         let path = self.file(key);
         let unwritten = |source| ReportError::Unwritten { path: path.clone(), source };
@@ -156,11 +159,11 @@ impl Store {
         reports::write_text(&path, text.map_err(|bad| unwritten(bad.into()))?)
     }
 
-    /// Takes the right to run a task, as long as the file is open; `None` where another process has it. The system gives back
-    /// what a process that dies had.
+    /// Locks a task for this process until the returned file is closed; `None` if another process holds the
+    /// lock. The system releases the locks of a process that dies.
     ///
     /// # Errors
-    /// A file that can't be made or locked.
+    /// Returns an error if the lock file cannot be created or locked.
     pub(super) fn claim(&self, key: &str) -> io::Result<Option<File>> {
         fs::create_dir_all(&self.folder)?;
         let path = self.folder.join(format!("{key}.claim"));
@@ -172,8 +175,8 @@ impl Store {
         }
     }
 
-    /// Removes results that are no finished ones of this program on this machine, so that all that is there from now on is of the
-    /// processes that work on it together. Only for the first of them.
+    /// Removes all results except finished ones of this program on this machine. From then on, all results
+    /// come from processes that work on the study together. Call it only in the first of them.
     pub(super) fn sweep(&self) {
         for path in files(&self.folder, &["json"]) {
             let key = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
@@ -184,16 +187,19 @@ impl Store {
     }
 }
 
-/// Who made the results of the shares of a study.
+/// Programs and machines that made the results of a study's shares.
 #[derive(Default)]
 pub(super) struct Share {
     program: Option<String>,
-    /// The machines that they were made on.
+    /// Machines on which the results were made.
     pub(super) machines: BTreeSet<String>,
 }
 
 impl Share {
-    /// A result in a folder with its text, or why it can't be joined with those before; `None` where there is none.
+    /// Reads a result in a folder, with its text; `None` if there is none.
+    ///
+    /// # Errors
+    /// Returns a message if the result cannot be read or was made by another build than the results before.
     pub(super) fn take(&mut self, out: &Path, key: &str) -> Option<Result<(String, TaskResult), String>> {
         let path = out.join(TASKS).join(format!("{key}.json"));
         let read = stored(&path).and_then(|text| {
@@ -212,19 +218,20 @@ impl Share {
     }
 }
 
-/// Whether a folder of results has any of single runs.
+/// Whether a folder of results contains stored results of single runs.
 pub(super) fn any(out: &Path) -> bool {
     !files(&out.join(TASKS), &["json"]).is_empty()
 }
 
-/// Keeps the text of a result from another folder.
+/// Stores the text of a result from another folder.
 pub(super) fn keep(out: &Path, key: &str, text: &str) -> Result<(), ReportError> {
     let folder = out.join(TASKS);
     fs::create_dir_all(&folder).map_err(|source| ReportError::Unwritten { path: folder.clone(), source })?;
     reports::write_text(&folder.join(format!("{key}.json")), text)
 }
 
-/// Removes what killed processes left in a folder of results. Only for a process that is alone in it.
+/// Removes files that killed processes left in a folder of results. Call it only if no other process uses the
+/// folder.
 pub(super) fn clean(out: &Path) {
     for path in files(&out.join(TASKS), &["partial", "claim", "answer"]) {
         let _ = disk::remove(&path);

@@ -1,4 +1,4 @@
-//! What became of each run, for whoever counts runs rather than numbers.
+//! Summary of each run, for uses that count runs rather than metrics.
 
 use std::path::PathBuf;
 
@@ -10,32 +10,32 @@ use super::tasks::Task;
 use super::{Plan, label};
 use crate::run::case_name;
 
-/// One run of a study, or the checks of several of its runs together.
+/// Summary of one run of a study, or of the checks of several runs together.
 #[derive(Clone, Debug)]
 pub struct RunSummary {
-    /// Its case.
+    /// Name of the case.
     pub case: String,
-    /// The scene's file.
+    /// File of the scene.
     pub file: PathBuf,
-    /// The method, with what distinguishes the run from others of it.
+    /// Method id, with the settings that distinguish the run from others of the method.
     pub label: String,
-    /// What one pass took, s.
+    /// Time of one pass, s.
     pub seconds: f64,
-    /// Its method's place, `file:line`, or that of the key which failed.
+    /// Location (`file:line`) of the method, or of the key that caused the failure.
     pub at: String,
-    /// Why it has no numbers, or those of a part of its load, where nobody expected that.
+    /// Reason for an unexpected failure or early end; `None` for a complete or an expected result.
     pub failure: Option<String>,
-    /// Its checks.
+    /// Checks of the run.
     pub checks: Vec<Check>,
 }
 
-/// Seconds of one pass over a run: the median of its repeats.
+/// Time of one pass over a run (s): the median of its repeats.
 pub(super) fn seconds(result: &TaskResult) -> f64 {
     let total = |r: &&Record| r.quantity == "time" && r.phase == "total" && r.statistic == "median";
     result.records.iter().find(total).map_or(0.0, |r| r.value)
 }
 
-/// `file:line` of a method in the scene or in the file that it is taken from.
+/// Location (`file:line`) of a method in the scene or in the included file that defines it.
 fn method_place(scene: &Scene, id: &str) -> String {
     let index = scene.methods.iter().position(|method| method.id == id).unwrap_or_default();
     let place = scene.error(ErrorKind::Invalid, &format!("method[{index}]"), "", None);
@@ -43,7 +43,7 @@ fn method_place(scene: &Scene, id: &str) -> String {
 }
 
 impl Plan {
-    /// A run with its checks, before it is known whether anybody expected its failure.
+    /// Summary of a run with its checks. The failure is added later, if it was not expected.
     pub(super) fn summary(&self, task: &Task, result: &TaskResult, checks: &[Check]) -> RunSummary {
         let (file, _, scene) = &self.scenes[task.scene];
         RunSummary {
@@ -57,9 +57,9 @@ impl Plan {
         }
     }
 
-    /// A check of several runs together, beside the runs.
+    /// Summary of a check of several runs together.
     pub(super) fn together(&self, check: &Check) -> RunSummary {
-        // Along an axis the case has its name behind it.
+        // Along an axis, the name of the axis follows the name of the case.
         let own = |(_, _, scene): &&(PathBuf, String, Scene)| {
             let behind = check.case.strip_prefix(&case_name(scene));
             behind.is_some_and(|text| text.is_empty() || text.starts_with(" along "))

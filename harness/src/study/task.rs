@@ -1,4 +1,4 @@
-//! One run of a study as a unit of work: what it is, what it leaves, and how it is stored.
+//! A run of a study as a unit of work: its key, its result and the form in which the result is stored.
 
 use std::path::PathBuf;
 
@@ -10,32 +10,33 @@ use crate::Failure;
 use crate::adapter;
 use crate::outcome::{Counters, Outcome};
 
-/// What one run leaves.
+/// Result of one run.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct TaskResult {
-    /// Numbers; empty if it failed, those of the load it carried if it stalled.
+    /// Rows of the long table; empty if the run failed. If the run stalled, they are those of the load that
+    /// it reached.
     pub records: Vec<Record>,
     /// Stages run and skipped.
     pub plans: Vec<PlanEntry>,
-    /// What is to be said against its numbers.
+    /// Warnings about the results.
     pub warnings: Vec<Warning>,
-    /// The reference of the numbers.
+    /// Reference that the run is compared with.
     #[serde(default)]
     pub reference: Option<Reference>,
-    /// Surface displacement, where asked for.
+    /// Surface displacement, if requested.
     pub fields: Vec<SurfaceField>,
-    /// Why it failed, with its exit code.
+    /// Failure of the run, with its exit code.
     pub failure: Option<(FailedRun, u8)>,
-    /// Seconds that it took, all repeats included and without its reference; 0 where they are not known.
+    /// Time of the run, all repeats included and without its reference, s; 0 if unknown.
     #[serde(default)]
     pub seconds: f64,
-    /// What was done for it now: nothing where it was stored.
+    /// Counters of this execution; zero for a stored result.
     #[serde(skip)]
     pub counters: Counters,
 }
 
 impl TaskResult {
-    /// Of a finished run.
+    /// Result of a finished run.
     pub fn finished(outcome: &Outcome) -> TaskResult {
         TaskResult {
             records: outcome.records(),
@@ -49,14 +50,14 @@ impl TaskResult {
         }
     }
 
-    /// Of a run that gave no numbers.
+    /// Result of a run that failed.
     pub fn failed(case: &str, method: &scene::Method, failure: &Failure) -> TaskResult {
         let run = failed(case, method, failure);
         TaskResult { failure: Some((run, failure.exit_code())), ..TaskResult::default() }
     }
 }
 
-/// A run that gave no numbers, among what failed.
+/// Row of the failures for a run that gave no results.
 pub fn failed(case: &str, method: &scene::Method, failure: &Failure) -> FailedRun {
     let adapter = match &method.family {
         scene::Family::External(external) => adapter::label(&external.adapter, &external.settings),
@@ -73,7 +74,7 @@ pub fn failed(case: &str, method: &scene::Method, failure: &Failure) -> FailedRu
     }
 }
 
-/// A path that ended early, among what failed; its numbers are kept beside.
+/// Row of the failures for a load path that ended early. Its results are kept separately.
 pub fn stalled(outcome: &Outcome, failure: &Failure) -> FailedRun {
     FailedRun {
         case: outcome.identity.case.clone(),
@@ -86,8 +87,9 @@ pub fn stalled(outcome: &Outcome, failure: &Failure) -> FailedRun {
     }
 }
 
-/// Hash of everything a run depends on but who runs it: the scene's text, the files it names, and what the study changes of it. It is
-/// the same wherever the folder of the study is.
+/// Hash of everything that a run depends on, except the program and the machine: the scene's text, the
+/// contents of the files it names, and the changes by the study (`what`). The hash does not depend on the
+/// folder of the study.
 pub fn key(scene_text: &str, files: &[PathBuf], what: &str) -> String {
     let name = |path: &&PathBuf| path.file_name().map(|name| name.to_string_lossy().into_owned());
     let mut files: Vec<&PathBuf> = files.iter().collect();

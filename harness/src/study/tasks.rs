@@ -1,27 +1,28 @@
-//! The runs that a study's tables ask for, each of them once.
+//! The runs that a study's tables request, each of them once.
 
 use std::collections::HashMap;
 
 use cases::scene::{self, Scene, Size};
 
-/// One run of a study.
+/// Run of a study.
 pub(super) struct Task {
-    /// Indices of the study's run tables that ask for it, which may be several: it is run once.
+    /// Indices of the run tables that request this run. The run is made once, even for several tables.
     pub(super) runs: Vec<usize>,
     pub(super) scene: usize,
     pub(super) method: scene::Method,
     pub(super) level: u32,
     pub(super) poisson: Option<f64>,
     pub(super) picture: bool,
-    /// Rule of a second integration, where one of the tables asks for it.
+    /// Rule of a second integration, if one of the tables requests it.
     pub(super) split: Option<scene::Integration>,
 }
 
-/// Places of runs by scene, Poisson's ratio and method: to compare each with all others takes minutes for 50,000.
+/// Indices of runs by scene, Poisson's ratio and method. Comparing each run with all others takes minutes for
+/// 50,000 runs.
 pub(super) type Known = HashMap<(usize, String), Vec<usize>>;
 
-/// Lists the runs of one table: methods, times levels (or node counts), times kernels, times support scales, times essential
-/// conditions, times seeds, times solvers, times Poisson's ratios.
+/// Lists the runs of one table: all combinations of methods, levels (or node counts), kernels, support
+/// scales, essential conditions, seeds, solvers and Poisson's ratios.
 pub(super) fn list(
     tasks: &mut Vec<Task>,
     known: &mut Known,
@@ -32,14 +33,15 @@ pub(super) fn list(
 ) {
     let ratios: Vec<Option<f64>> =
         if run.poisson.is_empty() { vec![None] } else { run.poisson.iter().copied().map(Some).collect() };
-    // A picture of an organ says something; one of a box does not, nor does one for each kernel or seed.
+    // Pictures are made of organs only, and not for every kernel or seed. A picture of a box would show
+    // nothing.
     let organ = matches!(scene.body, scene::Body::Kidney { .. } | scene::Body::File(_));
     let plain = run.kernels.is_empty()
         && run.support_scales.is_empty()
         && run.nodes.is_empty()
         && run.essentials.is_empty();
     let picture = organ && plain && run.seeds == 0;
-    // The scene's own ratio, named or not, makes one run.
+    // The scene's own Poisson's ratio makes one run, whether the table names it or not.
     let own = scene.material.constant("poisson");
     let own_ratio = |poisson: Option<f64>| poisson.or(own);
     for &poisson in &ratios {
@@ -49,7 +51,8 @@ pub(super) fn list(
                 let held = shaped.flat_map(|method| essentials(run, method));
                 let placed = held.flat_map(|method| seeds(run, method));
                 for method in placed.flat_map(|method| solvers(run, method)) {
-                    // One run may be in several tables: a level among levels and alone, a cloud among clouds.
+                    // A run may occur in several tables, such as a level both alone and among other levels,
+                    // or a cloud among clouds.
                     let places =
                         known.entry((at, format!("{:?} {method:?}", own_ratio(poisson)))).or_default();
                     let fits = |t: &Task| run.split.is_none() || t.split.is_none() || run.split == t.split;
@@ -79,7 +82,7 @@ pub(super) fn list(
     }
 }
 
-/// The method at each level or node count that the run table names; as it is where it names none.
+/// Returns the method at each level or node count of the run table; unchanged if the table has none.
 fn sizes(run: &scene::Run, method: &scene::Method) -> Vec<(u32, scene::Method)> {
     let sized = |size: Size| {
         let mut method = method.clone();
@@ -102,19 +105,19 @@ fn own_level(method: &scene::Method) -> u32 {
     }
 }
 
-/// The method with each kernel that the run table names.
+/// Returns the method with each kernel of the run table.
 fn kernels(run: &scene::Run, method: scene::Method) -> Vec<scene::Method> {
     each(&run.kernels, method, |kernel, _, &name| {
         *kernel = name;
     })
 }
 
-/// The method with each support scale that the run table names.
+/// Returns the method with each support scale of the run table.
 fn support_scales(run: &scene::Run, method: scene::Method) -> Vec<scene::Method> {
     each(&run.support_scales, method, |_, support, &factor| *support = scene::SupportRule::Scale(factor))
 }
 
-/// The method held in each of the ways that the run table names.
+/// Returns the method with each treatment of essential conditions in the run table.
 fn essentials(run: &scene::Run, method: scene::Method) -> Vec<scene::Method> {
     if run.essentials.is_empty() || !method.is_cloud() {
         return vec![method];
@@ -129,7 +132,8 @@ fn essentials(run: &scene::Run, method: scene::Method) -> Vec<scene::Method> {
     run.essentials.iter().map(held).collect()
 }
 
-/// Moving least squares changed by each of `values`; the method as it is where there are none, or where it is of another kind.
+/// Returns a moving-least-squares method changed by each of `values`. Without values, or for another kind of
+/// method, it returns the method unchanged.
 fn each<T>(
     values: &[T],
     method: scene::Method,
@@ -148,7 +152,7 @@ fn each<T>(
     if changed.is_empty() { vec![method] } else { changed }
 }
 
-/// The method on a cloud of each seed that the run table names.
+/// Returns the method on a cloud of each seed of the run table.
 fn seeds(run: &scene::Run, method: scene::Method) -> Vec<scene::Method> {
     match run.seeds {
         0 => vec![method],
@@ -156,7 +160,8 @@ fn seeds(run: &scene::Run, method: scene::Method) -> Vec<scene::Method> {
     }
 }
 
-/// The method, and behind it the same by each solver outside this program that the run table names: both see the machine alike.
+/// Returns the method, followed by the same method with each external solver of the run table. Running them
+/// in succession compares them under the same machine load.
 fn solvers(run: &scene::Run, method: scene::Method) -> Vec<scene::Method> {
     let others: Vec<_> = run.adapters.iter().filter_map(|adapter| method.solved_by(adapter)).collect();
     std::iter::once(method).chain(others).collect()

@@ -1,4 +1,4 @@
-//! What became of the methods along the axes of a study.
+//! Trials of the methods along the axes of a study.
 
 use cases::scene::{self, Bound, Check};
 use catalogue::metric;
@@ -7,15 +7,15 @@ use reports::{Axis, Check as Verdict, Ended, Trial};
 use super::check;
 use super::task::TaskResult;
 
-/// A value of an axis at which the scene itself is refused: none of its methods runs.
+/// Axis value at which the scene itself is refused, so that none of its methods runs.
 pub(super) struct RefusedScene {
-    /// Which run table of the study.
+    /// Index of the run table in the study.
     pub(super) run: usize,
     pub(super) value: f64,
     pub(super) reason: String,
 }
 
-/// The axis of a run table without its trials.
+/// Axis of a run table, without its trials.
 pub(super) fn empty(case: &str, axis: &scene::Axis) -> Axis {
     Axis {
         case: case.into(),
@@ -29,7 +29,7 @@ pub(super) fn empty(case: &str, axis: &scene::Axis) -> Axis {
     }
 }
 
-/// A run at one value.
+/// Trial of one method at one value of an axis.
 pub(super) fn trial(method: &str, value: f64, axis: &scene::Axis, result: &TaskResult) -> Trial {
     let (ended, reason) = match &result.failure {
         None => (Ended::Whole, String::new()),
@@ -46,7 +46,7 @@ pub(super) fn trial(method: &str, value: f64, axis: &scene::Axis, result: &TaskR
     }
 }
 
-/// A method that is refused with its scene.
+/// Trial of a method whose scene is refused.
 pub(super) fn refused(method: &str, refused: &RefusedScene) -> Trial {
     Trial {
         method: method.into(),
@@ -58,7 +58,7 @@ pub(super) fn refused(method: &str, refused: &RefusedScene) -> Trial {
     }
 }
 
-/// No run is wrong without a word: one check for each method.
+/// Checks, one per method, that no run is wrong without a warning.
 pub(super) fn verdicts(axis: &Axis) -> Vec<Verdict> {
     let check = Check {
         metric: &metric::SILENT_WRONG,

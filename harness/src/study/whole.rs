@@ -1,4 +1,5 @@
-//! A study from its file to its folder of results, for programs that have this one as a library.
+//! Execution of a study from its file to its folder of results, for programs that use this crate as a
+//! library.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -10,7 +11,7 @@ use crate::Failure;
 use crate::outcome::Watch;
 
 impl Plan {
-    /// Someone waits for the runs.
+    /// Sets the watch of the runs.
     pub fn watched_by(&mut self, watch: Arc<Watch>) {
         self.watch = Some(watch);
     }
@@ -19,11 +20,11 @@ impl Plan {
         self.watch.as_ref().is_some_and(|watch| watch.is_stopped())
     }
 
-    /// Runs everything and writes the results of the study in the file `study`, and the report, to the folder of the arguments.
+    /// Runs the study in the file `study` and writes its results and report to the folder of the arguments.
     ///
     /// # Errors
-    /// A folder that can't be taken or written, runs that take more than anyone means to spend, and a study that was stopped:
-    /// the folder keeps what is finished.
+    /// Returns an error if the folder cannot be locked or written, if the runs exceed the limits on memory or
+    /// time, and if the study was stopped. The folder keeps the finished runs.
     pub fn execute_in_folder(
         &self,
         args: &VerifyArgs,
