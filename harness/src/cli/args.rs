@@ -1,4 +1,4 @@
-//! The command line. Stable: others script against it.
+//! The command line. Stable: users' scripts depend on it.
 
 use std::path::PathBuf;
 
@@ -15,144 +15,148 @@ use super::solve::SolveArgs;
 use crate::process::LeashArgs;
 use crate::study::{ExperimentArgs, MergeArgs, VerifyArgs};
 
-/// Verification and benchmarks of soft-tissue solvers: finite elements, element-free Galerkin and interpolation on the
-/// same scenes.
+/// Verification and benchmarks of soft-tissue solvers: finite elements, element-free Galerkin and
+/// interpolation on the same scenes.
 ///
-/// Exit codes: 0 all held; 1 a check failed; 2 bad usage or input; 3 could not run or did not converge; 4 nothing ran;
-/// 5 incomplete.
+/// Exit codes: 0 success; 1 a check failed; 2 invalid usage or input; 3 could not run or did not converge; 4
+/// nothing ran; 5 incomplete.
 #[derive(Parser)]
 #[command(name = "tissuebench", version, max_term_width = 100)]
 pub struct Cli {
-    /// Threads of the solvers (default: all cores)
+    /// Number of threads of the solvers (default: all cores)
     #[arg(long, global = true, value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
-    /// When words are coloured: on a terminal, unless NO_COLOR is set
+    /// Colour the output: by default on a terminal, unless NO_COLOR is set
     #[arg(long, global = true, value_enum, default_value_t = ColorChoice::Auto)]
     pub color: ColorChoice,
-    /// A folder with adapters of other solvers, before those beside the scene, in TISSUEBENCH_ADAPTERS and shipped (may be given
-    /// several times)
+    /// Folder with adapters of other solvers; searched before those next to the scene, in
+    /// TISSUEBENCH_ADAPTERS and shipped (repeatable)
     #[arg(long, global = true, value_name = "DIR")]
     pub adapters: Vec<PathBuf>,
-    /// Use no adapter from beside the scene or from ./adapters: only from --adapters, TISSUEBENCH_ADAPTERS
-    /// and the program
+    /// Ignore adapters next to the scene and in ./adapters; use only --adapters, TISSUEBENCH_ADAPTERS and
+    /// shipped adapters
     #[arg(long, global = true)]
     pub no_local_adapters: bool,
-    /// What to do
+    /// The subcommand
     #[command(subcommand)]
     pub command: Command,
 }
 
-/// What to do.
+/// Subcommands of `tissuebench`.
 #[derive(Subcommand)]
 pub enum Command {
-    /// Write a scene of an organ under a plate, to be run as it is
+    /// Write a scene of an organ under a plate, ready to run
     ///
-    /// What no option gives is asked on a terminal; elsewhere defaults are taken, and named in the output.
+    /// On a terminal, values not given as options are asked for. Otherwise defaults are used and named in the
+    /// output.
     Init(InitArgs),
-    /// Run one scene, with some or all of its methods
+    /// Run one scene with some or all of its methods
     Run(RunArgs),
-    /// Find the cheapest method of a scene that is right within an error
+    /// Find the cheapest method of a scene within an error bound
     ///
-    /// Each method runs from coarse to fine until it is within the error, or dearer than one that is. Exit code 0: found; 1: none is
-    /// within the error.
+    /// Each method runs from coarse to fine until it meets the bound, or costs more than another method that
+    /// does. Exit code 0: found; 1: no method meets the bound.
     Pick(PickArgs),
-    /// Run methods of a scene and write the body at every recorded state, as .vtu files and a .pvd series that ParaView opens
+    /// Run methods of a scene and write every recorded state of the body, as .vtu files and a .pvd series for
+    /// ParaView
     Fields(FieldsArgs),
-    /// Print the stages a scene needs, those it does not, and why
+    /// Print the stages that a scene needs and does not need, and why
     Plan {
         /// The scene to plan
         #[command(flatten)]
         scene: SceneArgs,
-        /// Plan what is estimated to take more than twice the memory of this machine or half a day
+        /// Plan even if the estimate exceeds twice the memory of this machine or half a day
         #[arg(long)]
         force: bool,
     },
-    /// Run a study: many scenes and methods; its checks gate the exit code
+    /// Run a study of many scenes and methods; its checks determine the exit code
     Verify {
-        /// Which runs
+        /// Selection of runs
         #[command(flatten)]
         runs: VerifyArgs,
-        /// What is printed and written beside the results
+        /// Output on the terminal and files for continuous integration
         #[command(flatten)]
         ci: CiArgs,
     },
-    /// One run of a study in a process of its own
+    /// Run one run of a study in its own process
     #[command(hide = true)]
     Experiment(ExperimentArgs),
-    /// Another program on a leash: with its limits, and gone with whoever called it
+    /// Run another program with limits, and end it when its caller ends
     #[command(hide = true)]
     Leash(LeashArgs),
-    /// A problem in files solved by this program, as the adapters `tissuebench` and `dummy` call it
+    /// Solve a problem in files with this program, for the adapters `tissuebench` and `dummy`
     #[command(hide = true)]
     Solve(SolveArgs),
-    /// Join the shares of a study that were run by --shard, or by several machines, to the results of one run
+    /// Merge parts of a study, run with --shard or on several machines, into the results of one run
     Merge(MergeArgs),
     /// Render tables, figures and the report of stored results
     Report {
-        /// A folder that `verify` or `run --out` wrote
+        /// Folder written by `verify` or `run --out`
         results: PathBuf,
-        /// Where to put the report (default: RESULTS/report)
+        /// Folder for the report (default: RESULTS/report)
         #[arg(long)]
         out: Option<PathBuf>,
-        /// Also draw the errors and times over commits of this folder, which `history add` fills
+        /// Also plot errors and times over the commits in this folder, filled by `history add`
         #[arg(long, value_name = "DIR")]
         history: Option<PathBuf>,
     },
-    /// Compare the numbers of stored results with those accepted before, bit by bit on the same kind of processor
+    /// Compare stored results with accepted ones: bit by bit on the same kind of processor, otherwise with a
+    /// tolerance
     Baseline(BaselineArgs),
-    /// Compare two results: numbers by tolerance, times as ratios with their confidence
+    /// Compare two results: numbers by tolerance, times as ratios with confidence intervals
     Compare(CompareArgs),
-    /// Errors and times of a study over commits: keep results, show what changed outside of noise
+    /// Track errors and times of a study over commits: store results, show changes beyond noise
     History {
-        /// What to do with the history
+        /// Action on the history
         #[command(subcommand)]
         action: HistoryAction,
     },
-    /// Hold published claims against stored results: validated, qualified or refuted
+    /// Compare published claims with stored results: validated, qualified or refuted
     Claims(ClaimsArgs),
-    /// Run every method of a scene and store what they agree on, as a reference for other scenes
+    /// Run all methods of a scene and store their common result as a reference for other scenes
     Reference(ReferenceArgs),
     /// Write the problem of one method as files that any solver can read
     Export(ExportArgs),
-    /// Solvers outside this program: which there are, whether they are right, one call of them
+    /// Manage adapters of external solvers: list, check, call once, install, copy
     Adapter {
-        /// What to do with them
+        /// Action on adapters
         #[command(subcommand)]
         action: AdapterAction,
     },
-    /// List everything that a scene can name: bodies and their surfaces, laws, tools, elements, kernels, metrics, units, ...
+    /// List everything that a scene can name: bodies and their surfaces, laws, tools, elements, kernels,
+    /// metrics, units, ...
     List {
         /// Only this part, such as laws
         what: Option<String>,
     },
-    /// Print the JSON schema of scene files, of study files, or of what is written for programs
+    /// Print the JSON schema of scene files, study files or machine-readable output
     ///
-    /// An editor completes and checks a scene with it: run `tissuebench schema > scene.schema.json`, and begin the scene
-    /// with the line `#:schema scene.schema.json` (Even Better TOML, Taplo).
+    /// Editors use the schema to complete and check scenes: run `tissuebench schema > scene.schema.json`, and
+    /// begin the scene with the line `#:schema scene.schema.json` (Even Better TOML, Taplo).
     Schema {
-        /// The file or output
+        /// File or output to describe
         #[arg(value_enum, default_value_t = SchemaOf::Scene, value_name = "WHAT")]
         of: SchemaOf,
-        /// The same as `study`
+        /// Same as `study`
         #[arg(long, hide = true, conflicts_with = "of")]
         study: bool,
     },
     /// Inspect and convert mesh files
     Mesh {
-        /// What to do with them
+        /// Action on mesh files
         #[command(subcommand)]
         action: MeshAction,
     },
-    /// Print a script that completes commands and options in a shell
+    /// Print a shell script that completes commands and options
     ///
     /// For bash: `tissuebench completions bash > ~/.local/share/bash-completion/completions/tissuebench`.
     Completions {
-        /// The shell
+        /// Shell
         shell: clap_complete::Shell,
     },
-    /// Print the manual page of a command, or of all: `tissuebench man verify | man -l -`
+    /// Print the manual page of one command or of all: `tissuebench man verify | man -l -`
     Man {
-        /// The command
+        /// Command
         command: Option<String>,
     },
 }
@@ -160,14 +164,13 @@ pub enum Command {
 /// A scene and some of its methods.
 #[derive(Args, Clone)]
 pub struct SceneArgs {
-    /// The scene file
+    /// Scene file
     #[arg(value_name = "SCENE")]
     pub file: PathBuf,
-    /// Only these methods; `*` stands for any text (may be given several times)
+    /// Run only these methods; `*` matches any text (repeatable)
     #[arg(long = "method", value_name = "ID")]
     pub methods: Vec<String>,
-    /// Set a key of the scene in place of the file, such as material.poisson=0.45 or
-    /// "method[tet4].size.level=3" (may be given several times)
+    /// Override a key of the scene, such as material.poisson=0.45 or "method[tet4].size.level=3" (repeatable)
     #[arg(long = "set", value_name = "KEY=VALUE")]
     pub set: Vec<Override>,
 }
@@ -178,10 +181,10 @@ pub struct FieldsArgs {
     /// The scene to run
     #[command(flatten)]
     pub scene: SceneArgs,
-    /// Where to put a .pvd file and a folder for each method
+    /// Folder for a .pvd file and a folder per method
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
-    /// Run what is estimated to take more than twice the memory of this machine or half a day
+    /// Run even if the estimate exceeds twice the memory of this machine or half a day
     #[arg(long)]
     pub force: bool,
 }
@@ -192,19 +195,20 @@ pub struct RunArgs {
     /// The scene to run
     #[command(flatten)]
     pub scene: SceneArgs,
-    /// Nothing on stderr but errors
+    /// Print only errors on stderr
     #[arg(short, long)]
     pub quiet: bool,
-    /// Time each run once; by default runs that take less than a second are repeated, up to five times
+    /// Time each run once; by default runs shorter than a second are repeated, up to five times
     #[arg(long)]
     pub once: bool,
-    /// Run what is estimated to take more than twice the memory of this machine or half a day
+    /// Run even if the estimate exceeds twice the memory of this machine or half a day
     #[arg(long)]
     pub force: bool,
-    /// What to print on stdout
+    /// Output format on stdout
     #[arg(long, value_enum, default_value_t = Format::Table)]
     pub format: Format,
-    /// Also write records, tables and figures to this folder, in place of the results of an earlier run of the scene
+    /// Also write records, tables and figures to this folder, replacing the results of an earlier run of the
+    /// scene
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
 }
@@ -212,22 +216,22 @@ pub struct RunArgs {
 /// Arguments of `reference`.
 #[derive(Args)]
 pub struct ReferenceArgs {
-    /// The scene to run; the last method's values are stored, all methods span the uncertainty
+    /// Scene to run; stores the values of the last method, with the spread of all methods as uncertainty
     #[command(flatten)]
     pub scene: SceneArgs,
-    /// Solve nothing: take the values of this reference of the same scene, made before
+    /// Solve nothing: take the values of this earlier reference of the same scene
     #[arg(long, alias = "told", value_name = "FILE", conflicts_with = "methods")]
     pub from: Option<PathBuf>,
-    /// A reference of the same scene by other methods, made before, that spans the uncertainty too (may be given several times)
+    /// Earlier reference of the same scene by other methods, included in the uncertainty (repeatable)
     #[arg(long, alias = "beside", value_name = "FILE")]
     pub alongside: Vec<PathBuf>,
-    /// Store the displacement at the end at the nodes of this mesh file
+    /// Store the final displacement at the nodes of this mesh file
     #[arg(long, value_name = "MESH")]
     pub points: PathBuf,
-    /// Length unit of that file
+    /// Length unit of the mesh file
     #[arg(long, default_value = "mm", value_parser = length_unit)]
     pub unit: LengthUnit,
-    /// The file to write (JSON)
+    /// File to write (JSON)
     #[arg(long, value_name = "FILE")]
     pub out: PathBuf,
 }
@@ -235,9 +239,9 @@ pub struct ReferenceArgs {
 /// Arguments of `claims`.
 #[derive(Args)]
 pub struct ClaimsArgs {
-    /// A folder that `verify` or `run --out` wrote
+    /// Folder written by `verify` or `run --out`
     pub results: PathBuf,
-    /// The claims
+    /// Claims file
     #[arg(long, value_name = "FILE", default_value = "cases/claims.toml")]
     pub file: PathBuf,
 }
@@ -245,16 +249,15 @@ pub struct ClaimsArgs {
 /// Arguments of `export`.
 #[derive(Args)]
 pub struct ExportArgs {
-    /// The scene file
+    /// Scene file
     pub scene: PathBuf,
-    /// The method: one of finite elements, or of another solver
+    /// Method: finite elements or an external solver
     #[arg(long, value_name = "ID")]
     pub method: String,
-    /// Set a key of the scene in place of the file, such as material.poisson=0.45 (may be given several
-    /// times)
+    /// Override a key of the scene, such as material.poisson=0.45 (repeatable)
     #[arg(long = "set", value_name = "KEY=VALUE")]
     pub set: Vec<Override>,
-    /// The folder to write
+    /// Folder to write
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
 }
@@ -262,18 +265,18 @@ pub struct ExportArgs {
 /// Arguments of `baseline`.
 #[derive(Args)]
 pub struct BaselineArgs {
-    /// A folder that `verify` or `run --out` wrote
+    /// Folder written by `verify` or `run --out`
     pub results: PathBuf,
-    /// The accepted numbers
+    /// File of accepted results
     #[arg(long, value_name = "FILE", default_value = "tests/baseline/quick.toml")]
     pub file: PathBuf,
-    /// Accept the differences whose text contains this, or all; without it a terminal asks for each
+    /// Accept differences whose text contains TEXT, or all differences; by default a terminal asks for each
     #[arg(long, value_name = "TEXT", num_args = 0..=1, default_missing_value = "")]
     pub accept: Option<String>,
-    /// Ask nothing: print the differences and exit with 1 if there are any
+    /// Never ask: print the differences, with exit code 1 if there are any
     #[arg(long, conflicts_with = "accept")]
     pub check: bool,
-    /// The results are a part of the study: runs that are not in them are not missing
+    /// The results are only a part of the study: do not report other runs as missing
     #[arg(long)]
     pub part: bool,
 }
@@ -281,26 +284,26 @@ pub struct BaselineArgs {
 /// Arguments of `compare`.
 #[derive(Args)]
 pub struct CompareArgs {
-    /// Folders that `verify` or `run --out` wrote: before and after; or several such pairs in turn, which tell a slower program from
-    /// a slower machine
+    /// Folders written by `verify` or `run --out`: before and after. Several such pairs in turn separate a
+    /// slower program from a slower machine
     #[arg(required = true, num_args = 2.., value_names = ["BEFORE", "AFTER"])]
     pub results: Vec<PathBuf>,
-    /// Relative difference from which on a number has changed
+    /// Relative difference above which a number counts as changed
     #[arg(long, value_name = "NUMBER", default_value_t = 1e-6)]
     pub tolerance: f64,
-    /// Pair runs that differ in this setting too, such as dilation, kernel, size, method or case (may be
-    /// given several times)
+    /// Also pair runs that differ in this setting, such as dilation, kernel, size, method or case
+    /// (repeatable)
     #[arg(long, value_name = "SETTING")]
     pub across: Vec<String>,
-    /// Leave times out
+    /// Leave out times
     #[arg(long)]
     pub no_times: bool,
-    /// What to print on stdout
+    /// Output format on stdout
     #[arg(long, value_enum, default_value_t = Format::Table)]
     pub format: Format,
 }
 
-/// Inputs and outputs that have a schema.
+/// Files and outputs with a schema.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum SchemaOf {
     /// A scene file
@@ -313,23 +316,23 @@ pub enum SchemaOf {
     Events,
     /// checks.json; a row of checks.csv has the same columns
     Checks,
-    /// provenance.json, with the version of all files beside it
+    /// provenance.json, with the version of all files next to it
     Provenance,
 }
 
-/// What `run` prints.
+/// Output format on stdout.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Format {
-    /// A table for people
+    /// A table for reading
     Table,
-    /// JSON: one object per run, one per line, or one object of all that is compared
+    /// JSON: one object per run and line, or one object for a comparison
     Json,
 }
 
-/// What to do with mesh files.
+/// Actions on mesh files.
 #[derive(Subcommand)]
 pub enum MeshAction {
-    /// Print counts, regions, surfaces, extent, unit, volume, and the quality of the cells with the worst of them
+    /// Print counts, regions, surfaces, extent, unit, volume and cell quality, with the worst cells
     Info {
         /// Mesh files: Gmsh (.msh), Abaqus or CalculiX (.inp), VTK (.vtu, .vtk); or surfaces: STL, OBJ, PLY
         #[arg(required = true)]
@@ -337,40 +340,41 @@ pub enum MeshAction {
         /// Length unit of the coordinates
         #[arg(long, default_value = "mm", value_parser = length_unit)]
         unit: LengthUnit,
-        /// What to print on stdout: a table, or a JSON object in a line for each file (SI units)
+        /// Output format on stdout: a table, or one JSON object per line and file (SI units)
         #[arg(long, value_enum, default_value_t = Format::Table)]
         format: Format,
     },
     /// Fill a closed surface with tetrahedra
     ///
-    /// By isosurface stuffing (Labelle and Shewchuk 2007): angles between the faces of a cell are between 10.7 and 164.8 degrees. Sharp edges
-    /// are rounded off at the size of a cell. A surface that is open, crosses itself or is inside out is refused with the place.
+    /// Isosurface stuffing (Labelle and Shewchuk 2007): dihedral angles lie between 10.7 and 164.8 degrees.
+    /// Sharp edges are rounded at the scale of a cell. A surface that is open, intersects itself or is inside
+    /// out is refused, with the location of the fault.
     Make(MakeArgs),
-    /// Read one mesh file, write it as another kind of cells
+    /// Read a mesh file and write it with another kind of cells or in another format
     Convert(ConvertArgs),
 }
 
 /// Arguments of `mesh convert`.
 #[derive(Args)]
 pub struct ConvertArgs {
-    /// The file to read: Gmsh 1, 2.2, 4.0 or 4.1 (.msh), Abaqus or CalculiX (.inp), VTK (.vtu, .vtk)
+    /// File to read: Gmsh 1, 2.2, 4.0 or 4.1 (.msh), Abaqus or CalculiX (.inp), VTK (.vtu, .vtk)
     pub from: PathBuf,
-    /// The file to write, by its suffix Gmsh (.msh), Abaqus (.inp), VTK (.vtu) or the boundary alone as
-    /// .stl; another one than FROM
+    /// File to write, other than FROM. The suffix selects the format: Gmsh (.msh), Abaqus (.inp), VTK (.vtu),
+    /// or the boundary alone (.stl)
     pub to: PathBuf,
-    /// Cells to write: tet4, tet10, hex8 or hex20; by default those of the file
+    /// Kind of cells to write: tet4, tet10, hex8 or hex20 (default: that of the file)
     #[arg(long)]
     pub element: Option<String>,
-    /// Leave nodes out that no element and no set names, which are refused otherwise
+    /// Drop nodes that belong to no element and no set; by default such a mesh is refused
     #[arg(long)]
     pub drop_unused: bool,
-    /// Join pieces whose faces coincide but share no nodes
+    /// Join pieces with coincident faces that share no nodes
     #[arg(long)]
     pub join: bool,
-    /// Turn all cells, whose corners stand in the mirrored order
+    /// Reverse the node order of all cells, for a file in mirrored order
     #[arg(long)]
     pub turn: bool,
-    /// Version of Gmsh's format for a .msh file: 2.2 (the default, which most programs read) or 4.1
+    /// Gmsh format version of a .msh file: 2.2 (default, read by most programs) or 4.1
     #[arg(long, value_name = "2.2|4.1", value_parser = gmsh_version)]
     pub version: Option<GmshVersion>,
 }
@@ -378,29 +382,29 @@ pub struct ConvertArgs {
 /// Arguments of `mesh make`.
 #[derive(Args)]
 pub struct MakeArgs {
-    /// A closed surface: STL, OBJ or PLY
+    /// Closed surface: STL, OBJ or PLY
     pub surface: PathBuf,
-    /// Mean length of the edges at the surface, such as "3 mm"
+    /// Mean edge length at the surface, such as "3 mm"
     #[arg(long, value_name = "LENGTH", value_parser = length, required_unless_present = "nodes")]
     pub size: Option<f64>,
-    /// About how many nodes to make, in place of --size
+    /// Approximate number of nodes, instead of --size
     #[arg(long, value_name = "N", conflicts_with = "size", value_parser = clap::value_parser!(u32).range(8..=3_000_000))]
     pub nodes: Option<u32>,
-    /// Length unit of the surface, and of the mesh that is written
+    /// Length unit of the surface and of the written mesh
     #[arg(long, default_value = "mm", value_parser = length_unit)]
     pub unit: LengthUnit,
-    /// How often the size of the cells may double inside, away from the surface
+    /// How often the cell size may double inside, away from the surface
     #[arg(long, value_name = "TIMES", default_value_t = 2, value_parser = clap::value_parser!(u32).range(0..=3))]
     pub coarser: u32,
-    /// Cells of one size: --coarser 0
+    /// Cells of uniform size: --coarser 0
     #[arg(long, conflicts_with = "coarser")]
     pub uniform: bool,
-    /// The mesh to write: .msh, .inp or .vtu
+    /// Mesh file to write: .msh, .inp or .vtu
     #[arg(long, value_name = "FILE")]
     pub out: PathBuf,
 }
 
-/// A length with its unit, m.
+/// Parses a length with its unit; returns m.
 pub(super) fn length(text: &str) -> Result<f64, String> {
     let metres = catalogue::Dimension::Length.read(text).map_err(|bad| bad.to_string())?;
     if metres > 0.0 { Ok(metres) } else { Err("a length above zero".into()) }
@@ -414,12 +418,12 @@ fn gmsh_version(text: &str) -> Result<GmshVersion, String> {
     }
 }
 
-/// A unit of the coordinates in a file.
+/// A length unit of coordinates in a file.
 #[derive(Clone, Copy, Debug)]
 pub struct LengthUnit {
-    /// As files and messages have it.
+    /// Name of the unit in files and messages.
     pub name: &'static str,
-    /// Its length in metres.
+    /// Length of the unit, m.
     pub metres: f64,
 }
 

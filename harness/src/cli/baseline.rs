@@ -1,4 +1,4 @@
-//! `tissuebench baseline`: the numbers of a folder of results against those accepted before.
+//! `tissuebench baseline`: compares stored results with accepted ones.
 
 use std::io::{BufRead, IsTerminal, Write};
 
@@ -8,10 +8,11 @@ use reports::baseline::{Baseline, Change, Comparison};
 use crate::cli::args::BaselineArgs;
 use crate::outcome::provenance::processor;
 
-/// Differences printed before the rest is only counted.
+/// Number of differences printed; further ones are only counted.
 const SHOWN: usize = 40;
 
-/// Compares, and accepts what is asked for; the exit code: 0 if no difference is left, else 1; 2 without accepted numbers.
+/// Compares the results and accepts the selected differences. Returns the exit code: 0 if no difference is
+/// left, 1 otherwise, 2 without accepted results.
 pub fn baseline(args: &BaselineArgs) -> Result<u8, ReportError> {
     let now = Baseline::of(&reports::read_numbers(&args.results, "compare")?.records, &processor());
     if !args.file.exists() {
@@ -48,7 +49,7 @@ pub fn baseline(args: &BaselineArgs) -> Result<u8, ReportError> {
     Ok(u8::from(left > 0))
 }
 
-/// Makes the file if all numbers are accepted.
+/// Writes the file of accepted results if all of them are accepted.
 fn first(args: &BaselineArgs, now: &Baseline) -> Result<u8, ReportError> {
     if args.accept.as_deref() != Some("") {
         eprintln!("tissuebench: {} does not exist; `--accept` makes it", args.file.display());
@@ -59,7 +60,7 @@ fn first(args: &BaselineArgs, now: &Baseline) -> Result<u8, ReportError> {
     Ok(0)
 }
 
-/// Prints the differences and returns those accepted: by `--accept`, or one by one on a terminal.
+/// Prints the differences and returns the accepted ones, selected by `--accept` or one by one on a terminal.
 fn choose<'a>(found: &'a Comparison, args: &BaselineArgs) -> Vec<&'a Change> {
     let ask = args.accept.is_none() && !args.check && std::io::stdin().is_terminal();
     if ask {
@@ -76,7 +77,7 @@ fn choose<'a>(found: &'a Comparison, args: &BaselineArgs) -> Vec<&'a Change> {
     found.changes.iter().filter(accepted).collect()
 }
 
-/// Asks for each difference: yes, no, all that are left, or quit.
+/// Asks for each difference: yes, no, all remaining, or quit.
 fn review(changes: &[Change]) -> Vec<&Change> {
     let mut chosen = Vec::new();
     let mut lines = std::io::stdin().lock().lines();
@@ -120,7 +121,7 @@ fn describe(change: &Change) -> String {
     }
 }
 
-/// Relative change of a number.
+/// Returns the relative change of a number.
 fn change_of((before, now): &(&f64, &f64)) -> f64 {
     let scale = before.abs().max(now.abs());
     if scale > 0.0 { (*now - *before).abs() / scale } else { 0.0 }

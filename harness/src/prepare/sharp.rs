@@ -1,7 +1,8 @@
-//! Corners and edges of the body that a tool meets before it comes near the faces around them.
+//! Finds corners and edges of the body that a tool meets before the faces around them.
 //!
-//! The contact points of a face lie inside it. A tool that comes down on the tip of a pyramid would stand far
-//! in the body before it touched the first: there the faces have points at their corners and on their edges.
+//! The contact points of a face lie inside the face. A tool pressed on the tip of a pyramid would penetrate
+//! deeply before touching the first of them. Faces around such a tip receive contact points at their corners
+//! and edges.
 
 use std::collections::BTreeMap;
 
@@ -10,26 +11,26 @@ use geometry::{Facet, Mesh, Point3, Vector3};
 
 use crate::discretise::place;
 
-/// Faces whose normals have a larger product are no edge.
+/// Product of two unit normals above which the faces count as flat.
 const FLAT: f64 = 0.8;
-/// Slope, seen from the tool, from which the faces around a place fall away from it.
+/// Slope, relative to the tool's direction, above which a face falls away from a corner or an edge.
 const SLOPE: f64 = 0.35;
-/// Part of the way to a face's middle at which its slope is taken.
+/// Part of the distance to a face's centre over which the slope is measured.
 const INWARD: f64 = 0.25;
-/// Places on an edge, over its length.
+/// Sampled positions on an edge, as fractions of its length.
 const PLACES: [f64; 3] = [0.25, 0.5, 0.75];
-/// Steps to the tool, and what is left of the way, over the size of the body.
+/// Iterations of the search for the closure at contact, and its tolerance relative to the body's size.
 const STEPS: usize = 60;
 const REACHED: f64 = 1e-9;
 
-/// A face with its corners, their middle and its unit normal.
+/// A face with its corners, its centre (m) and its unit normal.
 struct Face {
     corners: Vec<u32>,
     middle: Point3,
     normal: Vector3,
 }
 
-/// Marks the facets around corners and edges that the tool meets first, of those that it passes.
+/// Marks the facets around corners and edges that the tool meets first. Only facets that it passes count.
 pub(super) fn mark(
     mesh: &Mesh,
     facets: &[Facet],
@@ -61,7 +62,7 @@ pub(super) fn mark(
         if first(&at(corner), None, owners) {
             owners.iter().for_each(|&k| sharp[k] = true);
         }
-        // Each edge at its lower corner.
+        // Each edge is visited at its lower corner.
         let edges = owners.iter().flat_map(|&k| beside(&faces[k].corners, corner));
         let mut ends: Vec<u32> = edges.filter(|&end| end > corner).collect();
         ends.sort_unstable();
@@ -86,15 +87,15 @@ fn face(mesh: &Mesh, facet: Facet) -> Face {
     Face { corners, middle, normal: normal.try_normalize(0.0).unwrap_or_default() }
 }
 
-/// The two corners of a face on either side of one of them.
+/// Returns the two neighbours of a corner in a face.
 fn beside(corners: &[u32], corner: u32) -> [u32; 2] {
     let n = corners.len();
     let k = corners.iter().position(|&c| c == corner).unwrap_or(0);
     [corners[(k + 1) % n], corners[(k + n - 1) % n]]
 }
 
-/// Closure (m) at which a tool meets a place of a body of that size (m), which stays where it is; `None`
-/// where it passes by.
+/// Returns the closure (m) at which a tool meets the fixed point `x` of a body of size `size` (m); `None` if
+/// the tool passes by.
 fn way(tool: &Tool, x: &Point3, size: f64) -> Option<f64> {
     let (mut closure, farthest) = (0.0, tool.gap(0.0, x) + 2.0 * size);
     for _ in 0..STEPS {
@@ -102,7 +103,7 @@ fn way(tool: &Tool, x: &Point3, size: f64) -> Option<f64> {
         if gap <= REACHED * size {
             return Some(closure);
         }
-        // Nothing of the tool is nearer than the gap.
+        // No part of the tool is nearer than the gap.
         closure += gap;
         if closure > farthest {
             return None;

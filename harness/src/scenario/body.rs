@@ -1,4 +1,4 @@
-//! The scene's body as a mesh of the size asked for, or as a closed form for clouds.
+//! Meshes the scene's body in the requested size, or gives its closed form for clouds.
 
 use std::sync::Arc;
 
@@ -17,10 +17,11 @@ use super::same_body;
 use crate::Failure;
 use crate::error::Key;
 
-/// More nodes than this are a typing error rather than a wish on one machine.
+/// Most nodes of a mesh; a larger number in a scene for one machine is taken for a typing error.
 pub(super) const MOST_NODES: usize = 3_000_000;
 
-/// A mesh of the body in cells of one kind, checked for inverted cells.
+/// Meshes the body in cells of one kind and checks them for inversion. A mesh from a file must be of the same
+/// body.
 pub fn mesh(body: &Body, kind: CellKind, size: &Size, jitter: Option<Jitter>) -> Result<Mesh, Failure> {
     let mesh = unchecked(body, kind, size, jitter)?;
     quality::check(&mesh).map_err(|bad| inverted(bad, size, jitter))?;
@@ -30,7 +31,8 @@ pub fn mesh(body: &Body, kind: CellKind, size: &Size, jitter: Option<Jitter>) ->
     Ok(mesh)
 }
 
-/// The body in closed form; `None` for a file, whose shape [`file_body::load`] has, and for the octant of a shell.
+/// Returns the body in closed form; `None` for the octant of a shell and for a file, whose shape comes from
+/// [`file_body::load`].
 pub fn shape(body: &Body) -> Option<Arc<dyn Shape + Send + Sync>> {
     match *body {
         Body::Box { min, max } => Some(Arc::new(Cuboid { min: min.into(), max: max.into() })),
@@ -129,7 +131,7 @@ pub(super) fn unchecked(
     }
 }
 
-/// A mesh inside the surface of a file, or inside the boundary of its mesh.
+/// Meshes the interior of a surface file, or of the boundary of a mesh file.
 fn inside(file: &MeshFile, kind: CellKind, size: &Size, jitter: Option<Jitter>) -> Result<Mesh, Failure> {
     if jitter.is_some() {
         return Err(Failure::input(Key::Method("jitter"), "is for boxes; a file has none", "leave it out"));
@@ -166,7 +168,7 @@ fn inside(file: &MeshFile, kind: CellKind, size: &Size, jitter: Option<Jitter>) 
     Ok(if kind == CellKind::Tet10 { raise_order(&mesh) } else { mesh })
 }
 
-/// Refuses what no mesh is made of; asked before one is made, which takes seconds and gigabytes.
+/// Refuses a mesh of too many nodes before it is made, because making it takes seconds and gigabytes.
 fn few_enough(nodes: f64) -> Result<(), Failure> {
     if nodes <= MOST_NODES as f64 {
         return Ok(());
@@ -187,7 +189,7 @@ fn cuboid(
     box_mesh(kind, min.into(), max.into(), cells, grading, jitter)
 }
 
-/// A cell turned inside out, by the file that holds it, by jitter, or by the size asked for.
+/// Returns the error for an inverted cell, at the key of its cause: the file, the jitter or the size.
 fn inverted(bad: InvertedElement, size: &Size, jitter: Option<Jitter>) -> Failure {
     let (key, help) = match (size, jitter) {
         (Size::File(file), _) => {
@@ -213,10 +215,10 @@ fn ungenerated(bad: GenerateError, size: &Size, jitter: Option<Jitter>) -> Failu
     }
 }
 
-/// Cells across the narrowest extent at level 1. Levels double it.
+/// Returns the number of cells across the narrowest extent at level 1. Each level doubles it.
 pub(super) fn base(body: &Body) -> usize {
     match body {
-        // Two cells of depth: one cannot bend.
+        // Two cells of depth, because a single one cannot bend.
         Body::Box { .. }
         | Body::Cylinder { .. }
         | Body::Ball { .. }
@@ -226,7 +228,7 @@ pub(super) fn base(body: &Body) -> usize {
     }
 }
 
-/// The member of a family whose node count comes nearest.
+/// Returns the mesh of the family with the node count nearest to `wanted`.
 fn nearest_count(family: impl Fn(usize) -> Result<Mesh, Failure>, wanted: usize) -> Result<Mesh, Failure> {
     let off = |mesh: &Mesh| mesh.points().len().abs_diff(wanted);
     let mut best = family(1)?;
@@ -243,7 +245,7 @@ fn nearest_count(family: impl Fn(usize) -> Result<Mesh, Failure>, wanted: usize)
     Ok(best)
 }
 
-/// A mesh file as it is, its pieces joined where the scene asks for that.
+/// Reads a mesh file and joins its pieces if the scene requests it.
 pub(super) fn read(file: &MeshFile, key: Key) -> Result<Mesh, Failure> {
     let mesh = files::read(&file.path, file.unit)
         .map_err(|bad| Failure::input(key, format!("can't be read: {bad}"), files::READ))?;
@@ -259,7 +261,8 @@ pub(super) fn read(file: &MeshFile, key: Key) -> Result<Mesh, Failure> {
     })
 }
 
-/// A mesh file in the kind asked for: linear cells are raised to their quadratic kind with straight edges.
+/// Reads a mesh file in cells of one kind. Linear cells are raised to their quadratic kind with straight
+/// edges.
 fn from_file(file: &MeshFile, kind: CellKind) -> Result<Mesh, Failure> {
     let mesh = read(file, Key::Size("file"))?;
     let fits = |mesh: &Mesh, kind| (0..mesh.cell_count()).all(|c| mesh.kind(c) == kind);
@@ -281,7 +284,7 @@ fn from_file(file: &MeshFile, kind: CellKind) -> Result<Mesh, Failure> {
     }
 }
 
-/// Corner coordinates as a point.
+/// Converts coordinates to a point.
 pub fn point(x: [f64; 3]) -> Point3 {
     Point3::from(x)
 }

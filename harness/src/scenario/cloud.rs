@@ -14,31 +14,31 @@ use crate::discretise::place;
 use crate::discretise::{Coupled, Dilation, Discretisation, Essential, InnerPoints, Refine};
 use crate::error::Key;
 
-/// Stabilisation of Nitsche's method with smoothed gradients where the scene gives none: times (lambda + 2 mu) / h with h
-/// from the trace inequality. Above 1 the matrix is definite; 4 leaves half of the energy.
+/// Default stabilisation of Nitsche's method with smoothed gradients, times (lambda + 2 mu) / h with h from
+/// the trace inequality. The matrix is definite above 1; with 4, half of the energy is left.
 const NITSCHE_SMOOTHED: f64 = 4.0;
-/// The same with other gradients and h the node spacing. 10 is too little at
-/// support scale 1.2 with one point per face and at 2.0 with three; from 20 on the matrix stayed definite.
+/// Default stabilisation with other gradients, with h the node spacing. A value of 10 is too small at support
+/// scale 1.2 with one point per face and at 2.0 with three. From 20 on the matrix stayed definite.
 const NITSCHE: f64 = 100.0;
-/// Penalty where the scene gives none: times E / h.
+/// Default penalty, times E / h.
 pub(super) const PENALTY: f64 = 1e4;
 
-/// A body with an inside test, which clouds of an exact count and grids need.
+/// A body with an inside test, required by grids and by clouds of an exact node count.
 type Body = Arc<dyn Shape + Send + Sync>;
 
-/// Nodes with the cells that they are integrated over, and the mesh whose nodes they are, if any.
+/// Placed nodes, the cells for their integration, and the mesh that the nodes come from, if any.
 struct Placed {
     cloud: Cloud,
     background: Mesh,
     cells: Option<Mesh>,
 }
 
-/// How a method on a cloud meets its supports.
+/// How a method on a cloud enforces its supports.
 #[derive(Clone)]
 enum Supports {
-    /// In the same way whatever the cloud is.
+    /// A method that does not depend on the cloud.
     Enforced(Essential),
-    /// By finite elements at these vertices of the background.
+    /// Coupling to finite elements at these vertices of the background mesh.
     Coupled(Vec<u32>),
 }
 
@@ -51,19 +51,19 @@ impl Supports {
     }
 }
 
-/// All of an element-free method but its nodes.
+/// An element-free method without its nodes.
 #[derive(Clone)]
 struct CloudMethod {
     background: Arc<Mesh>,
-    /// The mesh whose nodes the cloud is, where supports are ellipsoids that follow its cells.
+    /// The mesh that the nodes come from, if supports are ellipsoids that follow its cells.
     followed: Option<Arc<Mesh>>,
     functions: Functions,
     integration: Integration,
     supports: Supports,
-    /// Whether nodes count in their own region alone.
+    /// Whether nodes act only in their own region.
     separate: bool,
     dilation: Dilation,
-    /// Steps, ratio and seed of a cloud that follows an error.
+    /// Parameters, random seed and body of an adaptively refined cloud.
     refine: Option<(scene::Refine, u64, Body)>,
 }
 
@@ -113,7 +113,8 @@ impl Scenario<'_> {
         method.on(cloud)
     }
 
-    /// The body's shape; of a file that is a mesh only where its cells do not do, since all of its boundary is searched for crossings.
+    /// Returns the body's shape. For a mesh file the shape is built only if the file's cells do not suffice,
+    /// because its whole boundary is searched for intersections.
     fn shape_for(&self, efg: &scene::Efg) -> Result<Option<Body>, Failure> {
         let scene::Body::File(file) = &self.scene.body else { return Ok(body::shape(&self.scene.body)) };
         let of_mesh = matches!(efg.cloud, scene::Cloud::Mesh { .. } | scene::Cloud::File { .. });
@@ -125,7 +126,7 @@ impl Scenario<'_> {
         Ok(Some(shape))
     }
 
-    /// Places the nodes and finds their background.
+    /// Places the nodes and makes their background mesh.
     fn placed(&self, efg: &scene::Efg, shape: Option<&Body>) -> Result<Placed, Failure> {
         let bad = |e: CloudError| match e {
             CloudError::TooFew { .. } | CloudError::TooMany { .. } => {
@@ -175,7 +176,7 @@ impl Scenario<'_> {
         })
     }
 
-    /// All vertices of the background on the scene's supports, ascending.
+    /// Returns all background vertices on the scene's supports, ascending.
     fn constrained_vertices(&self, background: &Mesh) -> Result<Vec<u32>, Failure> {
         let mut vertices = Vec::new();
         for (index, support) in self.scene.supports.iter().enumerate() {
@@ -190,7 +191,7 @@ impl Scenario<'_> {
 }
 
 impl CloudMethod {
-    /// The method on a cloud.
+    /// Discretises the method on a cloud.
     fn on(&self, cloud: Cloud) -> Result<Discretisation, Failure> {
         let (nodes, essential) = match &self.supports {
             Supports::Coupled(vertices) => {
@@ -248,7 +249,7 @@ impl CloudMethod {
         })
     }
 
-    /// How the supports are found, for the plan.
+    /// Describes the support search for the plan.
     fn supports(&self, cloud: &Cloud) -> String {
         let supports = match self.followed {
             Some(_) => "ellipsoids that follow the cells, and neighbours",
@@ -257,7 +258,7 @@ impl CloudMethod {
         format!("{supports} of {} nodes", cloud.points.len())
     }
 
-    /// How the shape functions are made and where, for the plan.
+    /// Describes the shape functions and their evaluation points for the plan.
     fn shape_functions(&self) -> String {
         let functions = match self.functions {
             Functions::MovingLeastSquares { .. } => "moving least squares",
@@ -291,7 +292,7 @@ impl CloudMethod {
     }
 }
 
-/// Refuses nodes that lie beyond the cells to integrate over by more than their spacing: no cell would hold
+/// Refuses nodes that lie outside the background cells by more than their spacing: no cell would contain
 /// them. Coarse cells leave out thin parts of a body.
 fn in_background(cloud: &Cloud, background: &Mesh) -> Result<(), Failure> {
     let key = || Key::Method("background");
@@ -321,11 +322,11 @@ fn in_background(cloud: &Cloud, background: &Mesh) -> Result<(), Failure> {
     ))
 }
 
-/// Where the points of a rule lie.
+/// Returns the integration points of a rule, as far as they are known.
 fn inner(integration: &Integration) -> InnerPoints {
     let per_cell = match integration {
         Integration::NodeSmoothed { stabilisation, .. } => usize::from(*stabilisation != 0.0),
-        // The clipped grid itself costs a test of every point: a centroid per cell stands for it.
+        // Clipping the grid would test every point; a centroid per cell stands for its points.
         Integration::Grid { .. } => 1,
         by_cells => by_cells.points_per_cell().unwrap_or(0),
     };
@@ -333,7 +334,8 @@ fn inner(integration: &Integration) -> InnerPoints {
     InnerPoints { per_cell, vertices, grid: matches!(integration, Integration::Grid { .. }) }
 }
 
-/// The rule that a scene names; a grid's cells are as large as the mean spacing (m) of the nodes unless it says otherwise.
+/// Returns the integration rule of the scene. A grid's cells are as large as the mean node spacing (m) unless
+/// the scene gives another size.
 fn integration(
     rule: scene::Integration,
     spacing: f64,
@@ -364,7 +366,8 @@ fn integration(
     })
 }
 
-/// How the scene constrains the cloud; `None` for a coupled cloud, whose elements it takes a background to find.
+/// Returns the scene's essential conditions; `None` for a coupled cloud, whose elements depend on the
+/// background mesh.
 fn essential(efg: &scene::Efg) -> Option<Essential> {
     Some(match efg.essential {
         scene::Essential::Nitsche { factor } => {
@@ -381,7 +384,7 @@ fn essential(efg: &scene::Efg) -> Option<Essential> {
     })
 }
 
-/// The shape functions that a scene names.
+/// Returns the shape functions of the scene.
 fn functions(functions: scene::Functions) -> Functions {
     match functions {
         scene::Functions::MovingLeastSquares { kernel, support, basis, .. } => {
@@ -403,7 +406,7 @@ fn functions(functions: scene::Functions) -> Functions {
     }
 }
 
-/// Points of a face rule in words.
+/// Describes the number of points on a face.
 fn per_face(points: usize) -> String {
     if points == 1 { "1 point per face".into() } else { format!("{points} points per face") }
 }

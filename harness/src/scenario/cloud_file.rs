@@ -1,4 +1,4 @@
-//! A cloud from a file: its nodes, and whether body and scene agree with them.
+//! Clouds from files, checked against the body and the scene.
 
 use std::collections::HashMap;
 
@@ -10,26 +10,27 @@ use crate::Failure;
 use crate::adapter::npy;
 use crate::error::Key;
 
-/// A node this far beyond the surface, over the diagonal of the body, is taken to lie on it: what six digits of text leave.
+/// Largest distance beyond the surface that counts as on the surface, over the body's diagonal: the rounding
+/// of text with six digits.
 const ON_SURFACE: f64 = 1e-6;
 
-/// The nodes of a file, and its cells where it is a mesh.
+/// Nodes of a file, and the mesh if the file has cells.
 pub struct Read {
     /// Nodes and their spacing.
     pub cloud: Cloud,
-    /// The mesh, where the file has one.
+    /// The mesh, if the file has cells.
     pub mesh: Option<Mesh>,
-    /// Line of each node, where the file has no cells.
+    /// Line number of each node; empty if the file has cells or is an array.
     lines: Vec<usize>,
 }
 
 impl Read {
-    /// Where the file has a node.
+    /// Describes the location of a node in the file.
     fn place(&self, node: usize) -> String {
         self.lines.get(node).map_or(format!("node {node}"), |line| format!("line {line}"))
     }
 
-    /// Refuses nodes outside of the body, in closed form where there is one, else the cells to integrate over.
+    /// Refuses nodes outside the body. The body is its closed form, or else the background cells.
     pub fn within(
         &self,
         shape: Option<&(dyn Shape + Send + Sync)>,
@@ -73,12 +74,13 @@ impl Read {
 
 const FILE: Key = Key::Method("cloud.file");
 
-/// Distance of a point beyond the surface, m; 0 inside.
+/// Returns the distance of a point beyond the surface, m; 0 inside.
 fn beyond(shape: &(dyn Shape + Send + Sync), p: &Point3) -> f64 {
     if shape.inside(p) { 0.0 } else { (shape.project_to_surface(p) - p).norm() }
 }
 
-/// Reads the nodes of a mesh file, of an array in `.npy` or of lines `x, y, z`; `nodes` is how many the scene says there are.
+/// Reads the nodes of a mesh file, of a `.npy` array, or of text lines `x, y, z`. `nodes` is the count stated
+/// in the scene.
 pub fn read(file: &MeshFile, nodes: Option<usize>) -> Result<Read, Failure> {
     let (points, lines, mesh) = if files::is_mesh(&file.path) {
         let mesh = files::read(&file.path, file.unit)
@@ -98,7 +100,7 @@ pub fn read(file: &MeshFile, nodes: Option<usize>) -> Result<Read, Failure> {
             format!("give nodes = {}, or leave it out: {wanted} is not what the file has", points.len());
         return Err(Failure::input(Key::Method("nodes"), problem, &help));
     }
-    // The spacing is only known of a cloud without duplicates.
+    // The spacing is defined only for a cloud without duplicates.
     let nothing = Cloud { points: Vec::new(), spacing: Vec::new() };
     let unspaced = Read { cloud: nothing, mesh, lines };
     if let Some([first, second]) = duplicate(&points) {
@@ -114,7 +116,7 @@ pub fn read(file: &MeshFile, nodes: Option<usize>) -> Result<Read, Failure> {
     Ok(Read { cloud, ..unspaced })
 }
 
-/// The nodes of an array of NumPy's: a row of x, y, z for each, counted from 0.
+/// Reads the nodes of a NumPy array with one row of x, y, z per node.
 fn array(file: &MeshFile) -> Result<Vec<Point3>, Failure> {
     let wrong = |bad: String| {
         let problem = format!("can't be read: {} {bad}", file.path.display());
@@ -131,11 +133,11 @@ fn array(file: &MeshFile) -> Result<Vec<Point3>, Failure> {
     Ok(rows.map(|x| Point3::new(x[0], x[1], x[2]) * file.unit).collect())
 }
 
-/// The first node that stands where one before it does.
+/// Returns the first node that coincides with an earlier one, after that one.
 fn duplicate(points: &[Point3]) -> Option<[usize; 2]> {
     let mut seen = HashMap::with_capacity(points.len());
     points.iter().enumerate().find_map(|(node, p)| {
-        // A sum makes a positive zero of a negative one.
+        // Adding zero turns a negative zero into a positive one.
         let bits = [p.x, p.y, p.z].map(|c| (c + 0.0).to_bits());
         seen.insert(bits, node).map(|first| [first, node])
     })

@@ -1,4 +1,4 @@
-//! Nodes, cells and rules of a scenario's method: the one place that tells finite elements and clouds apart.
+//! Discretises the method of a scenario: the only module that distinguishes finite elements from clouds.
 
 use std::sync::Arc;
 
@@ -14,7 +14,7 @@ use crate::discretise::{Dilation, Discretisation, Essential, InnerPoints};
 use crate::error::Key;
 
 impl Scenario<'_> {
-    /// Nodes, cells and rules.
+    /// Discretises the scenario's method: its nodes, cells and rules.
     pub fn discretise(&self) -> Result<Discretisation, Failure> {
         let found = match &self.method.family {
             Family::Fem(fem) => self.elements(fem),
@@ -48,7 +48,7 @@ impl Scenario<'_> {
         })
     }
 
-    /// Any other family over a mesh.
+    /// Discretises a registered family over a mesh.
     fn over_mesh(&self, over: &scene::OverMesh) -> Result<Discretisation, Failure> {
         let family = &over.family;
         let mesh = body::mesh(&self.scene.body, family.cells, &over.size, over.jitter)?;
@@ -72,7 +72,7 @@ impl Scenario<'_> {
         })
     }
 
-    /// Numbers the cells by the scene's material regions: 0 the scene's material, k + 1 its k-th region.
+    /// Numbers the cells by material: 0 for the scene's material, k + 1 for its k-th region.
     pub(super) fn with_regions(&self, mesh: Mesh) -> Result<Mesh, Failure> {
         if self.scene.regions.is_empty() {
             let cells = mesh.cell_count();
@@ -116,8 +116,8 @@ impl Scenario<'_> {
         Ok(mesh.with_regions(regions, names.collect()))
     }
 
-    /// Refuses a cell that two regions name with different materials; of places by comparisons the later one
-    /// counts.
+    /// Refuses a cell in two named regions with different materials. For regions given by comparisons the
+    /// later one applies.
     fn one_material(&self, regions: [usize; 2], cell: usize) -> Result<(), Failure> {
         let [first, second] = regions.map(|index| &self.scene.regions[index]);
         if !matches!((&first.place, &second.place), (scene::Place::On(_), scene::Place::On(_))) {

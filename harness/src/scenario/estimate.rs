@@ -1,6 +1,8 @@
-//! What a method of a scene takes, before any mesh is made: nodes by the volume of the body, steps by the procedure, memory and
-//! time by what both took elsewhere. Good to a factor of about three: enough to deal out the runs of a study, and to refuse one
-//! that a slip of the pen has made a thousand times too large.
+//! Estimates nodes, steps, memory and time of a method before any mesh is made. Nodes follow from the body's
+//! volume, steps from the procedure, and memory and time from measured runs.
+//!
+//! Estimates are good to a factor of about three. They serve to distribute the runs of a study and to refuse
+//! a run that a typing error has made a thousand times too large.
 
 use cases::scene::{
     Body, Cloud, Element, ErrorKind, External, Family, MeshFile, Method, Procedure, Reference, Scene,
@@ -13,36 +15,37 @@ use super::body::{self, base, shape};
 use super::expected::narrowest;
 use super::file_body;
 
-/// Bytes of a mesh file for a node with its cells.
+/// Bytes of a mesh file per node, including cells.
 const FILE_BYTES: f64 = 250.0;
-/// Iterations of Newton's method in a step.
+/// Newton iterations per step.
 const ITERATIONS: f64 = 4.0;
-/// A cloud's rows are so many times as long as an element's.
+/// Ratio of a cloud's row length to that of an element.
 const CLOUD: f64 = 8.0;
-/// Seconds to assemble and factor a matrix of N unknowns over N^1.5; for each node and explicit step.
+/// Time, s, to assemble and factor a matrix of N unknowns, over N^1.5; and time, s, per node and explicit
+/// step.
 const FACTOR: f64 = 1e-7;
 const EXPLICIT: f64 = 1e-7;
-/// A run of more seconds is refused; one of more explicit steps is by itself.
+/// Longest run that is accepted, s, and most explicit steps; another check refuses more steps.
 const MOST_SECONDS: f64 = 12.0 * 3600.0;
 const MOST_STEPS: f64 = 1e7;
-/// Seconds of the smallest run.
+/// Time of the smallest run, s.
 const LEAST: f64 = 1e-3;
 
-/// What a run is about to take.
+/// Estimated cost of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Estimate {
-    /// Nodes.
+    /// Number of nodes.
     pub nodes: f64,
-    /// Load steps or time steps.
+    /// Number of load steps or time steps.
     pub steps: f64,
-    /// Bytes of memory.
+    /// Memory, bytes.
     pub bytes: f64,
-    /// Seconds of one solution.
+    /// Time of one solution, s.
     pub seconds: f64,
 }
 
 impl Estimate {
-    /// What it is, in words, if it is more than anyone means to run: twice the memory of the machine, or half a day.
+    /// Describes the cost if it exceeds any plausible intention: twice the machine's memory, or half a day.
     fn excess(&self) -> Option<String> {
         let too_large = self.bytes > 2.0 * memory() || self.seconds > MOST_SECONDS;
         too_large.then(|| {
@@ -57,9 +60,10 @@ impl Estimate {
     }
 }
 
-/// Refuses a method of a scene that takes more than anyone means to spend, or the reference that it needs. What no `--force` lifts is
-/// left to the checks that say more about it: a mesh of too many nodes, explicit dynamics in too many steps.
-/// Estimated seconds are multiplied by the factor that runs of the scene took before.
+/// Refuses a method of a scene, or its reference, if the estimated cost exceeds any plausible intention. A
+/// mesh of too many nodes and explicit dynamics with too many steps are left to checks with better messages,
+/// which `--force` does not lift. The estimated time is multiplied by `factor`, from earlier runs of the
+/// scene.
 pub fn too_large(scene: &Scene, method: &Method, factor: f64) -> Option<SceneError> {
     let of_reference = || {
         let (method, size) = reference(scene)?;
@@ -68,7 +72,7 @@ pub fn too_large(scene: &Scene, method: &Method, factor: f64) -> Option<SceneErr
     refuse(scene, method, None, factor).or_else(of_reference)
 }
 
-/// The same of a method alone, whose size is at this key unless it is the method's own.
+/// Checks one method. `size` is the key of its size if that is not the method's own key.
 fn refuse(scene: &Scene, method: &Method, size: Option<String>, factor: f64) -> Option<SceneError> {
     let found = estimate(scene, &method.family);
     let found = Estimate { seconds: factor * found.seconds, ..found };
@@ -90,7 +94,7 @@ fn refuse(scene: &Scene, method: &Method, size: Option<String>, factor: f64) -> 
     Some(scene.error(ErrorKind::Invalid, &key, &problem, Some(help)))
 }
 
-/// Memory of this machine in bytes; where the system does not say, that of a large one.
+/// Returns the memory of this machine, bytes; if unknown, that of a large one.
 fn memory() -> f64 {
     let known = || {
         let text = std::fs::read_to_string("/proc/meminfo").ok()?;
@@ -100,7 +104,7 @@ fn memory() -> f64 {
     known().unwrap_or(256e9)
 }
 
-/// The method that all others of a scene are compared with, where that is solved, and the size that is given for it.
+/// Returns the scene's reference method, if the reference is computed, and the size given for it.
 fn reference(scene: &Scene) -> Option<(Method, Option<&Size>)> {
     let Some(Reference::Method { id, size }) = &scene.reference else { return None };
     let mut method = scene.method(id)?.clone();
@@ -110,12 +114,12 @@ fn reference(scene: &Scene) -> Option<(Method, Option<&Size>)> {
     Some((method, size.as_ref()))
 }
 
-/// Of the reference that all methods of a scene are compared with, where that is solved.
+/// Estimates the cost of the scene's reference method, if the reference is computed.
 pub fn of_reference(scene: &Scene) -> Option<Estimate> {
     reference(scene).map(|(method, _)| estimate(scene, &method.family))
 }
 
-/// Of one of a scene's methods.
+/// Estimates the cost of one of the scene's methods.
 pub fn estimate(scene: &Scene, family: &Family) -> Estimate {
     let (nodes, across, rows) = size(scene, family);
     let steps = steps(scene, across);
@@ -124,7 +128,7 @@ pub fn estimate(scene: &Scene, family: &Family) -> Estimate {
     let (bytes, seconds) = match &scene.procedure {
         Procedure::Prepare => (1e3 * nodes, 1e-5 * nodes),
         Procedure::Explicit(_) => (1e3 * nodes, EXPLICIT * nodes * steps),
-        // Above a few ten thousand unknowns by multigrid, whose memory grows as they do.
+        // Multigrid is used above some ten thousand unknowns; its memory is proportional to their number.
         Procedure::Linear { .. } => (factor(unknowns).min(4e3 * unknowns), solve),
         Procedure::Modes { .. } => (factor(unknowns), 10.0 * solve),
         Procedure::Static(_) | Procedure::ImplicitDynamic(_) => {
@@ -134,12 +138,13 @@ pub fn estimate(scene: &Scene, family: &Family) -> Estimate {
     Estimate { nodes, steps, bytes: rows * bytes, seconds: LEAST + rows * seconds }
 }
 
-/// Bytes of a matrix with its factor.
+/// Returns the memory of a matrix and its factor, bytes.
 fn factor(unknowns: f64) -> f64 {
     1e3 * unknowns + 80.0 * unknowns.powf(4.0 / 3.0)
 }
 
-/// Nodes, cells across the narrowest extent, and how long rows are against those of linear elements.
+/// Returns the number of nodes, the cells across the narrowest extent, and the row length relative to linear
+/// elements.
 fn size(scene: &Scene, family: &Family) -> (f64, f64, f64) {
     let body = &scene.body;
     let of_cloud = |count: usize| (count as f64, (count as f64).cbrt(), CLOUD);
@@ -162,7 +167,7 @@ fn size(scene: &Scene, family: &Family) -> (f64, f64, f64) {
                 (nodes(cells, 1.0), across, CLOUD)
             }
             Cloud::Uniform { nodes, .. } | Cloud::Graded { nodes, .. } => of_cloud(*nodes),
-            // Each of its clouds is solved.
+            // Each refined cloud is solved.
             Cloud::Refined { nodes, refine, .. } => {
                 let (nodes, across, rows) = of_cloud(*nodes);
                 (nodes, across, rows * (1 + refine.steps) as f64)
@@ -175,7 +180,7 @@ fn size(scene: &Scene, family: &Family) -> (f64, f64, f64) {
     }
 }
 
-/// Cells of a body, about cubes, and how many are across its narrowest extent.
+/// Returns the number of approximately cubic cells of a body, and their number across its narrowest extent.
 fn cells(body: &Body, size: &Size) -> (f64, f64) {
     let across = match size {
         Size::Level(level) => base(body) as f64 * f64::from(*level - 1).exp2(),
@@ -190,7 +195,7 @@ fn cells(body: &Body, size: &Size) -> (f64, f64) {
     (volume(body) / (narrowest(body) / across).powi(3), across)
 }
 
-/// Corners of so many cells, each edge cut in so many parts.
+/// Returns the number of corners of `cells` cells in a cube, with each edge divided into `parts`.
 fn nodes(cells: f64, parts: f64) -> f64 {
     (parts * cells.cbrt() + 1.0).powi(3)
 }
@@ -209,7 +214,8 @@ fn volume(body: &Body) -> f64 {
     }
 }
 
-/// Load steps; time steps of explicit dynamics by the time that a wave takes through a cell.
+/// Returns the number of load steps or time steps. Explicit steps follow from the travel time of a wave
+/// through a cell.
 fn steps(scene: &Scene, across: f64) -> f64 {
     match &scene.procedure {
         Procedure::Prepare | Procedure::Linear { .. } | Procedure::Modes { .. } => 1.0,
@@ -218,7 +224,7 @@ fn steps(scene: &Scene, across: f64) -> f64 {
         Procedure::Explicit(explicit) => {
             let (law, density) = (scene.material.law(), scene.material.density.unwrap_or(1e3));
             let speed = ((law.lambda() + 2.0 * law.mu()) / density).sqrt();
-            // Flat cells of an organ stand less than a third of the mean one's.
+            // The height of an organ's flat cells is less than a third of the mean cell size.
             let stable = 0.3 * narrowest(&scene.body) / across / speed;
             let stable = if stable > 0.0 { explicit.safety * stable } else { f64::MAX };
             (explicit.ramp.duration / explicit.step.unwrap_or(stable)).max(explicit.ramp.steps as f64)
@@ -252,7 +258,7 @@ method = [{ id = "m", family = "fem", element = "ELEMENT", size = SIZE }]
 
     #[test]
     fn nodes_are_those_of_the_mesh_within_a_third() {
-        // 16 x 16 x 8 cells; corners, and of a quadratic element the middles of edges.
+        // 16 x 16 x 8 cells: corners, and midpoints of edges for quadratic elements.
         let corners = 17.0 * 17.0 * 9.0;
         let (tet10, hex20) = (33.0 * 33.0 * 17.0, corners + 16.0 * 17.0 * 9.0 * 2.0 + 17.0 * 17.0 * 8.0);
         for (element, exact) in [("tet4", corners), ("hex8", corners), ("tet10", tet10), ("hex20", hex20)] {

@@ -1,4 +1,5 @@
-//! How many nodes a size makes, before any of them is made: a mesh of a hundred million cells is refused at once.
+//! Expected node counts of a size, before a mesh is made: a mesh of a hundred million cells is refused at
+//! once.
 
 use cases::scene::{self, Body, Cloud, Family, Size};
 use geometry::CellKind;
@@ -9,7 +10,8 @@ use super::discretise::kind;
 use super::{Scenario, file_body};
 
 impl Scenario<'_> {
-    /// About how many nodes the method's meshes and clouds have, its background included; 0 for those of files.
+    /// Returns the approximate number of nodes of the method's meshes and clouds, including its background; 0
+    /// for files.
     pub fn expected_nodes(&self) -> f64 {
         let body = &self.scene.body;
         match &self.method.family {
@@ -37,10 +39,10 @@ fn cloud(body: &Body, cloud: &scene::Cloud) -> f64 {
     }
 }
 
-/// Nodes of a mesh of the body.
+/// Returns the number of nodes of a mesh of the body.
 fn nodes(body: &Body, kind: CellKind, size: &Size) -> f64 {
     match *size {
-        // A box a million times as long as it is narrow has more nodes than asked for at its coarsest.
+        // The coarsest mesh of a box a million times as long as it is narrow has more nodes than requested.
         Size::Nodes(wanted) => of_family(body, kind, 1.0).max(wanted as f64),
         Size::Spacing(spacing) if matches!(body, Body::File(_)) => of_spacing(body, kind, spacing),
         Size::Spacing(spacing) => of_family(body, kind, (narrowest(body) / spacing).round().max(1.0)),
@@ -50,7 +52,8 @@ fn nodes(body: &Body, kind: CellKind, size: &Size) -> f64 {
     }
 }
 
-/// Nodes of a body's mesh with `n` cells across its narrowest extent: exactly of a box, at least and about of the others.
+/// Returns the number of nodes of a mesh with `n` cells across the body's narrowest extent: exact for a box,
+/// a close lower bound for other bodies.
 pub(super) fn of_family(body: &Body, kind: CellKind, n: f64) -> f64 {
     let layers = (n / 2.0).ceil();
     let cells = match *body {
@@ -63,12 +66,14 @@ pub(super) fn of_family(body: &Body, kind: CellKind, n: f64) -> f64 {
             (n * n + 4.0 * n * layers) * (height / radius * n).round().max(1.0)
         }
         Body::Ball { .. } | Body::Kidney { half: false, .. } => n * n * n + 6.0 * n * n * layers,
-        // 3 n by 7 n / 2 by n cells with n layers around them, and the half of it; drawn mildly there are a quarter more.
+        // Half of a body with 3 n by 7 n / 2 by n cells in the core and n layers around them. Mild grading
+        // has a quarter more.
         Body::Kidney { half: true, .. } => 20.0 * n * n * n,
         Body::SphereShell { octant, .. } => n * n * n * if octant { 3.0 } else { 6.0 },
         Body::File(_) => return of_spacing(body, kind, narrowest(body) / n),
     };
-    // Nodes of one cell that no other counts: its corners and the middles of its edges, of six tetrahedra in a hexahedron.
+    // Nodes per cell, with shared nodes counted once: corners and edge midpoints, for six tetrahedra in a
+    // hexahedron.
     let each = match kind {
         CellKind::Hex8 | CellKind::Tet4 => 1.0,
         CellKind::Hex20 => 4.0,
@@ -77,7 +82,7 @@ pub(super) fn of_family(body: &Body, kind: CellKind, n: f64) -> f64 {
     cells * each
 }
 
-/// Nodes of a box of so many cells along x, y and z.
+/// Returns the number of nodes of a box with `cells` cells along x, y and z.
 pub(super) fn of_box(kind: CellKind, cells: [f64; 3]) -> f64 {
     let [x, y, z] = cells;
     let corners = (x + 1.0) * (y + 1.0) * (z + 1.0);
@@ -90,7 +95,7 @@ pub(super) fn of_box(kind: CellKind, cells: [f64; 3]) -> f64 {
     }
 }
 
-/// The extent (m) that a size's number of cells divides.
+/// Returns the length (m) that the number of cells of a size divides.
 pub(super) fn narrowest(body: &Body) -> f64 {
     match *body {
         Body::Box { min, max } => (0..3).map(|a| max[a] - min[a]).fold(f64::MAX, f64::min),
@@ -101,7 +106,7 @@ pub(super) fn narrowest(body: &Body) -> f64 {
     }
 }
 
-/// About how many nodes a mesh inside the surface of a file has; none of a file that can't be read.
+/// Returns the approximate number of nodes of a mesh inside a surface file; 0 if the file cannot be read.
 pub(super) fn of_spacing(body: &Body, kind: CellKind, spacing: f64) -> f64 {
     let Body::File(file) = body else { return 0.0 };
     let corners = file_body::load(file)
@@ -114,7 +119,8 @@ mod tests {
     use super::super::body;
     use super::*;
 
-    /// What is refused before it is made would have been refused after: no count is above the true one, and none far below.
+    /// Any mesh refused by the estimate would be refused after meshing: no estimate exceeds the true count,
+    /// and none is far below.
     #[test]
     fn nodes_are_foreseen() {
         let bodies = [

@@ -1,4 +1,4 @@
-//! A method of a solver outside this program: its mesh, and whether its adapter takes what the scene asks for.
+//! Methods of external solvers: their mesh, and the features of the scene that the adapter must support.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -15,7 +15,7 @@ use crate::error::{Foreign, ForeignStatus, Key};
 use crate::process::Limits;
 
 impl Scenario<'_> {
-    /// The mesh of the elements that the solver is said to have, and who solves.
+    /// Discretises the body with the solver's elements and attaches the external solver.
     pub(super) fn external(&self, external: &scene::External) -> Result<Discretisation, Failure> {
         let bad = |failure: Failure| match failure {
             Failure::Input(problem) => Failure::input(Key::Method("adapter"), problem, ""),
@@ -40,7 +40,7 @@ impl Scenario<'_> {
         About { case: self.case.clone(), method: self.method.id.clone(), element, settings, limits }
     }
 
-    /// What the problem of a method of finite elements is called, whoever solves it.
+    /// Names the problem of a finite-element method, whichever solver is used.
     pub(crate) fn about_elements(&self) -> Result<About, Failure> {
         let fem = match &self.method.family {
             Family::Fem(fem) => fem,
@@ -61,7 +61,7 @@ impl Scenario<'_> {
         Ok(self.about(fem.element.name(), BTreeMap::new(), limits))
     }
 
-    /// Refuses a procedure that problems in files do not have yet.
+    /// Refuses a procedure that problem files do not support yet.
     pub(crate) fn check_files(&self) -> Result<(), Failure> {
         match self.scene.procedure.kind() {
             ProcedureKind::Linear | ProcedureKind::Static => Ok(()),
@@ -73,8 +73,9 @@ impl Scenario<'_> {
         }
     }
 
-    /// What the scene asks of a solver: the word that an adapter lists in `can`, and a phrase for messages. Procedures that problems in files
-    /// do not have yet are words of no adapter.
+    /// Lists the features a solver needs for the scene: the word that an adapter lists in `can`, and a phrase
+    /// for messages. Procedures that problem files do not support yet get an empty word, which no adapter
+    /// lists.
     fn asked(&self) -> Vec<(&'static str, String)> {
         let kind = self.scene.procedure.kind();
         let mut asked = vec![match kind {

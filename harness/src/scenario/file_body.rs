@@ -1,4 +1,5 @@
-//! A body from a file: a closed surface, or a mesh and the surface that is its boundary. Meshes of any size are made inside.
+//! Bodies from files: a closed surface, or a mesh and its boundary surface. Meshes of any size are made
+//! inside.
 
 use std::collections::HashMap;
 use std::path::PathBuf;
@@ -14,22 +15,22 @@ use geometry::{Facet, Mesh, Point3, Surface, Vector3, files, locate};
 use crate::Failure;
 use crate::error::Key;
 
-/// What a file holds: its surface, and the mesh that it is the boundary of, if it has one.
+/// The surface of a file, and the mesh it bounds if the file has one.
 pub struct FileBody {
     pub surface: Arc<Surface>,
     mesh: Option<(Mesh, Vec<Facet>)>,
-    /// Meshes made inside, by their size.
+    /// Meshes made inside the surface, by size.
     made: Mutex<HashMap<Fill, Mesh>>,
 }
 
-/// The size of a mesh that is made inside a surface.
+/// Size of a mesh inside a surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Fill {
-    /// About so many nodes.
+    /// Approximate number of nodes.
     Nodes(usize),
-    /// About so many nodes once the cells are quadratic.
+    /// Approximate number of nodes of the quadratic mesh.
     QuadraticNodes(usize),
-    /// The mean length of edges (m), by its bits.
+    /// Mean edge length (m), as bits.
     Spacing(u64),
 }
 
@@ -39,13 +40,14 @@ impl Fill {
     }
 }
 
-/// A file as it was when it was read.
+/// Identity of a file when it was read: path, unit, joining, length and time of modification.
 type Known = (PathBuf, u64, bool, u64, Option<SystemTime>);
 
-/// Files that were read: each method asks for the body, and to search a surface for crossings takes as long as to read it.
+/// Files already read. Every method requests the body, and searching a surface for intersections takes as
+/// long as reading it.
 static READ: LazyLock<Mutex<HashMap<Known, Arc<FileBody>>>> = LazyLock::new(Mutex::default);
 
-/// Reads the body of a file, once.
+/// Reads the body of a file once.
 pub fn load(file: &MeshFile) -> Result<Arc<FileBody>, Failure> {
     let about = std::fs::metadata(&file.path).ok();
     let (length, modified) = about.map_or((0, None), |about| (about.len(), about.modified().ok()));
@@ -78,13 +80,13 @@ pub fn load(file: &MeshFile) -> Result<Arc<FileBody>, Failure> {
 }
 
 impl FileBody {
-    /// Half the smallest extent (m), as the radius is of a ball.
+    /// Returns half the smallest extent (m), comparable to the radius of a ball.
     pub fn narrowest(&self) -> f64 {
         let [low, high] = self.surface.bounds();
         (high - low).min() / 2.0
     }
 
-    /// Tetrahedra of one size inside the surface, with the regions and the named surfaces of the file.
+    /// Fills the surface with tetrahedra of one size, with the regions and named surfaces of the file.
     pub fn mesh(&self, fill: Fill) -> Result<Mesh, Failure> {
         if let Some(mesh) = self.made.lock().unwrap_or_else(PoisonError::into_inner).get(&fill) {
             return Ok(mesh.clone());
@@ -106,7 +108,8 @@ impl FileBody {
         Ok(mesh)
     }
 
-    /// Gives cells the regions of the file's cells that hold their middles, and faces the names of the closest ones of its boundary.
+    /// Assigns regions and names of the file to a new mesh. A cell takes the region of the file's cell at its
+    /// centre. A face takes the names of the closest boundary face of the file.
     fn named(&self, mesh: Mesh, of_file: &Mesh, faces: &[Facet]) -> Result<Mesh, Failure> {
         let unlocated = |bad| Failure::input(Key::Scene("body.path".into()), format!("{bad}"), "");
         let middle = |nodes: &mut dyn ExactSizeIterator<Item = u32>| {

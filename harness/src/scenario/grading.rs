@@ -1,4 +1,4 @@
-//! A region of comparisons as a ball that a cloud is denser in.
+//! Converts a region of comparisons to a ball in which a cloud is denser.
 
 use cases::scene::{Region, Relation};
 use geometry::shapes::Shape;
@@ -7,10 +7,10 @@ use geometry::{Point3, Refinement};
 use crate::Failure;
 use crate::error::Key;
 
-/// Coarse over fine spacing of a graded cloud.
+/// Ratio of coarse to fine spacing of a graded cloud.
 const RATIO: f64 = 2.5;
 
-/// The ball around the part of the body's bounding box in which the region's comparisons hold.
+/// Returns the ball around the part of the body's bounding box that satisfies the region's comparisons.
 pub fn refinement(shape: &(dyn Shape + Send + Sync), region: &Region) -> Result<Refinement, Failure> {
     let [low, high] = shape.bounds();
     let (mut from, mut to) = (low, high);

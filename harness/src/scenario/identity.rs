@@ -1,4 +1,4 @@
-//! Which run a scenario is.
+//! Identity of a scenario's run in records.
 
 use cases::scene::{self, Family, ProcedureKind};
 
@@ -9,7 +9,7 @@ use crate::adapter;
 use crate::outcome::Identity;
 
 impl Scenario<'_> {
-    /// Which run this is.
+    /// Returns the identity of this run.
     pub fn identity(&self) -> Identity {
         let large = !matches!(self.scene.procedure.kind(), ProcedureKind::Linear | ProcedureKind::Modes);
         let identity = Identity {
@@ -20,7 +20,8 @@ impl Scenario<'_> {
             series: self.method.series.clone(),
             law: large.then(|| self.scene.material.name().into()),
             mass: self.method.mass.map(|mass| mass.name().into()),
-            // From the moduli of a law it comes back as 0.49500000000000005: twelve digits are those of the scene.
+            // Computed from a law's moduli, the value would be 0.49500000000000005. Twelve digits restore the
+            // scene's value.
             poisson: self.laws().map_or(0.0, |(_, materials)| (materials[0].poisson() * 1e12).round() / 1e12),
             level: self.level,
             axis: self.scene.varied.as_ref().map_or(String::new(), |(name, _)| name.clone()),
@@ -98,7 +99,7 @@ fn of_cloud(efg: &scene::Efg, identity: Identity) -> Identity {
     identity
 }
 
-/// A rule of integration in records.
+/// Names an integration rule in records.
 pub(crate) fn rule(integration: scene::Integration) -> String {
     match integration {
         scene::Integration::Gauss { points } => format!("gauss-{points}"),
@@ -125,7 +126,7 @@ fn essential(essential: scene::Essential) -> String {
     }
 }
 
-/// The same word in the records.
+/// Converts the purpose of a scene to that of records.
 pub(crate) fn purpose(of: scene::Purpose) -> Purpose {
     match of {
         scene::Purpose::Patch => Purpose::Patch,

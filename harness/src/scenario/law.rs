@@ -1,4 +1,4 @@
-//! The law of a scene's material as a study has it, and its limit at small strain.
+//! Laws of a scene's materials, with a study's Poisson's ratio, and their small-strain limits.
 
 use cases::scene::{ErrorKind, Material};
 use material::{Law, LinearElastic, Material as _};
@@ -6,7 +6,8 @@ use material::{Law, LinearElastic, Material as _};
 use crate::Failure;
 use crate::error::Key;
 
-/// The law of the material at `key` of the scene, with another Poisson's ratio if one is given and the law takes one.
+/// Returns the law of the material at `key` of the scene. A given Poisson's ratio replaces that of the law,
+/// if the law has one.
 pub fn law(material: &Material, poisson: Option<f64>, key: &str) -> Result<Law, Failure> {
     let Some(poisson) = poisson else { return Ok(material.law().clone()) };
     material.at_poisson(poisson).map_err(|bad| {
@@ -15,7 +16,8 @@ pub fn law(material: &Material, poisson: Option<f64>, key: &str) -> Result<Law, 
     })
 }
 
-/// What the law is at small strain: `E = mu (3 lambda + 2 mu) / (lambda + mu)`, `nu = lambda / (2 (lambda + mu))`.
+/// Returns the small-strain limit of the law: `E = mu (3 lambda + 2 mu) / (lambda + mu)`, `nu = lambda / (2
+/// (lambda + mu))`.
 pub fn small_strain(law: &Law, key: &str) -> Result<LinearElastic, Failure> {
     if let Law::LinearElastic(linear) = law {
         return Ok(*linear);

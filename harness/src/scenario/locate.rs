@@ -1,4 +1,4 @@
-//! From what stopped a run to the key of the scene that caused it: file, line and value.
+//! Finds the scene key that caused a failure: its file, line and value.
 
 use algebra::AlgebraError;
 use cases::scene::{Cloud, ErrorKind, Family, Functions, Method, Procedure, Scene, SupportRule};
@@ -12,7 +12,7 @@ use crate::error::{Finding, Key};
 use crate::scenario::Scenario;
 
 impl Scenario<'_> {
-    /// The failure of this run at the key of the scene that it is about.
+    /// Returns the failure of this run at the scene key it refers to.
     pub fn locate(&self, failure: Failure) -> Failure {
         let finding = match failure {
             Failure::Scene(_) => return failure,
@@ -123,7 +123,7 @@ impl Scenario<'_> {
         }
     }
 
-    /// What helps a static procedure that ends early, if anything does.
+    /// Returns the help for a static procedure that ended early.
     fn more_steps(&self) -> &'static str {
         match &self.method.family {
             Family::Fem(fem) if fem.reduced => {
@@ -216,7 +216,8 @@ impl Scenario<'_> {
     }
 }
 
-/// The tool that stands in the body without a force, where that is what ended a solution: no smaller step helps.
+/// Returns the tool that overlaps the body without a force and so ended a solution, if any. Smaller steps do
+/// not help.
 fn overlapping(error: &StaticError) -> Option<usize> {
     match error {
         StaticError::Stalled { cause, .. } => overlapping(cause),
@@ -225,7 +226,7 @@ fn overlapping(error: &StaticError) -> Option<usize> {
     }
 }
 
-/// A motion that no support holds is blamed on the supports there are; on the body if there is none.
+/// Returns the finding for an unconstrained rigid motion, at the supports, or at the body if there are none.
 fn rigid(scene: &Scene, motions: String) -> Finding {
     let help = "hold it: [[support]] with a place (on or where) and fix = \"xyz\", or the axes that are free";
     let (key, problem) = match scene.supports.len() {
@@ -245,7 +246,7 @@ fn rigid(scene: &Scene, motions: String) -> Finding {
     finding(ErrorKind::NotRun, key, problem, help)
 }
 
-/// The list of supports, or what the only one prescribes.
+/// Returns the key of the list of supports, or of the condition of the only support.
 fn supports(scene: &Scene) -> Key {
     let only = ["support[0].fix", "support[0].move"].into_iter().find(|key| scene.has(key));
     let key = if scene.supports.len() == 1 { only.unwrap_or("support[0]") } else { "support" };

@@ -1,4 +1,5 @@
-//! From a checked scene and one of its methods to what the solvers take: its laws, supports and loads, and the exact solution.
+//! Converts a checked scene and one of its methods for the solvers: laws, supports, loads and the exact
+//! solution.
 
 mod body;
 mod cloud;
@@ -33,27 +34,27 @@ use crate::error::Key;
 use setup::{Applied, Load, Setup, Support};
 use tools::tools;
 
-/// A scene's method with what a study changes of it.
+/// A scene's method with the changes of a study.
 #[derive(Clone, Debug)]
 pub struct Scenario<'a> {
     /// Case name: the stem of the scene's file.
     pub case: String,
     /// The scene.
     pub scene: &'a Scene,
-    /// The method, sizes and kernel already overridden.
+    /// The method, with overridden sizes and kernel.
     pub method: scene::Method,
-    /// Level of the size, 0 if it is given otherwise.
+    /// Level of the size; 0 if the size is given otherwise.
     pub level: u32,
-    /// Poisson's ratio in place of the scene's.
+    /// Poisson's ratio that replaces the scene's.
     pub poisson: Option<f64>,
-    /// The key that the size is from where it is not the method's own.
+    /// Scene key of the size if that is not the method's own key.
     pub size_key: Option<String>,
 }
 
 impl Scenario<'_> {
-    /// The laws by region, and their limits at small strain.
+    /// Returns the law of each region and its small-strain limit.
     fn laws(&self) -> Result<(Vec<Law>, Vec<LinearElastic>), Failure> {
-        // A study varies the ratio of the body, not of its regions.
+        // A study varies Poisson's ratio of the body, not of its regions.
         let ratios = std::iter::once(self.poisson).chain(std::iter::repeat(None));
         let all = self.scene.materials().zip(ratios);
         all.map(|((key, material), poisson)| {
@@ -64,7 +65,7 @@ impl Scenario<'_> {
         .collect()
     }
 
-    /// Materials, supports, loads and the exact solution.
+    /// Builds materials, supports, loads and the exact solution.
     pub fn setup(&self) -> Result<Setup, Failure> {
         self.acting().map_err(|failure| self.locate(failure))
     }
@@ -164,14 +165,14 @@ impl Scenario<'_> {
         series.collect()
     }
 
-    /// The body's material as exact solutions take it.
+    /// Returns the body's material in the form used by exact solutions.
     fn medium(&self, law: &Law, limit: LinearElastic) -> Result<Medium, Failure> {
         scene::medium(law, limit.young(), limit.poisson())
             .map_err(|bad| Failure::input(Key::Scene("material".into()), bad.to_string(), ""))
     }
 
-    /// The scene's exact solution for this run's material, one that moves at the end of its motion; `None` where the scene
-    /// names none.
+    /// Returns the scene's exact solution for this run's material; `None` if the scene names none. A solution
+    /// of a motion is evaluated at the end of the motion.
     fn exact(&self, medium: &Medium) -> Result<Option<Box<dyn Exact>>, Failure> {
         let Some(Reference::Exact { entry, values }) = &self.scene.reference else { return Ok(None) };
         let exact = (entry.build)(medium, values)

@@ -1,4 +1,4 @@
-//! What can be said against a run before it starts: of the scene and its mesh alone.
+//! Warnings about a run before it starts, from its scene and mesh alone.
 
 use std::path::Path;
 
@@ -10,12 +10,13 @@ use super::file_body;
 use crate::discretise::place::{self, tolerance};
 use crate::outcome::Warning;
 
-/// Part by which the nodes of a mesh may differ from those asked for without a word.
+/// Relative difference between requested and actual node counts above which a warning is issued.
 const NEAR: f64 = 0.1;
-/// Part by which the volume of a mesh may differ from the one inside its surface: fine meshes of organs are within 1 %, coarse ones 3 %.
+/// Relative difference between the volumes of a mesh and its surface above which a warning is issued. Fine
+/// meshes of organs are within 1 %, coarse meshes within 3 %.
 const VOLUME: f64 = 0.05;
 
-/// Warnings about the scene on this mesh, and about the size of a method with so many nodes.
+/// Returns warnings about the scene on this mesh, and about the size of a method with `nodes` nodes.
 pub(crate) fn warnings(scene: &Scene, method: &scene::Method, mesh: &Mesh, nodes: usize) -> Vec<Warning> {
     let mut found = Vec::new();
     if !scene.is_moved() {
@@ -33,7 +34,7 @@ pub(crate) fn warnings(scene: &Scene, method: &scene::Method, mesh: &Mesh, nodes
     found
 }
 
-/// Parts of a mesh file that are no mesh.
+/// Warns of parts of a mesh file other than its mesh.
 fn left_out(file: &Path) -> Option<Warning> {
     let mut parts = files::left_out(file);
     parts.retain(|part| part.kind != files::Kind::Values);
@@ -49,7 +50,8 @@ fn left_out(file: &Path) -> Option<Warning> {
     })
 }
 
-/// Contact is between a body and tools: a piece feels nothing of another, even where their faces coincide.
+/// Warns of a body in several pieces. Contact acts only between the body and tools: pieces do not interact,
+/// even if their faces coincide.
 fn apart(mesh: &Mesh) -> Option<Warning> {
     let count = pieces::count(mesh);
     (count > 1).then(|| {
@@ -65,10 +67,11 @@ fn apart(mesh: &Mesh) -> Option<Warning> {
     })
 }
 
-/// Cells inside a surface leave out what is thinner than they are.
+/// Warns of a mesh with another volume than its surface encloses: cells leave out parts thinner than they
+/// are.
 fn other_volume(body: &Body, method: &scene::Method, mesh: &Mesh) -> Option<Warning> {
     let (Body::File(file), false) = (body, matches!(method.size(), Some(Size::File(_)))) else { return None };
-    // It was read to fill it.
+    // The file was already read to fill its surface.
     let enclosed = file_body::load(file).ok()?.surface.volume();
     let ratio = quality::volumes(mesh).iter().sum::<f64>() / enclosed;
     ((ratio - 1.0).abs() > VOLUME).then(|| {
@@ -82,7 +85,8 @@ fn other_volume(body: &Body, method: &scene::Method, mesh: &Mesh) -> Option<Warn
     })
 }
 
-/// A mesh of a closed form comes in steps, one inside a surface as its cells fall.
+/// Warns of a node count other than requested. Meshes of closed forms come in steps of size, and those inside
+/// a surface depend on how the cells fit.
 fn other_size(asked: usize, got: usize) -> Option<Warning> {
     let ratio = got as f64 / asked.max(1) as f64;
     ((ratio - 1.0).abs() > NEAR).then(|| {
@@ -93,12 +97,12 @@ fn other_size(asked: usize, got: usize) -> Option<Warning> {
     })
 }
 
-/// Cells of which some corners lie inside the place of a region and some outside.
+/// Warns of cells with some corners inside a region and some outside.
 fn cut(index: usize, region: &scene::MaterialRegion, mesh: &Mesh) -> Option<Warning> {
     let scene::Place::Where(_) = &region.place else { return None };
     let tolerance = tolerance(mesh);
     let is_cut = |&cell: &usize| {
-        // On the border is neither.
+        // A corner on the border is on neither side.
         let holds = |x| [tolerance, -tolerance].map(|by| place::holds(&region.place, x, by));
         let sides: Vec<[bool; 2]> = mesh.cell_points(cell).map(holds).collect();
         sides.contains(&[true; 2]) && sides.contains(&[false; 2])

@@ -1,4 +1,4 @@
-//! Whether the mesh file of a method is of the scene's body: of the same place, extent and volume.
+//! Checks that a method's mesh file is of the scene's body: same position, extent and volume.
 
 use cases::scene::{Body, MeshFile, Size};
 use geometry::{CellKind, Mesh, Point3, Vector3, files, quality};
@@ -8,21 +8,22 @@ use crate::Failure;
 use crate::discretise::place;
 use crate::error::Key;
 
-/// Meshes of one curved body differ by more than rounding: they cut its corners. An outline may be off by this part of
-/// the body's size, or by this part of a cell's edge on coarse meshes; a volume by this part of itself.
+/// Meshes of one curved body differ by more than rounding, because they cut its corners. The outline may
+/// differ by this fraction of the body's size, or of a cell's edge on coarse meshes. The volume may differ by
+/// this fraction of itself.
 const OUTLINE: f64 = 0.02;
 const OF_EDGE: f64 = 0.25;
 const VOLUME: f64 = 0.05;
 
-/// Nodes of the mesh that stands for a body in closed form.
+/// Number of nodes of the mesh that represents a body in closed form.
 const NODES: usize = 1000;
 
-/// Where a mesh is and how large, SI units.
+/// Position and size of a mesh, SI units.
 struct Extent {
     min: Point3,
     max: Point3,
     volume: f64,
-    /// Of a regular cell of the mean volume.
+    /// Edge length of a regular cell of the mean volume.
     edge: f64,
 }
 
@@ -39,7 +40,7 @@ impl Extent {
     }
 }
 
-/// Refuses the mesh of a file that is another body than the scene's, or the same in another unit of length.
+/// Refuses a mesh file of another body than the scene's, or of the same body in another unit of length.
 pub fn check(body: &Body, file: &MeshFile, mesh: &Mesh) -> Result<(), Failure> {
     let of_body = match body {
         Body::File(of_body) if (&of_body.path, of_body.unit) == (&file.path, file.unit) => return Ok(()),
@@ -52,7 +53,7 @@ pub fn check(body: &Body, file: &MeshFile, mesh: &Mesh) -> Result<(), Failure> {
     let edge = own.edge.max(whole.edge);
     let allowed = (OUTLINE * whole.size().max()).max(OF_EDGE * edge);
     let off = (own.min - whole.min).amax().max((own.max - whole.max).amax());
-    // A cell that spans a curved surface of radius R cuts off h^2 / (8 R) of it, R = 3 V / A, A as that of a ball.
+    // A cell on a surface of curvature radius R cuts off h^2 / (8 R). R = 3 V / A, with A that of a ball.
     let radius = (whole.volume * 0.75 / std::f64::consts::PI).cbrt();
     let cut = 3.0 * edge.powi(2) / (8.0 * radius.powi(2));
     let lost = (own.volume / whole.volume - 1.0).abs();
@@ -70,7 +71,7 @@ fn describe(extent: &Extent) -> String {
     format!("{}, {}, {} mm and {:.4} cm^3", range(0), range(1), range(2), 1e6 * extent.volume)
 }
 
-/// What to do about a mesh that is so many times as large as the body.
+/// Returns the help for a mesh `ratio` times as large as the body.
 fn help(ratio: f64) -> String {
     let units = [("m", 1e3), ("cm", 10.0), ("um", 1e-3)];
     match units.iter().find(|(_, metres)| (ratio * metres - 1.0).abs() < 0.1) {

@@ -1,4 +1,4 @@
-//! What acts on a body: materials, supports and loads, with their fields as functions of position. Method-free.
+//! The problem on a body independent of the method: materials, supports and loads as functions of position.
 
 use cases::exact::{Contact, Exact};
 use cases::scene::{Mass, Procedure};
@@ -10,7 +10,7 @@ use crate::Failure;
 use crate::discretise::place::Place;
 use crate::error::Key;
 
-/// A vector field of position (m); an error says where it was not finite.
+/// A vector field of position (m); an error names the position of a value that is not finite.
 pub type VectorField = Box<dyn Fn(&Point3) -> Result<Vector3, String> + Send + Sync>;
 /// A scalar field of position (m).
 pub type ScalarField = Box<dyn Fn(&Point3) -> Result<f64, String> + Send + Sync>;
@@ -21,15 +21,15 @@ pub type TractionField = Box<dyn Fn(&Point3, &Vector3) -> Result<Vector3, String
 pub struct Support {
     /// The support's key in the scene, such as `support[0]`.
     pub key: String,
-    /// Where.
+    /// The constrained part of the body.
     pub place: Place,
-    /// Which of x, y, z.
+    /// Constrained axes among x, y, z.
     pub axes: [bool; 3],
     /// The displacement, m.
     pub value: VectorField,
 }
 
-/// What a load applies.
+/// The kind of a load, with its field.
 pub enum Applied {
     /// Force per reference area, Pa.
     Traction(TractionField),
@@ -39,29 +39,29 @@ pub enum Applied {
     Body(VectorField),
 }
 
-/// A load and where it acts.
+/// A load and the part of the body it acts on.
 pub struct Load {
     /// The load's key in the scene, such as `load[0]`.
     pub key: String,
-    /// Where; ignored by a body force.
+    /// The loaded part of the surface; ignored by a body force.
     pub place: Place,
-    /// What.
+    /// The load's kind and field.
     pub applied: Applied,
-    /// Whether it is another one from point to point.
+    /// Whether the load varies with position.
     pub varies: bool,
-    /// Whether it goes by the outward normal.
+    /// Whether the load depends on the outward normal.
     pub along_normal: bool,
 }
 
-/// Everything that does not depend on the method.
+/// All of a problem that does not depend on the method.
 pub struct Setup {
     /// One law per region of the mesh.
     pub laws: Vec<Law>,
-    /// The limit of each law at small strain: the law itself in a linear procedure.
+    /// Small-strain limit of each law: the law itself in a linear procedure.
     pub materials: Vec<LinearElastic>,
-    /// Density by region, kg/m^3, where the scene gives one.
+    /// Density by region, kg/m^3; `None` if the scene gives none.
     pub densities: Vec<Option<f64>>,
-    /// Relaxation over time by region; none in an elastic material.
+    /// Stress relaxation by region; `None` for an elastic material.
     pub relaxation: Vec<Option<Prony>>,
     /// Essential conditions.
     pub supports: Vec<Support>,
@@ -71,21 +71,21 @@ pub struct Setup {
     pub means: Vec<Place>,
     /// Rigid tools.
     pub tools: Vec<PlacedTool>,
-    /// How it is solved.
+    /// Solution procedure.
     pub procedure: Procedure,
-    /// The mass of vibrations, which is the method's own.
+    /// Mass matrix for vibrations, a property of the method.
     pub mass: Option<Mass>,
-    /// What is known of a contact, if the scene names a solution of one.
+    /// Known results of a contact problem, if the scene names a contact solution.
     pub contact: Option<Contact>,
     /// The exact field, if the scene names one.
     pub exact: Option<Box<dyn Exact>>,
 }
 
 impl Setup {
-    /// Density by region, kg/m^3.
+    /// Returns the density by region, kg/m^3.
     ///
     /// # Errors
-    /// A region whose material has none.
+    /// Returns an error if a region's material has no density.
     pub fn density(&self) -> Result<Vec<f64>, Failure> {
         self.densities.iter().copied().collect::<Option<_>>().ok_or_else(|| {
             let key = Key::Scene("material.density".into());
@@ -93,7 +93,7 @@ impl Setup {
         })
     }
 
-    /// For each region the first of the same material.
+    /// Returns, for each region, the index of the first region with the same material.
     pub(crate) fn alike(&self) -> Vec<u16> {
         let same =
             |a: usize, b: usize| self.laws[a] == self.laws[b] && self.relaxation[a] == self.relaxation[b];
@@ -101,22 +101,22 @@ impl Setup {
         (0..self.laws.len()).map(|region| first(region) as u16).collect()
     }
 
-    /// Whether one linear solve is all there is.
+    /// Whether a single linear problem is solved.
     pub fn is_linear(&self) -> bool {
         matches!(self.procedure, Procedure::Prepare | Procedure::Linear { .. } | Procedure::Modes { .. })
     }
 
-    /// Whether Newton's method solves it.
+    /// Whether Newton's method solves the problem.
     pub fn solves_by_newton(&self) -> bool {
         matches!(self.procedure, Procedure::Static(_) | Procedure::ImplicitDynamic(_))
     }
 
-    /// Whether the stress depends on the past.
+    /// Whether the stress depends on the strain history.
     pub fn relaxes(&self) -> bool {
         self.relaxation.iter().any(Option::is_some)
     }
 
-    /// Whether a tool rubs.
+    /// Whether any tool has friction.
     pub fn has_friction(&self) -> bool {
         self.tools.iter().any(|placed| placed.tool.law().friction() > 0.0)
     }

@@ -1,4 +1,4 @@
-//! From a scene's tools to those of the solver.
+//! Converts a scene's tools to those of the solver.
 
 use cases::scene::{self, ErrorKind};
 use contact::{ContactError, ContactLaw, Drive, Tool};
@@ -10,19 +10,19 @@ use crate::error::Key;
 
 /// A tool with its name and its drive.
 pub struct PlacedTool {
-    /// Its name in the scene.
+    /// Name of the tool in the scene.
     pub name: String,
     /// The tool.
     pub tool: Tool,
-    /// Takes the axes of the tool's frame to the world's (3, 3).
+    /// Rotation from the axes of the tool's frame to the global axes (3, 3).
     pub turned: Matrix3,
-    /// Its drive, reached at the end of the loading.
+    /// Drive at the end of the loading.
     pub drive: Drive,
-    /// Time over which its drive grows, s; that of the loading where the scene gives none.
+    /// Time over which the drive grows, s; `None` for the duration of the loading.
     pub over: Option<f64>,
 }
 
-/// The scene's tools in order.
+/// Returns the scene's tools in order.
 pub fn tools(scene: &scene::Scene) -> Result<Vec<PlacedTool>, Failure> {
     scene.tools.iter().enumerate().map(|(i, tool)| placed(tool, i)).collect()
 }

@@ -1,4 +1,4 @@
-//! `tissuebench adapter run`: one call of a solver, outside of any scene.
+//! `tissuebench adapter run`: one call of a solver, without a scene.
 
 use std::path::Path;
 use std::time::Duration;
@@ -10,7 +10,7 @@ use crate::error::ForeignStatus;
 use crate::procedure::external::problem::{TEXT, TOOLS, Text};
 use crate::process::Limits;
 
-/// Calls it and says what it answered; the exit code.
+/// Calls the adapter, prints its answer and returns the exit code.
 pub(super) fn call(adapter: &Found, problem: &Path, answer: &Path) -> Result<u8, Failure> {
     let path = problem.join(TEXT);
     let wrong = |bad: String| Failure::Input(format!("{}: {bad}", path.display()));
@@ -62,7 +62,7 @@ pub(super) fn call(adapter: &Found, problem: &Path, answer: &Path) -> Result<u8,
     Ok(0)
 }
 
-/// What the files of a problem ask of a solver, each with its word in `can`.
+/// Lists the features that a problem in files requires of a solver, each with its word in `can`.
 fn asked<'a>(text: &'a Text, problem: &Path) -> Vec<(&'a str, String)> {
     let kind = text.procedure.kind.as_str();
     let mut asked = vec![(kind, format!("kind = \"{kind}\""))];

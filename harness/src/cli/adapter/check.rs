@@ -1,4 +1,5 @@
-//! `tissuebench adapter check`: whether a solver is right where right is known. Only then are its times worth a look.
+//! `tissuebench adapter check`: compares a solver with known solutions. Its times are meaningful only if it
+//! passes.
 
 use cases::scene;
 
@@ -8,26 +9,26 @@ use crate::cli::text::digits;
 use crate::outcome::Outcome;
 use crate::run::{Group, Repeats, RunOptions};
 
-/// Relative error of an exact solution, where all digits are answered.
+/// Bound of the relative error against an exact solution, for answers with all digits.
 const EXACT: f64 = 1e-8;
-/// Forces left over at free nodes against all forces, for each unit in the last digit of the answer: its elements are stiff
-/// against what rounding makes of neighbours.
+/// Ratio of the residual forces at free nodes to all forces, per unit in the last digit of the answer.
+/// Elements are stiff, so that rounding of neighbouring displacements leaves large forces.
 const BALANCE: f64 = 10.0;
-/// Relative difference from our own element.
+/// Bound of the relative difference from this program's element.
 const AGREEMENT: f64 = 1e-6;
-/// Relative difference at large strain, of which each solver makes its own steps.
+/// Bound of the relative difference at large strain, where each solver chooses its own steps.
 const LARGE: f64 = 1e-5;
 
-/// A question: a body of bent cells, what acts on it, and what is compared.
+/// A test problem on a body of distorted cells, and its compared quantity.
 struct Case {
     what: &'static str,
-    /// Procedure and law that it needs, in the words of `can`.
+    /// Procedure and law required by the case, as words of `can`.
     needs: &'static [&'static str],
     scene: &'static str,
-    /// The number that is judged, and its bound.
+    /// Name of the compared metric, and its bound.
     metric: &'static str,
     bound: f64,
-    /// Against exact solutions and in balances digits that are not answered are forgiven.
+    /// Factor of the tolerance for missing digits of the answer, in exact solutions and balances; 0 for none.
     by_digits: f64,
 }
 
@@ -94,7 +95,7 @@ const CASES: [Case; 6] = [
     },
 ];
 
-/// Asks every question for every element; the exit code.
+/// Runs all cases for all elements and returns the exit code.
 pub(super) fn check(adapter: &Found) -> u8 {
     if let Err(reason) = adapter::ready(adapter) {
         eprintln!("tissuebench: {reason}");
@@ -110,7 +111,7 @@ pub(super) fn check(adapter: &Found) -> u8 {
             let (word, said) = match value(adapter, case, element) {
                 Ok(value) => {
                     let bound = case.bound.max(case.by_digits * 0.1f64.powi(adapter.manifest.digits as i32));
-                    // Written so that a NaN fails.
+                    // The comparison is false for NaN.
                     let holds = value <= bound;
                     (holds, format!("{} {}, at most {}", case.metric, digits(value), digits(bound)))
                 }
@@ -129,7 +130,7 @@ pub(super) fn check(adapter: &Found) -> u8 {
     }
 }
 
-/// What the solver answers to one question.
+/// Runs one case and returns the compared value.
 fn value(adapter: &Found, case: &Case, element: &str) -> Result<f64, Failure> {
     let Outcome { metrics, stalled, .. } = run(adapter, case, element)?;
     if let Some(failure) = stalled {

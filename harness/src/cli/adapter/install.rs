@@ -1,4 +1,4 @@
-//! `tissuebench adapter install` and `copy`: what an adapter needs, and a folder to make another one of.
+//! `tissuebench adapter install` and `copy`: installs the requirements of an adapter, and copies its folder.
 
 use std::path::Path;
 use std::process::Command;
@@ -6,7 +6,7 @@ use std::process::Command;
 use crate::Failure;
 use crate::adapter::{self, Found};
 
-/// Makes the virtual environment and fills it; the exit code.
+/// Creates the virtual environment, installs the packages and returns the exit code.
 pub(super) fn install(adapter: &Found) -> Result<u8, Failure> {
     let manifest = &adapter.manifest;
     let needs = &manifest.install;
@@ -50,7 +50,7 @@ fn run(command: &mut Command) -> Result<(), Failure> {
     }
 }
 
-/// Writes the files of an adapter to a new folder under its name.
+/// Writes the files of an adapter to a new folder and renames the adapter to the folder's name.
 pub(super) fn copy(adapter: &Found, folder: &Path) -> Result<(), Failure> {
     let bad = |what: String| Failure::Input(format!("{}: {what}", folder.display()));
     let name = folder.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();

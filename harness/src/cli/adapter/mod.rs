@@ -1,4 +1,5 @@
-//! `tissuebench adapter`: which solvers outside this program there are, whether they are right, and one call of them.
+//! `tissuebench adapter`: lists, checks, installs and copies adapters of external solvers, and calls them
+//! once.
 
 mod call;
 mod check;
@@ -11,23 +12,24 @@ use clap::Subcommand;
 use crate::adapter::{self, All};
 use crate::cli::fail;
 
-/// What to do with adapters.
+/// Actions on adapters.
 #[derive(Subcommand)]
 pub enum AdapterAction {
-    /// List the adapters there are, where they are, and whether what they need is installed
+    /// List all adapters, their folders, and whether their requirements are installed
     List,
-    /// Hold a solver against exact solutions and our own elements: rigid motion, linear patch, balance of forces, agreement
+    /// Check a solver against exact solutions and our own elements: rigid motion, linear patch, balance of
+    /// forces, agreement
     Check {
         /// Name of the adapter
         name: String,
     },
-    /// Call a solver once with a problem that `export` wrote, and keep its answer
+    /// Call a solver once on a problem written by `export`, and keep its answer
     Run {
         /// Name of the adapter
         name: String,
-        /// The folder of the problem
+        /// Folder of the problem
         problem: PathBuf,
-        /// The folder for its answer
+        /// Folder for the answer
         answer: PathBuf,
     },
     /// Install the Python packages that an adapter needs, in a virtual environment of its own
@@ -35,16 +37,16 @@ pub enum AdapterAction {
         /// Name of the adapter
         name: String,
     },
-    /// Copy the folder of an adapter, to make another one of it
+    /// Copy the folder of an adapter as the start of another adapter
     Copy {
         /// Name of the adapter
         name: String,
-        /// The new folder; its name is that of the new adapter
+        /// New folder; its name becomes the name of the new adapter
         folder: PathBuf,
     },
 }
 
-/// Does it; the exit code.
+/// Runs an action and returns the exit code.
 pub(super) fn act(action: &AdapterAction) -> u8 {
     let done = match action {
         AdapterAction::List => Ok(list()),
@@ -66,7 +68,7 @@ fn list() -> u8 {
     let All { found, broken } = adapter::all(None);
     for adapter in &found {
         let manifest = &adapter.manifest;
-        // Its version is what one of its programs says: a list calls none of them.
+        // The version is not listed, because it would have to be printed by the adapter's programs.
         let state = adapter::ready(adapter).err().unwrap_or_else(|| "ready".into());
         println!("{}: {} ({})", manifest.name, manifest.title, adapter.place());
         println!("  can       {}", manifest.can.join(", "));

@@ -1,12 +1,11 @@
-//! Workflow commands of GitHub: an error at the line of the method that failed, or of the check that does not
-//! hold.
+//! GitHub workflow commands: an error at the line of the failed method or check.
 
 use reports::Status;
 
 use crate::cli::text;
 use crate::study::RunSummary;
 
-/// The lines to print.
+/// Returns the lines to print.
 pub(in crate::cli) fn annotate(runs: &[RunSummary]) -> String {
     let mut out = String::new();
     for run in runs {
@@ -21,7 +20,7 @@ pub(in crate::cli) fn annotate(runs: &[RunSummary]) -> String {
     out
 }
 
-/// `file=...,line=...`; the file of the scene where nothing else is known.
+/// Returns `file=...,line=...`; only the scene's file if no line is known.
 fn place(at: &str, run: &RunSummary) -> String {
     match at.rsplit_once(':') {
         Some((file, line)) => format!("file={},line={line}", property(file)),

@@ -1,4 +1,4 @@
-//! JUnit XML: a suite for each case, in it a test for each run; what failed of it is its failure.
+//! JUnit XML with a suite for each case and a test for each run; failed checks are its failures.
 
 use std::fmt::Write as _;
 
@@ -7,7 +7,7 @@ use reports::{Check, Status};
 use crate::cli::text;
 use crate::study::RunSummary;
 
-/// The runs of a study as a file that every continuous integration shows.
+/// Returns the runs of a study as a JUnit file for continuous integration systems.
 pub(in crate::cli) fn junit(study: &str, runs: &[RunSummary]) -> String {
     let mut cases: Vec<&str> = Vec::new();
     for run in runs.iter().filter(|run| !cases.contains(&run.case.as_str())).collect::<Vec<_>>() {
@@ -68,7 +68,7 @@ fn failed(run: &RunSummary) -> impl Iterator<Item = &Check> {
     of(run, Status::Fail)
 }
 
-/// `tests="3" failures="1" errors="0" skipped="0" time="0.2"`: each test counts once.
+/// Returns `tests="3" failures="1" errors="0" skipped="0" time="0.2"`. Each test counts once.
 fn counts(runs: &[&RunSummary]) -> String {
     let errors = runs.iter().filter(|run| run.failure.is_some()).count();
     let wrong = |run: &&&RunSummary| run.failure.is_none() && failed(run).next().is_some();
@@ -84,7 +84,7 @@ fn counts(runs: &[&RunSummary]) -> String {
     )
 }
 
-/// Text in XML; characters that XML does not have become blanks.
+/// Escapes text for XML. Characters not allowed in XML become blanks.
 fn escaped(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for c in text.chars() {
@@ -153,8 +153,7 @@ mod tests {
         assert_eq!(text.matches("<testcase ").count(), 4);
     }
 
-    /// Of a run that ended with an error only the error counts; a run whose checks could not be asked is
-    /// skipped.
+    /// A run that ended with an error counts only as an error. A run whose checks could not run is skipped.
     #[test]
     fn what_is_wrong_counts_once() {
         let runs = [

@@ -1,13 +1,13 @@
-//! The runs that a study would make.
+//! Lists the runs of a study without running them.
 
 use crate::study::Planned;
 
-/// One line for each run: its case and its name.
+/// Returns one line per run: its case and its name.
 pub(in crate::cli) fn names(planned: &[Planned]) -> String {
     planned.iter().map(|run| format!("{} {}\n", run.case, run.name)).collect()
 }
 
-/// The same with what each is estimated to take, and the sum of their times.
+/// Returns one line per run with its estimated cost, and the sum of the times.
 pub(in crate::cli) fn forecast(planned: &[Planned]) -> String {
     let rows: Vec<[String; 4]> = planned.iter().map(row).collect();
     let head = ["about", "nodes", "seconds", "memory"].map(String::from);
@@ -28,9 +28,9 @@ fn row(run: &Planned) -> [String; 4] {
     [format!("{} {}", run.case, run.name), nodes, seconds(run.takes.seconds), memory]
 }
 
-/// One digit: the estimate is good to a factor of three.
+/// Formats a time with one digit: the estimate is good to a factor of three.
 fn seconds(seconds: f64) -> String {
-    // Through its text: a product of 6 and a tenth has more digits than one.
+    // Rounded through text: a product of 6 and 0.1 has more than one digit.
     let rounded: f64 = format!("{:.0e}", seconds.max(1e-3)).parse().unwrap_or(seconds);
     format!("{rounded} s")
 }
