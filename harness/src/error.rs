@@ -105,7 +105,7 @@ impl From<Foreign> for Failure {
 pub struct Finding {
     /// Kind of the error, from which its exit code follows.
     pub kind: ErrorKind,
-    /// The part of the scene.
+    /// Part of the scene that the error concerns.
     pub key: Key,
     /// The problem in words.
     pub problem: String,

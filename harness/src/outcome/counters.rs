@@ -1,4 +1,4 @@
-//! What a run did, counted as it did it: a stage that the plan skips must have left nothing here.
+//! Counters of a run's operations. A stage that the plan skips must leave its counters at zero.
 
 use std::ops::AddAssign;
 
@@ -7,63 +7,64 @@ use serde::Serialize;
 
 use super::StageName;
 
-/// Counts of one pass over a run; repeats for timings do the same again and are not added up.
+/// Counters of one pass over a run. Repeats for timings perform the same operations and are not added.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct Counters {
-    /// Clouds placed anew by an error, each after a solution that is not counted below.
+    /// Refined clouds; the solutions that precede them are not counted below.
     pub refinements: u64,
-    /// Support radii of nodes found.
+    /// Computed support radii of nodes.
     pub support_radii: u64,
-    /// Shape function rows with gradients at integration points.
+    /// Rows of shape functions with gradients at integration points.
     pub volume_rows: u64,
-    /// Groups of points that share a dilation.
+    /// Groups of points with a common dilation.
     pub dilation_groups: u64,
     /// Parameters of a pressure field.
     pub pressure_parameters: u64,
-    /// Integration points given the law of their own region.
+    /// Integration points with the material law of their own region.
     pub point_laws: u64,
-    /// Rows of values alone on loaded surfaces.
+    /// Rows of shape function values, without gradients, on loaded surfaces.
     pub surface_rows: u64,
-    /// Rows with gradients (or of penalty points) where a support is weak.
+    /// Boundary-gradient rows, or rows of penalty points, on weakly imposed supports.
     pub flux_rows: u64,
-    /// Constraint rows with multipliers.
+    /// Constraint rows imposed by Lagrange multipliers.
     pub multiplier_rows: u64,
-    /// Constraint rows to eliminate.
+    /// Constraint rows imposed by elimination.
     pub eliminated_rows: u64,
     /// Degrees of freedom eliminated.
     pub fixed_dofs: u64,
     /// Surface points at which tools may touch.
     pub contact_points: u64,
-    /// Of these, points that keep a history of friction, once for each tool.
+    /// Contact points with a friction history, once for each tool.
     pub friction_points: u64,
-    /// Searches for contact, one for each tool and state.
+    /// Contact searches, one for each tool and state.
     pub contact_evaluations: u64,
-    /// Of these, skipped whole: no point near the tool.
+    /// Contact searches that were skipped because no point is near the tool.
     pub contact_skips: u64,
-    /// Nodes given a mass.
+    /// Nodes with a mass.
     pub mass_nodes: u64,
-    /// Time steps made.
+    /// Time steps.
     pub time_steps: u64,
-    /// Steps of dynamic relaxation made.
+    /// Steps of dynamic relaxation.
     pub relaxation_steps: u64,
-    /// Linear systems of Newton's method on the way to converged steps.
+    /// Linear systems that Newton's method solved in converged steps.
     pub newton_iterations: u64,
-    /// Stiffness matrices assembled; in a static procedure those of failed steps too.
+    /// Assembled stiffness matrices; in a static procedure, those of failed steps included.
     pub assemblies: u64,
-    /// Matrices factored; in a static procedure those of failed steps too.
+    /// Factored matrices; in a static procedure, those of failed steps included.
     pub factorisations: u64,
-    /// Right-hand sides solved for.
+    /// Solved right-hand sides.
     pub solves: u64,
-    /// Iterations of the linear solver: with a factor kept from another tangent, in single precision, or with sliding friction.
+    /// Iterations of the linear solver, which iterates with a factor of an earlier tangent, in single
+    /// precision, or with sliding friction.
     pub inner_iterations: u64,
-    /// Shape function rows that turn nodal parameters into displacements at nodes or targets.
+    /// Shape function rows that convert nodal parameters to displacements at nodes or targets.
     pub transfer_rows: u64,
-    /// Tables of transfer schemes built.
+    /// Tables built for transfer schemes.
     pub transfer_tables: u64,
 }
 
 impl Counters {
-    /// What a stage left.
+    /// Counter of a stage.
     pub fn of(&self, stage: StageName) -> u64 {
         match stage {
             StageName::Refinement => self.refinements,

@@ -1,29 +1,31 @@
-//! Seconds per frame of a loop, and what they come to.
+//! Times per frame of a simulator's loop, and their statistics.
 
-/// Frames that a percentile takes to be one of the samples and not the worst.
+/// Fewest frames for a 99 % quantile, which with fewer would be the slowest frame.
 pub(crate) const FOR_P99: usize = 100;
 const FOR_P999: usize = 1000;
 
-/// Seconds per frame.
+/// Times per frame of a phase of the loop.
 #[derive(Clone, Debug)]
 pub struct Latency {
-    /// `repeated`: what is asked for in a frame (the probes and the loaded faces of a linear problem by its condensed
-    /// operator, the whole equilibrium under large strain); `repeated-field`: all nodes, by the factor; `condense`: what
-    /// makes the operator, once.
+    /// Name of the phase. `repeated` is the requested output of a frame: for a linear problem the probes and
+    /// the loaded faces, by the condensed operator; under large strain the whole equilibrium.
+    /// `repeated-field` is the solution at all nodes with the factored matrix. `condense` is the construction
+    /// of the operator, once.
     pub phase: &'static str,
-    /// One per frame.
+    /// Time of each frame, s.
     pub seconds: Vec<f64>,
-    /// Newton's iterations in all frames.
+    /// Newton iterations in all frames.
     pub iterations: usize,
-    /// How far the first frame at the whole load is off the path's end: of the first tool's force, or the largest
-    /// displacement without tools.
+    /// Relative deviation of the first frame at the whole load from the end of the load path, in the first
+    /// tool's force; without tools, in the largest displacement.
     pub deviation: Option<f64>,
-    /// The frame in which the loop broke off, if it did: one that no simulator could use, reported without times.
+    /// Frame at which the loop failed, if any. No simulator could use such a loop, so no times are reported.
     pub broke_off: Option<usize>,
 }
 
 impl Latency {
-    /// Statistics with their units, as far as there are frames for them; of too few for `p99` the slowest, `max`.
+    /// Statistics as name, unit and value. Each needs its number of frames: with too few for `p99` the
+    /// slowest frame is reported as `max`.
     pub fn statistics(&self) -> Vec<(&'static str, &'static str, f64)> {
         if let Some(frame) = self.broke_off {
             return vec![("broke-off", "1", frame as f64)];
@@ -31,7 +33,7 @@ impl Latency {
         let count = self.seconds.len();
         let mut sorted = self.seconds.clone();
         sorted.sort_unstable_by(f64::total_cmp);
-        // The smallest sample that so many are no larger than: a frame that was, not a mean of two.
+        // The quantile is an actual frame, not the mean of two.
         let quantile =
             |p: f64| sorted[((p * sorted.len() as f64).ceil() as usize).clamp(1, sorted.len()) - 1];
         let mut reported: Vec<_> = [("median", 0.5, 1), ("p99", 0.99, FOR_P99), ("p99.9", 0.999, FOR_P999)]

@@ -1,4 +1,4 @@
-//! The end of a load step or a recorded state of a motion.
+//! State at the end of a load step, or a recorded state of dynamics.
 
 use catalogue::metric;
 use contact::{Tool, ToolState};
@@ -6,35 +6,36 @@ use geometry::Vector3;
 
 use super::Metric;
 
-/// Points that have to carry a tool's force: three hold a plane.
+/// Fewest points that have to carry a tool's force. Three points define a plane.
 const FEWEST: f64 = 3.0;
 
-/// A tool at the end of a load step.
+/// State of a tool at the end of a load step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ToolStep {
-    /// Way from its start, m.
+    /// Travel from the start, m.
     pub closure: f64,
     /// Force on the tool, N.
     pub force: Vector3,
-    /// Force that it exerts along its way, N.
+    /// Force that the tool exerts along its direction of travel, N.
     pub pushed: f64,
     /// Surface points in contact.
     pub active: u64,
-    /// How many of them carry the force: n where n points have the same, 1 where one has it all.
+    /// Effective number of points that carry the force: n if n points carry equal forces, 1 if one point
+    /// carries all.
     pub carriers: f64,
-    /// Their undeformed area, m^2.
+    /// Undeformed area of the points in contact, m^2.
     pub area: f64,
     /// Deepest penetration, m.
     pub penetration: f64,
 }
 
 impl ToolStep {
-    /// Of the solver's state of a tool.
+    /// Converts the solver's state of a tool.
     pub(crate) fn of(state: &ToolState, tool: &Tool) -> ToolStep {
         ToolStep {
             closure: state.closure,
             force: state.force,
-            // Of a tool that touches nothing 0, which a sign in front makes -0.
+            // The subtraction yields 0 for a tool without contact; a sign would yield -0.
             pushed: 0.0 - state.force.dot(&tool.along()),
             active: state.active as u64,
             carriers: state.carriers,
@@ -43,12 +44,13 @@ impl ToolStep {
         }
     }
 
-    /// Whether so few points carry the force that it depends on where they happen to be: the surface is too coarse for the tool.
+    /// Whether so few points carry the force that it depends on their positions: the surface is too coarse
+    /// for the tool.
     pub fn is_carried_by_few(&self) -> bool {
         self.active > 0 && self.carriers < FEWEST
     }
 
-    /// Where every tool starts.
+    /// Initial state of every tool.
     pub const UNTOUCHED: ToolStep = ToolStep {
         closure: 0.0,
         force: Vector3::new(0.0, 0.0, 0.0),
@@ -60,28 +62,28 @@ impl ToolStep {
     };
 }
 
-/// The end of a load step.
+/// State at the end of a load step.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LoadStep {
-    /// Part of the loading, 0 to 1; of the time in dynamics.
+    /// Fraction of the loading, 0 to 1; in dynamics, fraction of the time.
     pub load: f64,
-    /// One per tool of the scene.
+    /// States of the tools of the scene.
     pub tools: Vec<ToolStep>,
-    /// Force of each support on the body, N; none where it is not known.
+    /// Force of each support on the body, N; empty if unknown.
     pub supports: Vec<Vector3>,
-    /// Mean displacement of each face whose mean is asked for, m.
+    /// Mean displacement of each face for which the scene requests it, m.
     pub means: Vec<Vector3>,
     /// Strain energy, J.
     pub strain_energy: Option<f64>,
     /// Smallest volume ratio of all quadrature points.
     pub smallest_j: f64,
-    /// Linear systems solved.
+    /// Solved linear systems.
     pub iterations: u64,
     /// Displacement at the scene's probes, m.
     pub probes: Vec<Vector3>,
-    /// Errors against the reference at the same step.
+    /// Errors relative to the reference at the same step.
     pub against: Vec<Metric>,
-    /// What else the procedure reports: time and energies in dynamics.
+    /// Other results of the procedure: time and energies in dynamics.
     pub more: Vec<Metric>,
 }
 
@@ -91,7 +93,7 @@ impl LoadStep {
         self.more.iter().find(|m| *m.entry == metric::TIME).map(|m| m.value)
     }
 
-    /// Before anything acts.
+    /// State before any load is applied.
     pub(crate) fn at_start(tools: usize) -> LoadStep {
         LoadStep {
             load: 0.0,

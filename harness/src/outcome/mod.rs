@@ -1,4 +1,4 @@
-//! What one run leaves: who it was, its numbers, its times, its fields.
+//! Results of a run: identity, metrics, times and fields.
 
 mod counters;
 mod latency;
@@ -31,26 +31,26 @@ use timing::Timed;
 pub use warning::Warning;
 pub use watch::{Stopped, Watch};
 
-/// Which run: its record without size and number.
+/// Identity of a run: a record without size and value.
 pub type Identity = Record;
 
-/// Settings of a transfer scheme, as far as it has them.
+/// Settings of a transfer scheme; `None` if the scheme does not have the setting.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SchemeSettings {
-    /// Neighbours of each target.
+    /// Number of neighbours of each target.
     pub neighbours: Option<u64>,
     /// Power of the distance.
     pub power: Option<f64>,
-    /// Support radius over the node spacing.
+    /// Ratio of support radius to node spacing.
     pub support_scale: Option<f64>,
-    /// Width of radial functions over the mean node spacing.
+    /// Ratio of the width of the radial functions to the mean node spacing.
     pub shape: Option<f64>,
-    /// Whether they have a linear polynomial with them.
+    /// Whether a linear polynomial augments the radial functions.
     pub polynomial: Option<bool>,
 }
 
 impl SchemeSettings {
-    /// The values that a scheme's parameters have, defaults included.
+    /// Settings of a scheme from the values of its parameters, defaults included.
     pub fn of(values: &Values) -> SchemeSettings {
         SchemeSettings {
             neighbours: values.get("neighbours").map(|n| n as u64),
@@ -65,26 +65,26 @@ impl SchemeSettings {
 /// Sizes of a discretisation.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Size {
-    /// Nodes.
+    /// Number of nodes.
     pub nodes: u64,
-    /// Elements or background cells.
+    /// Number of elements, or of background cells.
     pub elements: u64,
-    /// Integration points.
+    /// Number of integration points.
     pub points: u64,
-    /// Unknowns, supports eliminated.
+    /// Number of unknowns after elimination of the supports.
     pub dofs: u64,
     /// Mean node spacing, m.
     pub spacing: f64,
 }
 
-/// One number of a run. What is no entry of the catalogue cannot be recorded.
+/// Metric of a run. Only metrics of the catalogue can be recorded.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Metric {
-    /// What it is.
+    /// Entry of the catalogue.
     pub entry: &'static metric::Metric,
-    /// Which tool's, support's or face's, where each has one; 0 otherwise.
+    /// Index of the tool, support or face, if the metric is given for each of them; 0 otherwise.
     pub index: usize,
-    /// SI value.
+    /// Value in SI units.
     pub value: f64,
 }
 
@@ -97,23 +97,23 @@ impl Metric {
         Metric { entry, index, value }
     }
 
-    /// Name as in records and checks.
+    /// Name in records and checks.
     pub fn name(&self) -> String {
         self.entry.numbered(self.index)
     }
 
-    /// SI unit; `1` for a bare number.
+    /// SI unit; `1` for a dimensionless number.
     pub fn unit(&self) -> &'static str {
         self.entry.unit()
     }
 }
 
-/// Adds a number to a list.
+/// Adds a metric to a list.
 pub(crate) fn push(metrics: &mut Vec<Metric>, entry: &'static metric::Metric, value: f64) {
     metrics.push(Metric::new(entry, value));
 }
 
-/// Adds a number of one tool to a list.
+/// Adds a metric of one tool, support or face to a list.
 pub(crate) fn push_numbered(
     metrics: &mut Vec<Metric>,
     entry: &'static metric::Metric,
@@ -130,22 +130,23 @@ pub struct Probe {
     pub x: Point3,
     /// Displacement, m.
     pub u: Vector3,
-    /// Stress, Pa; unknown in tissue that relaxes.
+    /// Stress, Pa; `None` for viscoelastic tissue.
     pub stress: Option<Matrix3>,
-    /// Distance from the mesh (m), 0 inside: values outside are those of its nearest point.
+    /// Distance from the mesh (m), 0 inside. Values outside are those of the nearest point of the mesh.
     pub outside: f64,
 }
 
-/// A scheme's transfer of this run's displacement to the reference nodes.
+/// Transfer of this run's displacement to the target points by one scheme.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Transfer {
-    /// Scheme name; `own-rows` for the method's own shape functions.
+    /// Name of the scheme; `own-rows` for the method's own shape functions.
     pub scheme: String,
-    /// Its settings.
+    /// Settings of the scheme.
     pub settings: SchemeSettings,
     /// Errors and counts.
     pub metrics: Vec<Metric>,
-    /// Seconds to build the table and to pack it for repeated use (`prepare`), and to apply it to one field (`transfer`).
+    /// Times to build the table and pack it for repeated use (`prepare`), and to apply it to one field
+    /// (`transfer`).
     pub times: Vec<Timed>,
     /// Number of targets.
     pub targets: usize,
@@ -154,31 +155,31 @@ pub struct Transfer {
 /// A finished run.
 #[derive(Clone, Debug)]
 pub struct Outcome {
-    /// Who.
+    /// Identity of the run.
     pub identity: Identity,
-    /// How large.
+    /// Sizes of the discretisation.
     pub size: Size,
-    /// Numbers that two runs of one input share to the bit.
+    /// Metrics, which are bitwise equal in two runs with the same input.
     pub metrics: Vec<Metric>,
-    /// Seconds per phase and repeat, the total among them.
+    /// Times per phase and repeat, the total included.
     pub phases: Vec<Timed>,
-    /// Seconds per frame of the loop after the first solution, where the scene asks for one.
+    /// Times per frame of the loop after the first solution, if the scene requests the loop.
     pub latencies: Vec<Latency>,
-    /// Most memory allocated at once in the run beyond its input, bytes.
+    /// Peak memory allocated in the run beyond its input, bytes.
     pub memory: u64,
-    /// Most memory that the whole process had during the run, bytes; `None` where the system does not say.
+    /// Peak memory of the whole process during the run, bytes; `None` if the system does not report it.
     pub process_memory: Option<u64>,
     /// Probes, in the scene's order.
     pub probes: Vec<Probe>,
-    /// Stages run and skipped.
+    /// Stages that ran or were skipped.
     pub plan: Plan,
-    /// Transfers of the result by every scheme asked for.
+    /// Transfers of the result by each requested scheme.
     pub transfers: Vec<Transfer>,
-    /// Surface displacement, where the scene asks for it.
+    /// Surface displacement, if requested.
     pub field: Option<SurfaceField>,
-    /// The body at the recorded states, where that was asked for.
+    /// The body at the recorded states, if requested.
     pub states: Option<States>,
-    /// Counts of what was done for all this.
+    /// Counters of the run's operations.
     pub counters: Counters,
     /// Names of the tools.
     pub tools: Vec<String>,
@@ -188,31 +189,33 @@ pub struct Outcome {
     pub means: Vec<FaceMean>,
     /// The last state reported: converged in a static procedure, recorded in dynamics.
     pub last: Option<LoadStep>,
-    /// The load steps of a static procedure or the recorded states of dynamics, as far as it came.
+    /// The load steps of a static procedure or the recorded states of dynamics, up to the end that the run
+    /// reached.
     pub steps: Vec<LoadStep>,
-    /// The lowest modes of vibration, each with its frequency and what it is compared with.
+    /// The lowest vibration modes, each with its frequency and its comparisons.
     pub modes: Vec<Vec<Metric>>,
-    /// `ok`; `relaxed` where dynamic relaxation reached the load that Newton's method could not; or how a run ended early:
-    /// `stalled` in a static procedure; `inverted`, `step-too-large`, `not-finite` or `contact-lost` in dynamics.
+    /// Status of the run. `ok`; `relaxed` if dynamic relaxation reached the load that Newton's method could
+    /// not reach; or the cause of an early end: `stalled` in a static procedure, `inverted`,
+    /// `step-too-large`, `not-finite` or `contact-lost` in dynamics.
     pub status: &'static str,
-    /// Why Newton's method ended early where relaxation went on to the whole load.
+    /// Failure that ended Newton's method early, if relaxation continued to the whole load.
     pub relaxed: Option<Failure>,
-    /// Why it ended early; its numbers are then those of the load it reached.
+    /// Failure that ended the run early. The results are then those of the load that the run reached.
     pub stalled: Option<Failure>,
-    /// What is to be said against its numbers.
+    /// Warnings about the results.
     pub warnings: Vec<Warning>,
-    /// The reference of its numbers.
+    /// Reference that the run is compared with.
     pub reference: Option<Reference>,
 }
 
-/// A run that gave no numbers.
+/// Failed run without results.
 #[derive(Clone, Debug)]
 pub struct Unfinished {
-    /// Why.
+    /// Reason for the failure.
     pub failure: Failure,
-    /// Stages it would have run and skipped; empty if it failed before they were known.
+    /// Planned stages; empty if the run failed before they were known.
     pub plan: Plan,
-    /// Nodes and elements as far as they were made, the rest 0.
+    /// Numbers of nodes and elements as far as they were known; the other sizes are 0.
     pub size: Size,
 }
 
@@ -223,7 +226,7 @@ impl From<Failure> for Unfinished {
 }
 
 impl Outcome {
-    /// A run of which nothing but its sizes is known yet.
+    /// Outcome without results, of which only the identity, the sizes and the plan are known.
     pub(crate) fn new(identity: Identity, size: Size, plan: Plan) -> Outcome {
         Outcome {
             identity,
@@ -253,18 +256,19 @@ impl Outcome {
         }
     }
 
-    /// Adds warnings of the scene before those of the run, and counts all.
+    /// Inserts the scene's warnings before those of the run, and adds the number of all warnings to the
+    /// metrics.
     pub(crate) fn warn(&mut self, of_scene: Vec<Warning>) {
         self.warnings.splice(0..0, of_scene);
         push(&mut self.metrics, &metric::WARNINGS, self.warnings.len() as f64);
     }
 
-    /// Time of the whole run.
+    /// Total time of the run.
     pub fn total(&self) -> Option<&Timed> {
         self.phases.iter().find(|timed| timed.phase == "total")
     }
 
-    /// One metric's value.
+    /// Value of a metric by name.
     pub fn metric(&self, name: &str) -> Option<f64> {
         self.metrics.iter().find(|m| m.name() == name).map(|m| m.value)
     }

@@ -1,23 +1,23 @@
-//! What the supports and faces of a scene come to at the end of a run.
+//! Forces on the supports and mean displacements of the faces at the end of a run.
 
 use geometry::Vector3;
 
-/// A support, and the force with which it holds the body.
+/// Support of the scene and its force on the body.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SupportForce {
-    /// Where it is, in the words of the scene.
+    /// Name of the region in the scene.
     pub name: String,
-    /// Which of x, y, z it holds.
+    /// Constrained components: x, y, z.
     pub axes: [bool; 3],
-    /// On the body, N.
+    /// Force on the body, N.
     pub force: Vector3,
 }
 
-/// A face, and how far it moves on average.
+/// Face of the body and its mean displacement.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FaceMean {
-    /// Where it is, in the words of the scene.
+    /// Name of the region in the scene.
     pub name: String,
-    /// Mean displacement by area, m.
+    /// Area-weighted mean displacement, m.
     pub u: Vector3,
 }

@@ -1,7 +1,8 @@
-//! The plan of a run: its stages in order, whether each runs, and why. The run asks [`Plan::runs`] before it refines a cloud,
-//! fills tables of projections, regions, supports and contact, relaxes, transfers, or compares schemes: what is not in the
-//! plan is not there for a solver to use. What a solver does with its tables (factors, iterations) follows from the procedure,
-//! and is compared with the counters by a test.
+//! The plan of a run: its stages in order, whether each of them runs, and why. The run consults
+//! [`Plan::runs`] before it refines a cloud, fills tables of projections, regions, supports and contact,
+//! relaxes, transfers, or compares schemes. A solver therefore never sees tables that the plan skips. The
+//! operations on the tables (factors, iterations) follow from the procedure. A test compares them with the
+//! counters.
 
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -9,14 +10,14 @@ use serde::Serialize;
 /// Declares the stages and their names.
 macro_rules! stages {
     ($($(#[$meaning:meta])* $stage:ident = $name:literal,)*) => {
-        /// A stage that a run may have.
+        /// Stage of a run.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, JsonSchema)]
         pub enum StageName {
             $($(#[$meaning])* #[serde(rename = $name)] $stage,)*
         }
 
         impl StageName {
-            /// The name in JSON and in records.
+            /// Name in JSON and in records.
             pub fn name(self) -> &'static str {
                 match self {
                     $(StageName::$stage => $name,)*
@@ -27,7 +28,7 @@ macro_rules! stages {
 }
 
 impl StageName {
-    /// The name in plans that people read: the nodal supports of a cloud are not the supports of the body.
+    /// Name in printed plans. It distinguishes the supports of a cloud's nodes from the supports of the body.
     pub fn label(self) -> &'static str {
         match self {
             StageName::Supports => "neighbour search",
@@ -37,27 +38,27 @@ impl StageName {
 }
 
 stages! {
-    /// Clouds placed anew by an error of the solution.
+    /// Refinement of clouds by an error estimate of the solution.
     Refinement = "refinement",
-    /// Support radii and neighbours of the nodes of a cloud.
+    /// Support radii and neighbours of a cloud's nodes.
     Supports = "supports",
     /// Shape functions with gradients at the integration points.
     ShapeFunctions = "shape functions",
-    /// Groups of points that share a dilation, or a pressure field.
+    /// Groups of points with a common dilation, or a pressure field.
     Projection = "volumetric projection",
-    /// A law for each integration point.
+    /// Material law of each integration point.
     Tensors = "elasticity tensor per region",
-    /// A mass matrix.
+    /// Mass matrix.
     Mass = "mass",
     /// Stiffness matrices.
     Stiffness = "stiffness",
-    /// Steps in time.
+    /// Time steps of dynamics.
     TimeSteps = "time steps",
     /// Essential conditions by elimination.
     Elimination = "supports by elimination",
     /// Essential conditions by penalty, Nitsche's method or multipliers.
     WeakSupports = "weak supports",
-    /// Factors of a matrix.
+    /// Factorisation of a matrix.
     Factorisation = "factorisation",
     /// Iterations of Newton's method.
     Newton = "Newton iterations",
@@ -67,24 +68,24 @@ stages! {
     Contact = "contact search",
     /// Slip of each point on each tool.
     Friction = "friction history",
-    /// Displacements away from the nodal parameters.
+    /// Evaluation of displacements from the nodal parameters.
     Transfer = "transfer",
-    /// Transfer schemes to compare.
+    /// Comparison of transfer schemes.
     Schemes = "transfer schemes",
 }
 
-/// One stage of a plan.
+/// Stage of a plan with its decision.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct Stage {
-    /// Name.
+    /// Name of the stage.
     pub stage: StageName,
-    /// Whether it runs.
+    /// Whether the stage runs.
     pub ran: bool,
-    /// Why, or why not.
+    /// Reason why the stage runs or is skipped.
     pub why: String,
 }
 
-/// Stages of a run, in order; each at most once.
+/// Stages of a run in order, each at most once.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(transparent)]
 pub struct Plan {
@@ -112,14 +113,14 @@ impl Plan {
         self.stages.iter().find(|known| known.stage == stage)
     }
 
-    /// Takes a stage out of what runs.
+    /// Marks a stage as skipped.
     pub(crate) fn skip(&mut self, stage: StageName, why: &str) {
         for known in self.stages.iter_mut().filter(|known| known.stage == stage) {
             (known.ran, known.why) = (false, why.into());
         }
     }
 
-    /// Gives a stage another reason.
+    /// Replaces the reason of a stage.
     pub(crate) fn explain(&mut self, stage: StageName, why: impl Fn(&str) -> String) {
         for known in self.stages.iter_mut().filter(|known| known.stage == stage) {
             known.why = why(&known.why);

@@ -1,13 +1,14 @@
-//! Where the numbers come from: the program, fixed when it was built, and the machine, as it is when a run begins.
+//! Provenance of the results: the program, fixed when it was built, and the state of the machine when a run
+//! begins.
 
 use reports::{FORMAT, Machine, Program, Provenance, SceneHash};
 
-/// BLAKE3 of a scene's text, in hexadecimal digits.
+/// BLAKE3 hash of a scene's text, in hexadecimal digits.
 pub fn hash(text: &str) -> String {
     blake3::hash(text.as_bytes()).to_hex().to_string()
 }
 
-/// The program, as it was built.
+/// Description of the program as it was built.
 pub fn program() -> Program {
     Program {
         version: env!("CARGO_PKG_VERSION").into(),
@@ -20,10 +21,10 @@ pub fn program() -> Program {
     }
 }
 
-/// Part of the processors that may be busy on a quiet machine.
+/// Largest load per processor of a quiet machine.
 const QUIET: f64 = 0.2;
 
-/// The machine, as it is now: asked before the first run, its load is that of others.
+/// Description of the machine at this moment. Before the first run, its load comes from other programs.
 pub fn machine() -> Machine {
     let load = load();
     let processors = std::thread::available_parallelism().map_or(1, |n| n.get()) as f64;
@@ -39,7 +40,8 @@ pub fn machine() -> Machine {
     }
 }
 
-/// Of a study or a single run, whose file the caller names; `scenes` are (case name, [`Scene::text`](cases::scene::Scene::text)).
+/// Provenance of a study or a single run; the caller adds the name of its file. `scenes` are pairs of case
+/// name and [`Scene::text`](cases::scene::Scene::text).
 pub fn provenance(machine: Machine, scenes: &[(String, String)]) -> Provenance {
     let of = |(case, text): &(String, String)| SceneHash {
         case: case.clone(),
@@ -52,13 +54,14 @@ pub fn provenance(machine: Machine, scenes: &[(String, String)]) -> Provenance {
     Provenance { format: FORMAT, program: program(), machine, scenes: hashes, ..Provenance::default() }
 }
 
-/// The title that a scene gives itself.
+/// Title of a scene; empty if it has none.
 fn title(text: &str) -> String {
     let table: Option<toml::Table> = toml::from_str(text).ok();
     table.and_then(|t| Some(t.get("title")?.as_str()?.to_string())).unwrap_or_default()
 }
 
-/// Processes that ran or waited to run in the last minute, on average; unknown where the system does not tell.
+/// Average number of processes that ran or waited to run in the last minute; `None` if the system does not
+/// report it.
 fn load() -> Option<f64> {
     std::fs::read_to_string("/proc/loadavg").ok()?.split_whitespace().next()?.parse().ok()
 }
@@ -67,20 +70,21 @@ fn cpu() -> String {
     cpuinfo("model name").unwrap_or_else(|| std::env::consts::ARCH.to_string())
 }
 
-/// Family, model and stepping of the processor, as far as the system says.
+/// Family, model and stepping of the processor, as far as they are known.
 fn model() -> String {
     let known = [("family", "cpu family"), ("model", "model"), ("stepping", "stepping")];
     let each = known.iter().filter_map(|(word, field)| Some(format!("{word} {}", cpuinfo(field)?)));
     each.collect::<Vec<_>>().join(", ")
 }
 
-/// Clock of the first processor now, GHz.
+/// Current clock frequency of the first processor, GHz.
 fn clock() -> Option<f64> {
     Some(cpuinfo("cpu MHz")?.parse::<f64>().ok()? / 1e3)
 }
 
-/// The kind of processor, as far as it decides the last bits of a result: instruction sets, and caches, by whose size matrix
-/// products are blocked. Virtual machines hide the model's name: family and model number tell more.
+/// Kind of the processor, as far as it determines the last bits of a result: the instruction sets, and the
+/// cache sizes, by which matrix products are blocked. Virtual machines hide the model's name, so the family
+/// and model number are included.
 pub fn processor() -> String {
     let of = |field| cpuinfo(field).unwrap_or_else(|| "unknown".into());
     let cache = |index| {
@@ -105,7 +109,8 @@ fn cpuinfo(field: &str) -> Option<String> {
     })
 }
 
-/// Instruction sets that the linear algebra chooses between at run time: they change the last bits of a result.
+/// Instruction sets among which the linear algebra chooses at run time. They change the last bits of a
+/// result.
 fn instructions() -> String {
     #[cfg(target_arch = "x86_64")]
     {

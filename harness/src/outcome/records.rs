@@ -1,4 +1,5 @@
-//! A finished run as rows of the long table, and its plan as rows of the report.
+//! Conversion of a finished run to rows of the long table, and of its plan and warnings to rows of the
+//! report.
 
 use catalogue::metric;
 use reports::{Family, PlanEntry, Record};
@@ -7,7 +8,7 @@ use super::timing::{Summary, Timed};
 use super::{LoadStep, Metric, Outcome, SchemeSettings, Transfer, push, push_numbered};
 
 impl Outcome {
-    /// The run as rows of the long table.
+    /// Rows of the run in the long table.
     pub fn records(&self) -> Vec<Record> {
         let own = self.row();
         let mut rows: Vec<Record> = self.metrics.iter().map(|m| number(&own, m)).collect();
@@ -37,13 +38,13 @@ impl Outcome {
         rows
     }
 
-    /// The reference's own error in a number that is one of the run.
+    /// Row of the reference's own error in a metric of the run, if it is known.
     fn band(&self, own: &Record, error: &Metric) -> Option<Record> {
         let value = *self.reference.as_ref()?.band.get(&error.name())?;
         Some(Record { statistic: "band".into(), value, ..number(own, error) })
     }
 
-    /// What all rows of the run share.
+    /// Columns that all rows of the run have in common.
     fn row(&self) -> Record {
         let size = &self.size;
         let own = Record {
@@ -57,8 +58,8 @@ impl Outcome {
         Record { run: run_id(&own), ..own }
     }
 
-    /// The history, from step 0, the start. The first tool's numbers are `closure` and `tool-force`, the second's `closure-2` and
-    /// `tool-force-2`.
+    /// Rows of the load steps, from step 0, the start. The first tool's metrics are `closure` and
+    /// `tool-force`, the second tool's `closure-2` and `tool-force-2`.
     fn step_records(&self, own: &Record) -> Vec<Record> {
         let at = |step: usize| Record { step: Some(step as u64), ..own.clone() };
         let mut rows = Vec::new();
@@ -69,7 +70,7 @@ impl Outcome {
                 rows.push(number(&start, &Metric::numbered(&metric::TOOL_FORCE, index, 0.0)));
             }
         }
-        // Dynamics starts from rest and undeformed: no time, no energy.
+        // Dynamics starts at rest and undeformed: time and energies are zero.
         if let Some(first) = self.steps.first().filter(|step| !step.more.is_empty()) {
             if first.strain_energy.is_some() {
                 rows.push(number(&start, &Metric::new(&metric::STRAIN_ENERGY, 0.0)));
@@ -85,7 +86,7 @@ impl Outcome {
         rows
     }
 
-    /// What is recorded of a step.
+    /// Metrics of a load step.
     fn of_step(&self, step: &LoadStep) -> Vec<Metric> {
         let mut all = vec![Metric::new(&metric::LOAD_CARRIED, step.load)];
         all.extend(step.strain_energy.map(|energy| Metric::new(&metric::STRAIN_ENERGY, energy)));
@@ -112,7 +113,7 @@ impl Outcome {
         all
     }
 
-    /// The warnings as rows for the report.
+    /// Rows of the warnings for the report.
     pub fn warning_rows(&self) -> Vec<reports::Warning> {
         let run = self.row().run;
         let each = self.warnings.iter().map(|warning| reports::Warning {
@@ -128,7 +129,7 @@ impl Outcome {
         each.collect()
     }
 
-    /// The plan as rows for the report.
+    /// Rows of the plan for the report.
     pub fn plan_entries(&self) -> Vec<PlanEntry> {
         self.plan
             .stages()
@@ -143,7 +144,7 @@ impl Outcome {
             .collect()
     }
 
-    /// A transfer is a run of its own: by its scheme, from this method.
+    /// Rows of a transfer, which is a run of its own: from this method, by the scheme.
     fn transfer_records(&self, own: &Record, transfer: &Transfer) -> Vec<Record> {
         let SchemeSettings { neighbours, power, support_scale, shape, polynomial } = transfer.settings;
         let row = Record {
@@ -155,7 +156,7 @@ impl Outcome {
             family: Family::Interp,
             variant: transfer.scheme.clone(),
             from: Some(own.method.clone()),
-            // One method id may stand for many kernels.
+            // A method id may occur with several kernels.
             kernel: Some(own.variant.clone()),
             neighbours,
             power,
@@ -172,7 +173,7 @@ impl Outcome {
             seed: own.seed,
             ..Record::default()
         };
-        // Settings of the method that a scheme's row has no column for tell its runs apart all the same.
+        // The id also distinguishes settings of the method for which a scheme's row has no column.
         let row = Record { run: digest(&format!("{} {}", own.run, run_id(&row))), ..row };
         let mut rows: Vec<Record> = transfer.metrics.iter().map(|m| number(&row, m)).collect();
         transfer.times.iter().for_each(|timed| rows.extend(times(&row, timed)));
@@ -180,7 +181,7 @@ impl Outcome {
     }
 }
 
-/// Id of the run that a row belongs to: of its case, method, settings and size, so that it is the same in every study.
+/// Id of the run of a row: a hash of its case, method, settings and size. It is the same in every study.
 pub(crate) fn run_id(row: &Record) -> String {
     let size = (row.poisson.to_bits(), row.level, row.nodes, row.elements, row.seed);
     digest(&format!("{:?}", (&row.case, &row.method, row.family, &row.variant, row.settings(), size)))
@@ -190,7 +191,7 @@ fn digest(text: &str) -> String {
     blake3::hash(text.as_bytes()).to_hex()[..16].to_string()
 }
 
-/// A plain value as a row.
+/// Row of a metric's value.
 fn number(row: &Record, metric: &Metric) -> Record {
     Record {
         quantity: metric.name(),
@@ -201,7 +202,7 @@ fn number(row: &Record, metric: &Metric) -> Record {
     }
 }
 
-/// Every repeat of a phase on the wall's clock and of the processors, and what they come to.
+/// Rows of a phase's times: wall-clock and CPU time of every repeat, and their statistics.
 fn times(row: &Record, timed: &Timed) -> Vec<Record> {
     let of = |quantity: &str, statistic: &str, repeat: Option<usize>, value: f64| Record {
         quantity: quantity.into(),

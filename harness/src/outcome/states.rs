@@ -1,40 +1,41 @@
-//! What a body was like at the recorded states, for programs that draw bodies: a `.pvd` series of `.vtu` files.
+//! The body at the recorded states, for visualisation programs: a `.pvd` series of `.vtu` files.
 
 use geometry::files::{Values, solution_vtu, surface_vtu};
 use geometry::{Mesh, Point3, Vector3};
 use shape::Matrix3;
 
-/// A body, and the tools with it, at the recorded states of a run.
+/// Body and tools at the recorded states of a run.
 #[derive(Clone, Debug)]
 pub struct States {
-    /// The undeformed body; of a cloud the mesh that it was drawn from.
+    /// Undeformed mesh of the body; for a cloud, the mesh from which the cloud was drawn.
     pub(crate) mesh: Mesh,
-    /// The states, in order.
+    /// Recorded states in order.
     pub(crate) states: Vec<State>,
-    /// The tools, where the procedure has steps.
+    /// Tools, if the procedure has load steps.
     pub(crate) tools: Vec<ToolSkin>,
-    /// Number of recorded states that were not asked for.
+    /// Number of recorded states that were left out.
     pub(crate) left_out: usize,
 }
 
-/// A state.
+/// Recorded state of the body.
 #[derive(Clone, Debug)]
 pub(crate) struct State {
-    /// Time (s) in dynamics, part of the load in statics, 1 for a linear solution, number of a mode of vibration.
+    /// Time (s) in dynamics, fraction of the load in statics, 1 for a linear solution, or number of a
+    /// vibration mode.
     pub(crate) time: f64,
-    /// At the points of the mesh, m.
+    /// Displacement at the points of the mesh, m.
     pub(crate) displacement: Vec<Vector3>,
-    /// Where they are known: not of modes, nor in tissue that relaxes.
+    /// Stress and volume ratio of the cells; `None` for vibration modes and viscoelastic tissue.
     pub(crate) tensors: Option<Tensors>,
-    /// Way of each tool from its start, m.
+    /// Travel of each tool from its start, m.
     pub(crate) closures: Vec<f64>,
-    /// Where contact points lie within a tool (m), each with its signed distance (m, below 0).
+    /// Contact points inside a tool (position, m), each with its signed distance (m, negative inside).
     pub(crate) touching: Vec<(Point3, f64)>,
-    /// Smallest signed distance (m) of a point of the mesh to a tool; infinite without tools.
+    /// Smallest signed distance of a mesh point to a tool, m; infinite without tools.
     pub(crate) gap: f64,
 }
 
-/// What each cell has, as means over its quadrature points.
+/// Results in each cell, averaged over the cell's quadrature points.
 #[derive(Clone, Debug)]
 pub(crate) struct Tensors {
     /// Cauchy stress, Pa.
@@ -43,28 +44,30 @@ pub(crate) struct Tensors {
     pub(crate) det_f: Vec<f64>,
 }
 
-/// The surface of a tool where it starts.
+/// Surface of a tool at its start.
 #[derive(Clone, Debug)]
 pub(crate) struct ToolSkin {
-    /// m.
+    /// Vertices, m.
     pub(crate) points: Vec<Point3>,
     pub(crate) quads: Vec<[u32; 4]>,
-    /// Unit direction of its way.
+    /// Unit direction of travel.
     pub(crate) along: Vector3,
 }
 
 impl States {
-    /// The undeformed body; of a cloud the mesh that it was drawn from.
+    /// Undeformed mesh of the body; for a cloud, the mesh from which the cloud was drawn.
     pub fn mesh(&self) -> &Mesh {
         &self.mesh
     }
 
-    /// Displacement (m) of the points of the mesh at each state, with its time (s), part of the load or number.
+    /// Displacement of the mesh points at each state (m), with the state's time (s), load fraction or mode
+    /// number.
     pub fn displacements(&self) -> impl ExactSizeIterator<Item = (f64, &[Vector3])> {
         self.states.iter().map(|state| (state.time, &state.displacement[..]))
     }
 
-    /// Files by their names relative to a folder: the series `NAME.pvd` first, then its parts in a folder `NAME`.
+    /// Output files with names relative to a folder: the series `NAME.pvd` first, then its parts in a folder
+    /// `NAME`.
     pub fn files<'a>(&'a self, name: &'a str) -> impl Iterator<Item = (String, Vec<u8>)> + 'a {
         let parts = self.states.iter().enumerate().flat_map(move |(k, state)| {
             let body = (part(name, "body", k), self.body(state));
@@ -74,13 +77,13 @@ impl States {
         std::iter::once((format!("{name}.pvd"), self.series(name).into_bytes())).chain(parts)
     }
 
-    /// Whether a file of this name may be one of an earlier series.
+    /// Whether a file of this name may belong to an earlier series.
     pub(crate) fn is_file(name: &str) -> bool {
         let part = ["body-", "tools-"].iter().any(|what| name.starts_with(what)) && name.ends_with(".vtu");
         part || name.ends_with(".pvd")
     }
 
-    /// Whether there is nothing to draw.
+    /// Whether there are no states.
     pub fn is_empty(&self) -> bool {
         self.states.is_empty()
     }

@@ -1,4 +1,4 @@
-//! Phases timed apart, over repeats, and the peak of memory.
+//! Times of separate phases over repeats, and the peak of memory.
 
 use std::time::Instant;
 
@@ -10,14 +10,14 @@ use super::Counters;
 /// The phases of every run, in order.
 pub const PHASES: [&str; 6] = ["refine", "prepare", "assemble", "factor", "solve", "transfer"];
 
-/// Seconds of one phase, one entry per repeat.
+/// Times of one phase, one entry per repeat.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Timed {
-    /// Its name.
+    /// Name of the phase.
     pub phase: &'static str,
-    /// By the clock on the wall.
+    /// Wall-clock times, s.
     pub wall: Vec<f64>,
-    /// Of all threads of the process; empty where it is not known.
+    /// CPU times of all threads of the process, s; empty if unknown.
     pub cpu: Vec<f64>,
 }
 
@@ -32,7 +32,7 @@ impl Timed {
         Summary::of(&self.wall)
     }
 
-    /// Its time, s, by the clock that runs are compared by.
+    /// Time by the given clock, by which runs are compared, s.
     pub fn by(&self, seconds: Seconds) -> f64 {
         let wall = self.summary();
         match seconds {
@@ -42,26 +42,26 @@ impl Timed {
         }
     }
 
-    /// Median of the CPU times, where they are known.
+    /// Median of the CPU times, s; `None` if they are unknown.
     pub fn cpu_median(&self) -> Option<f64> {
         (!self.cpu.is_empty()).then(|| Summary::of(&self.cpu).median)
     }
 
-    /// A phase of its own that takes a constant part of this one.
+    /// Separate phase that takes a constant fraction of this phase's time.
     pub fn part(&self, phase: &'static str, factor: f64) -> Timed {
         let scaled = |all: &[f64]| all.iter().map(|t| t * factor).collect();
         Timed { phase, wall: scaled(&self.wall), cpu: scaled(&self.cpu) }
     }
 }
 
-/// Seconds spent per phase.
+/// Times per phase.
 #[derive(Clone, Debug, Default)]
 pub struct Timings {
     phases: Vec<Timed>,
 }
 
 impl Timings {
-    /// Runs `work` and books its time under `phase`.
+    /// Runs `work` and adds its time to `phase`.
     pub fn time<T>(&mut self, phase: &'static str, work: impl FnOnce() -> T) -> T {
         let cpu = ProcessTime::try_now().ok();
         let start = Instant::now();
@@ -74,19 +74,19 @@ impl Timings {
         result
     }
 
-    /// Books a time that was taken elsewhere, by the clock on the wall alone.
+    /// Adds a wall-clock time (s) that was measured elsewhere.
     pub(crate) fn book(&mut self, phase: &'static str, seconds: f64) {
         self.of(phase).wall.push(seconds);
     }
 
-    /// The same, with the seconds of the processors where they are known.
+    /// Adds a wall-clock time and, if known, a CPU time (s) that were measured elsewhere.
     pub(crate) fn book_both(&mut self, phase: &'static str, seconds: f64, cpu: Option<f64>) {
         let timed = self.of(phase);
         timed.wall.push(seconds);
         timed.cpu.extend(cpu);
     }
 
-    /// Makes the last two entries of a phase one: a pass that went through it twice.
+    /// Merges the last two entries of a phase, for a pass that went through the phase twice.
     pub(crate) fn join(&mut self, phase: &'static str) {
         let timed = self.of(phase);
         for entries in [&mut timed.wall, &mut timed.cpu] {
@@ -112,7 +112,7 @@ impl Timings {
         &self.phases
     }
 
-    /// Sum of one repeat's phases over the repeats that all phases share; parts of a phase are none.
+    /// Total time of each repeat that all phases have. Parts of a phase are not added.
     pub fn total(&self) -> Timed {
         let sums = |of: fn(&Timed) -> &[f64]| -> Vec<f64> {
             let phases = || self.phases.iter().filter(|timed| PHASES.contains(&timed.phase)).map(of);
@@ -123,27 +123,27 @@ impl Timings {
     }
 }
 
-/// What a run is metered by.
+/// Meters of a run: times, counters, and values found once for all passes.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Meters {
-    /// Seconds, one entry per pass.
+    /// Times, one entry per pass.
     pub(crate) timings: Timings,
-    /// Counts of one pass.
+    /// Counters of one pass.
     pub(crate) counters: Counters,
-    /// Factor that Nitsche's method needs: found once for all passes.
+    /// Smallest stabilisation factor of Nitsche's method, found once for all passes.
     pub(crate) needed_nitsche_factor: Option<f64>,
-    /// Decimal digits to be expected of a linear solution: found once for all passes.
+    /// Expected correct decimal digits of a linear solution, found once for all passes.
     pub(crate) digits: Option<f64>,
 }
 
 /// Median, interquartile range and minimum of repeated timings, in seconds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Summary {
-    /// Median.
+    /// Median, s.
     pub median: f64,
-    /// Interquartile range.
+    /// Interquartile range, s.
     pub spread: f64,
-    /// Smallest.
+    /// Minimum, s.
     pub min: f64,
 }
 
@@ -195,7 +195,7 @@ mod tests {
         assert_eq!(t.phases()[0].wall, [1.0]);
     }
 
-    /// Swapped, two phases would still have times.
+    /// If two phases were swapped, both would still have times.
     #[test]
     fn a_time_is_booked_under_its_own_phase() {
         let mut t = Timings::default();
@@ -212,7 +212,7 @@ mod tests {
         t.time("solve", || std::thread::sleep(std::time::Duration::from_millis(20)));
         let solve = &t.phases()[0];
         assert!(solve.wall[0] >= 0.02);
-        // Other tests of this process may run meanwhile, on as many threads as there are.
+        // Other tests of this process may run at the same time on all threads.
         assert!(solve.cpu.iter().all(|&cpu| cpu >= 0.0) && solve.cpu.len() <= 1);
         let begin = Instant::now();
         t.time("factor", || {

@@ -1,23 +1,23 @@
-//! What is to be said against the numbers of a run.
+//! Warnings about the results of a run.
 
 use catalogue::warning;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-/// A warning of one run. What is no entry of the catalogue cannot be told.
+/// Warning of a run. Only warnings of the catalogue can be given.
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Warning {
-    /// Which.
+    /// Entry of the catalogue.
     #[serde(rename = "code", serialize_with = "code")]
     #[schemars(with = "String")]
     pub kind: &'static warning::Warning,
-    /// What it means here, with its numbers and what would help.
+    /// Meaning for this run, with numbers and a remedy.
     pub message: String,
-    /// The number it goes by, SI.
+    /// Value that triggered the warning, in SI units.
     pub value: f64,
     /// Unit of the value.
     pub unit: &'static str,
-    /// The key of the scene that it is about, or empty.
+    /// Key of the scene that the warning concerns; may be empty.
     #[serde(rename = "where")]
     pub place: String,
 }
@@ -32,7 +32,7 @@ impl Warning {
         Warning { kind, message, value, unit: kind.unit(), place: place.into() }
     }
 
-    /// One line for people.
+    /// Formats the warning as one line.
     pub fn text(&self) -> String {
         let place = if self.place.is_empty() { String::new() } else { format!("key '{}': ", self.place) };
         format!("{place}{} ({})", self.message, self.kind.code)
