@@ -1,4 +1,4 @@
-//! Explicit dynamics: time steps of central differences with contact, and what each recorded state left.
+//! Explicit dynamics: time steps by central differences with contact, and the results of each recorded state.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -21,12 +21,15 @@ use crate::outcome::{Counters, LoadStep, Meters, Metric, ToolStep, Watch, push};
 use crate::prepare::{ConditionForces, Prepared};
 use crate::scenario::setup::Setup;
 
-/// Lanczos steps of the critical step, and the factor for what they miss from below.
+/// Lanczos steps for the critical time step, and the safety factor. Lanczos steps approach the largest
+/// eigenvalue from below.
 const LANCZOS: LanczosParams = LanczosParams { steps: 15, safety: 0.95 };
 
-/// Most time steps between two estimates of the critical step: 30 evaluations of the internal forces each, 3 % of these steps.
+/// Most time steps between two estimates of the critical step. An estimate takes 30 evaluations of the
+/// internal forces, 3 % of these steps.
 const RECHECK: usize = 1000;
-/// Time steps of a run at most: hours for a body of ten thousand cells; a thousand to a million are usual.
+/// Largest number of time steps of a run, which takes hours for a body of ten thousand cells. Usual runs take
+/// a thousand to a million.
 const MOST_STEPS: f64 = 1e7;
 
 pub(super) fn stages(asked: &Explicit) -> Stages {
@@ -45,19 +48,19 @@ pub(super) fn stages(asked: &Explicit) -> Stages {
     }
 }
 
-/// Runs the motion, from rest and undeformed. One that ends early keeps its numbers, those of the start if no state was
-/// recorded.
+/// Integrates the motion from the undeformed body at rest. A run that ends early keeps its results, or those
+/// of the start if no state was recorded.
 pub(super) fn solve(problem: &Problem, asked: &Explicit, meters: &mut Meters) -> Result<Solution, Failure> {
     let Meters { timings, counters, .. } = meters;
     timings.time("solve", || motion(problem, asked, counters))
 }
 
-/// What pushes and leads the body: nodal forces of the loads (N) and the displacements of the supports (m), both at the end of
-/// their growth.
+/// Nodal forces of the loads (N) and prescribed displacements of the supports (m), at the end of their
+/// growth.
 struct Loading {
     loads: Vec<Vector3>,
     led: BTreeMap<(u32, u8), f64>,
-    /// Time over which they grow, s.
+    /// Time over which the loads and displacements grow, s.
     over: f64,
 }
 
@@ -170,7 +173,7 @@ fn motion(problem: &Problem, asked: &Explicit, counters: &mut Counters) -> Resul
     })
 }
 
-/// Refuses more time steps than anyone waits for, before the first.
+/// Refuses a run with more than [`MOST_STEPS`] time steps before the first step.
 fn affordable(asked: &Explicit, dt: f64, critical: f64) -> Result<(), Failure> {
     let count = asked.ramp.duration / dt;
     if count <= MOST_STEPS {
@@ -197,12 +200,13 @@ fn moving_tools<'a>(setup: &'a Setup, asked: &Explicit, mass: f64) -> Vec<Moving
     moving.collect()
 }
 
-/// Largest spring constant per area of contact, Pa/m.
+/// Largest contact stiffness per area, Pa/m.
 fn stiffest(setup: &Setup) -> f64 {
     setup.tools.iter().map(|t| t.tool.law().penalty().max(t.tool.law().stick())).fold(0.0, f64::max)
 }
 
-/// Prescribed degrees of freedom, with their displacement (m) at the end. Supports that meet agree: `prepare` refuses others.
+/// Prescribed degrees of freedom with their displacement at the end, m. Supports at the same degree of
+/// freedom agree: `prepare` refuses others.
 pub(crate) fn led(prepared: &Prepared) -> BTreeMap<(u32, u8), f64> {
     prepared.fixed().iter().map(|fixed| ((fixed.node, fixed.axis), fixed.value)).collect()
 }
@@ -213,21 +217,21 @@ pub(crate) fn smallest_j(prepared: &Prepared, u: &[Vector3]) -> f64 {
     gradients.iter().map(|h| (Matrix3::identity() + h).determinant()).fold(f64::INFINITY, f64::min)
 }
 
-/// An interval in equal steps no longer than `longest`: their length and number.
+/// Divides an interval into equal steps no longer than `longest`; returns their length and number.
 fn divided(interval: f64, longest: f64) -> (f64, usize) {
-    // Rounding must not add a step of its own.
+    // Rounding must not add a step.
     let count = (interval / longest * (1.0 - 1e-12)).ceil().max(1.0);
     (interval / count, count as usize)
 }
 
-/// What the motion has left so far.
+/// Recorded states so far.
 #[derive(Default)]
 struct States {
     steps: Vec<LoadStep>,
     fields: Vec<Vec<Vector3>>,
-    /// Smallest critical step found, s.
+    /// Smallest estimate of the critical step, s.
     critical: f64,
-    /// Largest error of the energy balance.
+    /// Largest relative error of the energy balance.
     drift: f64,
 }
 
@@ -236,21 +240,23 @@ struct Run<'a, 'b> {
     asked: &'b Explicit,
     setup: &'b Setup,
     prepared: &'b Prepared,
-    /// Prescribed degrees of freedom, as the motion has them.
+    /// Prescribed degrees of freedom, in the order of the integrator.
     led: Vec<(u32, u8)>,
     states: States,
     watch: Option<&'b Watch>,
 }
 
 impl Run<'_, '_> {
-    /// All recorded states. The step follows the critical one as the body deforms, unless the scene gives it.
+    /// Integrates up to the end and records the states. Unless the scene sets the time step, it follows the
+    /// critical step as the body deforms.
     fn march(&mut self, load: &mut External<'_>, interval: f64) -> Result<(), ExplicitError> {
         for state in 0..=self.asked.ramp.steps {
             let mut left = 1;
             if state < self.asked.ramp.steps {
                 left = self.choose_step((state + 1) as f64 * interval)?;
             }
-            // The balance at a state is known with the step that leaves it; the last state has one for that alone.
+            // The energy balance at a state is known after the next step. The last state takes an additional
+            // step for it.
             let mut seen: Option<(Balance, Vec<Vector3>)> = None;
             self.motion.run(1, 1, load, &mut |balance, u| seen = Some((*balance, u.to_vec())))?;
             let (balance, u) = seen.expect("every step is recorded");
@@ -283,7 +289,7 @@ impl Run<'_, '_> {
         Ok(())
     }
 
-    /// The step for the way to `end` (s); returns how many there are.
+    /// Sets the time step up to `end` (s) and returns the number of steps.
     fn choose_step(&mut self, end: f64) -> Result<usize, ExplicitError> {
         let critical = self.motion.critical_step()?.dt;
         self.states.critical = self.states.critical.min(critical);
@@ -293,7 +299,7 @@ impl Run<'_, '_> {
         Ok(count)
     }
 
-    /// Force (N) of each support on a body of so many nodes, at the last step made.
+    /// Force of each support on a body with this number of nodes, at the last step, N.
     fn supports(&self, nodes: usize) -> Vec<Vector3> {
         let mut forces = vec![Vector3::zeros(); nodes];
         for (&(node, axis), force) in self.led.iter().zip(self.motion.reactions()) {

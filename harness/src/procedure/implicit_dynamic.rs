@@ -1,5 +1,5 @@
-//! Implicit dynamics: time steps by Newton's method with contact, inertia and relaxing tissue, and what each recorded state
-//! left.
+//! Implicit dynamics: time steps by Newton's method with contact, inertia and viscoelastic tissue, and the
+//! results of each recorded state.
 
 use cases::scene::Implicit;
 use catalogue::metric;
@@ -15,7 +15,7 @@ use crate::outcome::{Counters, LoadStep, Meters, Metric, ToolStep, push};
 use crate::prepare::ConditionForces;
 use crate::scenario::setup::Setup;
 
-/// What the solver takes. An accuracy asks for steps as short as it takes.
+/// Parameters of the solver. If the scene sets an accuracy, the time step may shrink almost without limit.
 fn params(asked: &Implicit) -> TimeParams {
     TimeParams {
         end: asked.ramp.duration,
@@ -40,17 +40,18 @@ pub(super) fn stages(setup: &Setup, asked: &Implicit) -> Stages {
     }
 }
 
-/// Runs the motion, from rest and undeformed. One that made no step is an error, one that ended early is not.
+/// Integrates the motion from the undeformed body at rest. A run that made no step is an error; a run that
+/// ended early is not.
 pub(super) fn solve(problem: &Problem, asked: &Implicit, meters: &mut Meters) -> Result<Solution, Failure> {
     let Meters { timings, counters, .. } = meters;
     timings.time("solve", || motion(problem, asked, counters))
 }
 
-/// Growth of loads, supports and tools.
+/// Growth of loads, supports and tools over time.
 fn ramps(setup: &Setup, asked: &Implicit) -> Ramps {
     let over = asked.ramp.growth();
     let loads = if over > 0.0 { Ramp::Linear { over } } else { Ramp::AtOnce };
-    // A mass that is led starts from rest.
+    // With inertia, prescribed displacements must start with zero velocity.
     let supports = match (asked.inertia, loads) {
         (true, Ramp::Linear { over }) => Ramp::Smooth { over },
         _ => loads,
@@ -62,7 +63,7 @@ fn ramps(setup: &Setup, asked: &Implicit) -> Ramps {
 fn motion(problem: &Problem, asked: &Implicit, counters: &mut Counters) -> Result<Solution, Failure> {
     let Problem { method, setup, prepared, watch, .. } = *problem;
     let contact = prepared.contact();
-    // The points of the forces need not give a regular mass: four of a tet10 have rank 4.
+    // The quadrature of the forces may give a singular mass matrix: four points of a tet10 have rank 4.
     let mass = if asked.inertia {
         let (fine, region) = prepared.fine_volume()?;
         counters.mass_nodes += method.nodes().len() as u64;
@@ -118,7 +119,8 @@ fn motion(problem: &Problem, asked: &Implicit, counters: &mut Counters) -> Resul
     })
 }
 
-/// Counts what the motion took; returns the linear systems solved on the way to converged steps.
+/// Adds the motion's operations to the counters, and returns the number of linear systems solved in converged
+/// steps.
 fn count(path: &TimePath, counters: &mut Counters) -> u64 {
     let iterations = path.steps.iter().map(|s| solves(&s.step)).sum();
     counters.time_steps += path.steps.len() as u64;
@@ -132,7 +134,7 @@ fn count(path: &TimePath, counters: &mut Counters) -> u64 {
     iterations
 }
 
-/// Numbers of the whole motion.
+/// Metrics of the whole motion.
 fn metrics(path: &TimePath, iterations: u64, inertia: bool) -> Vec<Metric> {
     let mut metrics = Vec::new();
     push(&mut metrics, &metric::TIME_STEPS, path.steps.len() as f64);
@@ -150,11 +152,11 @@ fn metrics(path: &TimePath, iterations: u64, inertia: bool) -> Vec<Metric> {
     metrics
 }
 
-/// Of the largest energy.
+/// Fraction of the motion's largest energy below which differences are rounding.
 const ROUNDING: f64 = 1e-9;
 
-/// Largest energy that the balance lacks or has too much, over the largest of its terms so far. What is
-/// rounding of the largest of the whole motion does not count.
+/// Largest error of the energy balance, relative to the largest of its terms so far. Differences that are
+/// rounding of the largest energy of the whole motion do not count.
 fn drift(steps: &[TimeStep]) -> f64 {
     let largest = |TimeStep { energy, .. }: &TimeStep| {
         let terms = [energy.kinetic, energy.internal, energy.external, energy.damped];
@@ -174,7 +176,8 @@ fn drift(steps: &[TimeStep]) -> f64 {
 fn reported(done: &TimeStep, setup: &Setup, duration: f64) -> LoadStep {
     let TimeStep { step, energy, .. } = done;
     let tools = step.tools.iter().zip(&setup.tools).map(|(state, set)| ToolStep::of(state, &set.tool));
-    // What contact springs store and friction takes is outside the body, and so is the tools' own work.
+    // The energy of contact springs, the dissipation by friction and the work of the tools lie outside the
+    // body.
     let mut more = vec![
         Metric::new(&metric::TIME, step.time),
         Metric::new(&metric::KINETIC_ENERGY, energy.kinetic),
@@ -182,7 +185,7 @@ fn reported(done: &TimeStep, setup: &Setup, duration: f64) -> LoadStep {
         Metric::new(&metric::DAMPING_DISSIPATION, energy.damped),
         Metric::new(&metric::SCHEME_DISSIPATION, energy.lost()),
     ];
-    // What relaxing tissue stores of it is not known.
+    // For viscoelastic tissue the stored part of the internal work is unknown.
     let strain_energy = if setup.relaxes() {
         push(&mut more, &metric::INTERNAL_WORK, energy.internal);
         None

@@ -1,4 +1,4 @@
-//! The linear procedure: one stiffness matrix and one solve, by a factor or by iterations.
+//! The linear procedure: one stiffness matrix and one solution, by factorisation or by iterations.
 
 use cases::scene::LinearSolver;
 use statics::assemble;
@@ -11,13 +11,13 @@ use crate::outcome::Meters;
 use crate::prepare::ConditionForces;
 use crate::scenario::setup::Setup;
 
-/// What the linear procedure puts into the plan.
+/// Stages of the linear procedure in the plan.
 pub(super) fn stages(method: &Discretisation, setup: &Setup, asked: LinearSolver) -> Stages {
     let (serves, why) = serves(method, setup, asked);
     Stages { factorisation: (true, format!("{} ({why})", serves.meaning())), ..Stages::linear() }
 }
 
-/// Assembles, factors and solves, each timed apart.
+/// Assembles, factors and solves, each timed separately.
 pub(super) fn solve(
     problem: &Problem,
     asked: LinearSolver,
@@ -35,7 +35,8 @@ pub(super) fn solve(
         weak: &solved.factored.forces_of_weak(&solved.solution, 1.0),
     });
     let statics::Solution { u, info, .. } = solved.solution;
-    // Untimed, and once for all repeats: diagnoses, not a part of the solution.
+    // These diagnostics are not part of the solution: they are not timed and are computed once for all
+    // repeats.
     if meters.needed_nitsche_factor.is_none() {
         meters.needed_nitsche_factor = solved.factored.needed_nitsche_factor()?;
     }

@@ -1,4 +1,4 @@
-//! What solves the equations of a linear procedure, and why: a factor, or iterations with multigrid.
+//! Choice of the solver of a linear procedure: factorisation, or iterations with multigrid.
 
 use cases::scene::LinearSolver;
 use geometry::Point3;
@@ -12,29 +12,33 @@ use crate::outcome::Meters;
 use crate::prepare::Prepared;
 use crate::scenario::setup::Setup;
 
-/// Relative residual to which the equations are iterated.
+/// Relative residual at which the iterations stop.
 const TOLERANCE: f64 = 1e-8;
 
-/// From so many unknowns on iterations serve where the volumetric stiffness is at most [`COMPRESSIBLE`] times that of shear. On a
-/// cube of tet4 of 105,000 unknowns hierarchy and iterations take 0.4 s, a factor and its solution 5 s; at 5,000 they are equal. A
-/// factor is exact to rounding, so that it keeps the small problems.
+/// Number of unknowns from which iterations are used if the volumetric stiffness is at most [`COMPRESSIBLE`]
+/// times the shear stiffness. On a cube of tet4 with 105,000 unknowns, multigrid setup and iterations take
+/// 0.4 s, factorisation and solution 5 s. At 5,000 unknowns the times are equal. A factor is exact to
+/// rounding, so small problems are factored.
 const UNKNOWNS: f64 = 20_000.0;
 
-/// Largest `lambda / mu` at which the iterations are those of a compressible body (nu = 0.45): 20 to 35. Beyond they grow with its
-/// square root (94 at nu = 0.495, 11 times as much), and the size from which they pay in proportion.
+/// Largest `lambda / mu` at which the iterations are as few as for a compressible body (nu = 0.45): 20 to 35.
+/// Beyond this ratio they grow with its square root (94 at nu = 0.495, where the ratio is 11 times as large),
+/// and so does the size from which iterations pay off.
 const COMPRESSIBLE: f64 = 9.0;
 
-/// From this `lambda / mu` on elements whose points share dilations are iterated with pressures: 45 iterations at nu = 0.495 where
-/// displacements alone take 77, each a third dearer.
+/// Smallest `lambda / mu` at which elements whose points share dilations are iterated with pressures. At nu =
+/// 0.495 this takes 45 iterations instead of 77 with displacements alone, each a third more expensive.
 const PRESSURES: f64 = 60.0;
 
-/// Powers of `lambda / mu` with which the size grows from which iterations with pressures pay. On cubes of 107,811 unknowns at nu = 0.4999
-/// tet10 takes 3.2 s, a factor 7.3; hex8, whose pressures are less certain, 9.5 s, a factor 7.1.
+/// Exponents of `lambda / mu` in the size from which iterations with pressures pay off, for elements of
+/// second and of first order. On cubes of 107,811 unknowns at nu = 0.4999, tet10 takes 3.2 s (factorisation
+/// 7.3 s); hex8, whose pressures are less well determined, takes 9.5 s (factorisation 7.1 s).
 const QUADRATIC: f64 = 0.25;
 const LINEAR: f64 = 0.34;
 
-/// Unknowns of a cube that take as long to factor as one of the body: what counts are the nodes across its longest side, `n^(2/3) s`
-/// with `s` the edge of a cube of its volume over that side. A beam is soft besides, and its iterations lose digits.
+/// Ratio of the unknowns of a cube that is as expensive to factor to the unknowns of the body. The cost
+/// depends on the nodes across the longest side, `n^(2/3) s`, with `s` the edge of a cube of the same
+/// bounding volume divided by the longest side. A beam is also flexible, and its iterations lose digits.
 fn compactness(nodes: &[Point3]) -> f64 {
     let along = |axis: usize| {
         let ends = nodes
@@ -48,18 +52,18 @@ fn compactness(nodes: &[Point3]) -> f64 {
     (cube / sides.iter().fold(0.0, |longest: f64, side| longest.max(*side))).powf(1.5)
 }
 
-/// What solves the equations.
+/// Solver of the linear equations.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Serves {
     Factor,
     /// Conjugate gradients with multigrid.
     Multigrid,
-    /// The same for displacements and pressures together.
+    /// Conjugate gradients with multigrid, for displacements and pressures together.
     Pressures,
 }
 
 impl Serves {
-    /// What the plan says of the stage that makes it.
+    /// Description of the factorisation stage in the plan.
     pub fn meaning(self) -> &'static str {
         match self {
             Serves::Factor => "one, for all load levels",
@@ -69,12 +73,12 @@ impl Serves {
     }
 }
 
-/// What solves the equations, and why.
+/// Chooses the solver, and gives the reason.
 pub(super) fn serves(method: &Discretisation, setup: &Setup, asked: LinearSolver) -> (Serves, String) {
     let direct = match method.essential {
         Essential::Multipliers => Some("multipliers"),
         Essential::Elimination(_) => Some("elimination couples nodes far apart"),
-        // 162 iterations on 486 nodes at dilatation 1.6, where elements take 16 to 19.
+        // 162 iterations on 486 nodes at a support scale of 1.6; elements take 16 to 19.
         _ if !method.interpolates => Some("a cloud's functions overlap too widely for iterations"),
         _ => None,
     };
@@ -108,11 +112,11 @@ pub(super) fn serves(method: &Discretisation, setup: &Setup, asked: LinearSolver
     }
 }
 
-/// A problem with what solved it.
+/// Solution of the linear problem, with the solver that found it.
 pub(super) struct Solved<'a> {
     pub factored: Factored<'a>,
     pub solution: statics::Solution,
-    /// Whether it was to be iterated, and needed a factor.
+    /// Whether iterations were intended, but a factor was needed.
     pub not_iterated: bool,
 }
 
@@ -150,7 +154,8 @@ fn by_factor<'a>(
     Ok(Solved { factored, solution, not_iterated: false })
 }
 
-/// Iterates; what does not converge is factored unless iterations were asked for.
+/// Solves by iterations. If they do not converge, the matrix is factored, unless the scene requests
+/// iterations.
 fn by_iterations<'a>(
     prepared: &Prepared,
     assembled: Assembled<'a>,
@@ -187,7 +192,7 @@ fn by_iterations<'a>(
     Ok(Solved { not_iterated: true, ..solved })
 }
 
-/// Whether a factor might do better.
+/// Whether factorisation might succeed after this error of the iterations.
 fn is_of_iteration(error: &SolveError) -> bool {
     matches!(error, SolveError::Algebra(_) | SolveError::NotPositiveDefinite)
 }

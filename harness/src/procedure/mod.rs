@@ -1,4 +1,4 @@
-//! How a scene is solved: one file for each procedure, with the stages it puts into the plan and its entry point.
+//! Solution procedures: one file for each procedure, with its stages in the plan and its entry point.
 
 mod explicit;
 pub(crate) mod external;
@@ -28,20 +28,20 @@ pub(crate) use refine::refined;
 pub(crate) use solution::{Solution, StepHistory};
 pub(crate) use statics::{solves, static_params, with_static_problem};
 
-/// One method's tables under one setup: what a procedure solves.
+/// Problem that a procedure solves: the tables of one method under one setup.
 pub(crate) struct Problem<'a> {
     pub(crate) method: &'a Discretisation,
     pub(crate) setup: &'a Setup,
     pub(crate) prepared: &'a Prepared,
     pub(crate) plan: &'a Plan,
-    /// Who waits for it.
+    /// Observer of the run.
     pub(crate) watch: Option<&'a Watch>,
     /// Probe positions, m.
     pub(crate) probes: &'a [Point3],
 }
 
 impl Problem<'_> {
-    /// Unknowns of a procedure that eliminates its supports, without those of a pressure field.
+    /// Number of unknowns after elimination of the supports, without those of a pressure field.
     fn free_dofs(&self) -> usize {
         let fixed: std::collections::BTreeSet<(u32, u8)> =
             self.prepared.fixed().iter().map(|f| (f.node, f.axis)).collect();
@@ -49,7 +49,7 @@ impl Problem<'_> {
     }
 }
 
-/// Solves by the setup's procedure.
+/// Solves the problem by the setup's procedure, or by an external solver.
 pub(crate) fn solve(problem: &Problem, meters: &mut Meters) -> Result<Solution, Failure> {
     if let Some(outside) = &problem.method.outside {
         return external::solve(problem, outside, meters);
@@ -64,7 +64,7 @@ pub(crate) fn solve(problem: &Problem, meters: &mut Meters) -> Result<Solution, 
     }
 }
 
-/// What a procedure puts into the plan: whether each stage runs, and why.
+/// Stages that depend on the procedure: whether each of them runs, and why.
 struct Stages {
     mass: (bool, String),
     stiffness: (bool, String),
@@ -72,14 +72,14 @@ struct Stages {
     factorisation: (bool, String),
     newton: (bool, String),
     relaxation: (bool, String),
-    /// Why nothing is moved to other points, where that is so.
+    /// Reason why no displacement is transferred to other points, if that is so.
     no_transfer: Option<&'static str>,
-    /// Why nothing acts on the body, where that is so.
+    /// Reason why there is no contact, if that is so.
     no_contact: Option<&'static str>,
 }
 
 impl Stages {
-    /// Of one linear solve; other procedures say what differs.
+    /// Stages of a linear solution. Other procedures state their differences.
     fn linear() -> Stages {
         Stages {
             mass: (false, "static".into()),
@@ -93,7 +93,7 @@ impl Stages {
         }
     }
 
-    /// Of nothing but the tables.
+    /// Stages of a run that only fills the tables.
     fn prepare() -> Stages {
         const NOTHING: &str = "nothing is solved (kind = \"prepare\")";
         Stages {
@@ -123,7 +123,7 @@ impl Stages {
     }
 }
 
-/// Why Newton's method iterates.
+/// Reason in the plan why Newton's method iterates.
 fn newton_reason(setup: &Setup, steps: usize, kind: &str) -> String {
     let steps = if steps == 1 { format!("1 {kind} step") } else { format!("{steps} {kind} steps") };
     match (setup.laws.iter().all(|law| law.is_small_strain()), setup.tools.is_empty()) {

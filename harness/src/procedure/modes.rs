@@ -1,4 +1,4 @@
-//! Small free vibrations: the mass and the modes.
+//! Modal analysis of small free vibrations: the mass matrix and the modes.
 
 use cases::scene;
 use explicit::{Lumping, lumped_mass};
@@ -11,10 +11,10 @@ use crate::error::Key;
 use crate::outcome::Meters;
 use crate::scenario::setup::Setup;
 
-/// Modes with the mass that they have.
+/// Vibration modes and the mass of the body.
 pub(crate) struct Vibration {
     pub(crate) modes: Modes,
-    /// How many are reported.
+    /// Number of modes to report.
     pub(crate) count: usize,
     /// Mass of the body, kg.
     pub(crate) mass: f64,
@@ -35,7 +35,7 @@ pub(super) fn stages(setup: &Setup) -> Stages {
     }
 }
 
-/// Makes the mass and finds the modes, of which `count` are reported.
+/// Assembles the mass matrix and computes the modes, of which `count` are reported.
 pub(super) fn solve(problem: &Problem, count: usize, meters: &mut Meters) -> Result<Solution, Failure> {
     let Problem { method, setup, prepared, .. } = *problem;
     let Meters { timings, counters, .. } = meters;
@@ -63,7 +63,7 @@ fn mass(problem: &Problem) -> Result<Mass, Failure> {
         return Err(Failure::input(Key::Method("mass"), "is missing, and vibrations need one", help));
     };
     Ok(match (kind, method.interpolates) {
-        // The points of the forces need not give a regular mass: four of a tet10 have rank 4.
+        // The quadrature of the forces may give a singular mass matrix: four points of a tet10 have rank 4.
         (scene::Mass::Consistent, _) => {
             let (fine, region) = prepared.fine_volume()?;
             Mass::consistent(&fine, &density, &region)?
@@ -72,7 +72,7 @@ fn mass(problem: &Problem) -> Result<Mass, Failure> {
             let (at_nodes, _) = prepared.source.at_points(method.nodes())?;
             Mass::transformed(at_nodes.rows(), &lumped()?)?
         }
-        // Parameters of elements are displacements: nothing is left to transform.
+        // Nodal parameters of elements are displacements, which need no transformation.
         (scene::Mass::Lumped | scene::Mass::Transformed, _) => Mass::lumped(&lumped()?)?,
     })
 }

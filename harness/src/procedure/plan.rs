@@ -1,4 +1,4 @@
-//! The plan of a run: the stages it needs, the stages it does not, and why.
+//! The plan of a run: the stages that it needs, the stages that it skips, and why.
 
 use cases::scene::ConstraintRows;
 
@@ -7,16 +7,16 @@ use crate::discretise::{Dilation, Discretisation, Essential};
 use crate::outcome::{Counters, Plan, StageName};
 use crate::scenario::setup::Setup;
 
-/// Whether the method's displacement is wanted elsewhere than at its own nodes.
+/// Requests for the method's displacement at points other than its own nodes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Wanted {
-    /// Displacements at points that are not the method's nodes.
+    /// Whether displacements are requested at points that are not the method's nodes.
     pub(crate) targets: bool,
-    /// Transfer schemes to compare.
+    /// Whether transfer schemes are to be compared.
     pub(crate) schemes: bool,
 }
 
-/// Below this Poisson's ratio a volumetric projection gains nothing worth its cost (kappa < 10 mu).
+/// Poisson's ratio below which a volumetric projection is not worth its cost (kappa < 10 mu).
 const NEARLY_INCOMPRESSIBLE: f64 = 0.45;
 
 /// Stages of a run, in order.
@@ -52,8 +52,8 @@ pub(crate) fn plan(method: &Discretisation, setup: &Setup, wanted: Wanted) -> Pl
     plan
 }
 
-/// Says in the plan of a finished run what evaluated the internal forces, as a plain loop takes 3 to 10 times as long, and that
-/// a path without a limit point needed no relaxation.
+/// Completes the plan of a finished run. It states how the internal forces were evaluated, because a plain
+/// loop takes 3 to 10 times as long, and that a load path without a limit point needed no relaxation.
 pub(crate) fn conclude(plan: &mut Plan, solution: &Solution, counters: &Counters) {
     let forces = solution.forces;
     if solution.not_iterated {

@@ -1,4 +1,5 @@
-//! A cloud that follows an error: solve, see where gradients differ from recovered ones, place as many nodes anew, solve again.
+//! Adaptive clouds: solve, compare the gradients with recovered gradients, place the same number of nodes
+//! anew, and solve again.
 
 use cases::scene::{ErrorKind, LinearSolver, Procedure};
 use efg::gradient_error;
@@ -12,7 +13,7 @@ use crate::outcome::{Counters, Meters, Plan};
 use crate::prepare::prepare;
 use crate::scenario::setup::Setup;
 
-/// The method on the last of its clouds; nothing where the cloud is to stay.
+/// Returns the method on the last of its refined clouds; `None` if the cloud is not refined.
 pub(crate) fn refined(
     method: &Discretisation,
     setup: &Setup,

@@ -1,4 +1,4 @@
-//! Beyond a limit point: dynamic relaxation from the last equilibrium to the load steps that are left.
+//! Dynamic relaxation beyond a limit point, from the last equilibrium to the remaining load steps.
 
 use catalogue::metric;
 use contact::{ContactHistory, Drive};
@@ -18,7 +18,8 @@ use crate::outcome::{Counters, LoadStep, Metric, ToolStep};
 use crate::prepare::{ConditionForces, Prepared};
 use crate::scenario::setup::Setup;
 
-/// Displacements to 1e-6 of the largest: 10 nm of 10 mm. Most steps for one load step: the kidney takes some thousand.
+/// Parameters of the relaxation. Displacements are accurate to 1e-6 of the largest, 10 nm for 10 mm. The
+/// limit of steps is per load step; the kidney takes some thousand.
 const RELAXATION: RelaxationParams = RelaxationParams {
     tolerance: 1e-6,
     steps: 100_000,
@@ -26,36 +27,37 @@ const RELAXATION: RelaxationParams = RelaxationParams {
     recheck: 500,
 };
 
-/// kg/m^3, of all regions: at rest no mass is left in the forces, and one density makes the steps of all nodes alike.
+/// Density of all regions, kg/m^3. At rest the mass does not affect the forces, and a uniform density makes
+/// the steps of all nodes similar.
 const DENSITY: f64 = 1000.0;
 
-/// The state that relaxation starts from.
+/// Initial state of the relaxation.
 pub struct Start {
-    /// Part of the load reached.
+    /// Fraction of the load reached, 0 to 1.
     pub load: f64,
     /// Nodal displacements, m.
     pub u: Vec<Vector3>,
-    /// Closures of the tools, m.
+    /// Travel of the tools from their start, m.
     pub closures: Vec<f64>,
-    /// What their contact remembers.
+    /// Contact history of each tool.
     pub history: Vec<ContactHistory>,
 }
 
-/// What relaxation came to.
+/// Result of the relaxation.
 pub struct Relaxed {
-    /// The load steps that came to rest.
+    /// Load steps that came to rest.
     pub steps: Vec<LoadStep>,
-    /// Nodal displacements at each of them, m.
+    /// Nodal displacements at each load step, m.
     pub fields: Vec<Vec<Vector3>>,
-    /// Steps of the relaxation over all of them.
+    /// Number of relaxation steps over all load steps.
     pub made: u64,
-    /// What evaluated the internal forces.
+    /// Kernel that evaluated the internal forces.
     pub forces: KernelInfo,
-    /// Why it ended early, if it did.
+    /// Failure that ended the relaxation early, if any.
     pub failure: Option<ExplicitError>,
 }
 
-/// Whether a method can continue by relaxation where its static path stalls, and why (not).
+/// Whether a method can continue by relaxation after its static path stalls, with the reason.
 pub(super) fn possible(method: &Discretisation) -> (bool, &'static str) {
     match method.dilation {
         _ if !method.interpolates => (
@@ -70,7 +72,7 @@ pub(super) fn possible(method: &Discretisation) -> (bool, &'static str) {
     }
 }
 
-/// Relaxes to the ends of the load steps beyond `from`, one after the other.
+/// Relaxes to the end of each load step beyond `from` in turn.
 pub(super) fn continue_from(
     setup: &Setup,
     count: usize,

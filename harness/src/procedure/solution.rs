@@ -1,4 +1,4 @@
-//! What a procedure comes to.
+//! Results of a procedure.
 
 use explicit::KernelInfo;
 use geometry::Vector3;
@@ -9,55 +9,58 @@ use super::modes::Vibration;
 use crate::Failure;
 use crate::outcome::{LoadStep, Metric};
 
-/// What a procedure comes to; without nodal parameters where it solves for no displacement.
+/// Result of a procedure. It has no nodal parameters if the procedure does not solve for a displacement.
 #[derive(Default)]
 pub(crate) struct Solution {
     /// Nodal parameters at the end, m.
     pub(crate) u: Vec<Vector3>,
-    /// Parameters of the method's own pressure field there, Pa, tension positive; empty without one.
+    /// Parameters of the method's own pressure field at the end, Pa, tension positive; empty without such a
+    /// field.
     pub(crate) pressure: Vec<f64>,
     /// Force of each support on the body at the end of a linear procedure, N.
     pub(crate) supports: Vec<Vector3>,
-    /// Unknowns, pressures included.
+    /// Number of unknowns, pressures included.
     pub(crate) dofs: usize,
-    /// Relative residual of the last equilibrium of a procedure at rest.
+    /// Relative residual of the last static equilibrium.
     pub(crate) residual: Option<f64>,
-    /// Of a linear procedure.
+    /// Solver information of a linear procedure.
     pub(crate) linear: Option<SolveInfo>,
-    /// Whether a linear procedure was to iterate, and needed a factor.
+    /// Whether a linear procedure should have been solved by iterations but needed a factor.
     pub(crate) not_iterated: bool,
-    /// Factor that Nitsche's method needs here, where it holds the body in a linear procedure.
+    /// Smallest stabilisation factor of Nitsche's method, if Nitsche's method constrains the body in a linear
+    /// procedure.
     pub(crate) needed_nitsche_factor: Option<f64>,
-    /// Decimal digits to be expected of a linear solution.
+    /// Expected correct decimal digits of a linear solution.
     pub(crate) digits: Option<f64>,
-    /// Of a procedure in steps.
+    /// History of a procedure with steps.
     pub(crate) history: Option<StepHistory>,
-    /// Of vibrations.
+    /// Modes of a modal analysis.
     pub(crate) vibration: Option<Vibration>,
-    /// What evaluated the internal forces of explicit dynamics or relaxation.
+    /// Kernel that evaluated the internal forces of explicit dynamics or relaxation.
     pub(crate) forces: Option<KernelInfo>,
-    /// Why Newton's method ended early where relaxation continued to the whole load.
+    /// Failure that ended Newton's method early, if relaxation continued to the whole load.
     pub(crate) relaxed: Option<Failure>,
-    /// Of a program outside this one that solved.
+    /// Properties of the external program that solved the problem.
     pub(crate) program: Option<OfProgram>,
 }
 
-/// The load steps of a path or the recorded states of a motion, as far as it came.
+/// Load steps of a static path or recorded states of a motion, up to the end that was reached.
 pub(crate) struct StepHistory {
-    /// The ends of the scene's load steps, or its recorded states.
+    /// Ends of the scene's load steps, or its recorded states.
     pub(crate) steps: Vec<LoadStep>,
-    /// Nodal parameters at each of them, m.
+    /// Nodal parameters at each step or state, m.
     pub(crate) fields: Vec<Vec<Vector3>>,
-    /// The last converged or recorded state, among them or not.
+    /// Last converged or recorded state, which need not be one of `steps`.
     pub(crate) last: LoadStep,
-    /// Numbers of the whole.
+    /// Metrics of the whole history.
     pub(crate) metrics: Vec<Metric>,
-    /// Why it ended early, if it did.
+    /// Failure that ended the run early, if any.
     pub(crate) failure: Option<Failure>,
 }
 
 impl Solution {
-    /// What solved the linear system, or the eigenproblem, of a procedure that has one.
+    /// Name of the solver of the linear system or the eigenproblem, or of the external program; `None` for
+    /// other procedures.
     pub(crate) fn solver(&self) -> Option<&str> {
         if let Some(program) = &self.program {
             return program.version.as_deref();
@@ -66,12 +69,12 @@ impl Solution {
         self.linear.as_ref().map(|info| info.path.name()).or(of_vibration)
     }
 
-    /// Force of each support on the body at the end, N; none where it is not known.
+    /// Force of each support on the body at the end, N; empty if unknown.
     pub(crate) fn support_forces(&self) -> &[Vector3] {
         self.history.as_ref().map_or(&self.supports, |history| &history.last.supports)
     }
 
-    /// Whether the whole load was reached; a linear procedure has no less.
+    /// Whether the whole load was reached, which is always true for a linear procedure.
     pub(crate) fn is_whole(&self) -> bool {
         self.history.as_ref().is_none_or(|history| history.failure.is_none())
     }

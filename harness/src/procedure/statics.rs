@@ -1,4 +1,4 @@
-//! The static procedure: load steps by Newton's method, with contact, and what each of them left.
+//! The static procedure: load steps by Newton's method, with contact, and the results of each step.
 
 use std::time::Instant;
 
@@ -17,10 +17,10 @@ use crate::outcome::{Counters, LoadStep, Meters, Metric, StageName, ToolStep, pu
 use crate::prepare::{ConditionForces, Prepared};
 use crate::scenario::setup::Setup;
 
-/// Part of a load step below which cutting it back is given up: six halvings.
+/// Smallest fraction of a load step to which the step is cut back: six halvings.
 pub(super) const SMALLEST: f64 = 1.0 / 64.0;
 
-/// What the solver takes.
+/// Parameters of the static solver.
 pub(crate) fn static_params(asked: &Static) -> StaticParams {
     StaticParams {
         steps: asked.steps,
@@ -31,7 +31,7 @@ pub(crate) fn static_params(asked: &Static) -> StaticParams {
     }
 }
 
-/// A factor for every tangent.
+/// Parameters of Newton's method that factor every tangent.
 pub(super) fn newton_params(newton: &Newton) -> NewtonParams {
     let Newton { tolerance, iterations, .. } = *newton;
     NewtonParams { tolerance, iterations, chords: true, keeps: f64::INFINITY }
@@ -51,16 +51,16 @@ pub(super) fn stages(method: &Discretisation, setup: &Setup, asked: &Static) -> 
     }
 }
 
-/// The last step in a stable equilibrium: before the first that ends in none or on which none was near, or the last one where
-/// Newton's method found none at all further on.
+/// Last stable step: the step before the first loss of stability or the first unstable equilibrium. If
+/// Newton's method finds no further equilibrium, it is the last converged step.
 #[derive(Default)]
 struct Limit {
     step: Option<LoadStep>,
-    /// Seconds to get there.
+    /// Time to reach the step, s.
     seconds: f64,
 }
 
-/// Solves. A path that reached no load is an error, one that ended early is not.
+/// Solves the static problem. A load path that reached no load is an error; a path that ended early is not.
 pub(super) fn solve(problem: &Problem, asked: &Static, meters: &mut Meters) -> Result<Solution, Failure> {
     let Meters { timings, counters, .. } = meters;
     let (solution, limit) = timings.time("solve", || path(problem, asked, counters))?;
@@ -78,7 +78,8 @@ fn path(problem: &Problem, asked: &Static, counters: &mut Counters) -> Result<(S
     let (mut limit, mut before) = (Limit::default(), LoadStep::at_start(setup.tools.len()));
     let mut params = static_params(asked);
     if method.interpolates {
-        // A cloud on which tools slide may come to rest elsewhere by inexact steps: the kidney between jaws, 1331 nodes, did.
+        // A cloud on which tools slide may reach another equilibrium by inexact steps, as the kidney between
+        // jaws with 1331 nodes did. So factors are reused only for elements.
         params.newton.keeps = NewtonParams::KEEPS;
     }
     let path = with_static_problem(method, setup, prepared, contact.as_ref(), |problem| {
@@ -143,7 +144,8 @@ fn path(problem: &Problem, asked: &Static, counters: &mut Counters) -> Result<(S
     Ok((solution, limit))
 }
 
-/// Counts what the path took; returns the linear systems solved on the way to converged steps.
+/// Adds the path's operations to the counters, and returns the number of linear systems solved in converged
+/// steps.
 fn count(path: &StaticPath, counters: &mut Counters) -> u64 {
     let iterations = path.steps.iter().map(solves).sum();
     counters.newton_iterations += iterations;
@@ -156,22 +158,22 @@ fn count(path: &StaticPath, counters: &mut Counters) -> u64 {
     iterations
 }
 
-/// The last converged step; the start where relaxation may continue from it.
+/// Last converged step; the start if relaxation may continue from there.
 fn last(path: &StaticPath, setup: &Setup, relaxes: bool) -> Result<LoadStep, Failure> {
     match (path.steps.last(), &path.failure) {
         (Some(last), _) => Ok(reported(last, setup)),
-        // A matrix that has no solution is about the problem, and has none at rest either.
+        // A singular matrix is a fault of the problem, which then has no solution by relaxation either.
         (None, Some(StaticError::Stalled { cause, .. })) if matches!(**cause, StaticError::Solve(_)) => {
             Err((**cause).clone().into())
         }
         (None, Some(StaticError::Stalled { .. })) if relaxes => Ok(LoadStep::at_start(setup.tools.len())),
-        // No load was reached: what stopped it is about the problem, not about how far it went.
+        // If no load was reached, the failure concerns the problem, not the reached load.
         (None, Some(failure)) => Err(failure.clone().into()),
         (None, None) => Err(Failure::Run("the static solution has no step".into())),
     }
 }
 
-/// Numbers of the whole path.
+/// Metrics of the whole load path.
 fn metrics(
     limit: Option<&LoadStep>,
     iterations: u64,
@@ -194,7 +196,7 @@ fn metrics(
     metrics
 }
 
-/// Hands the full problem, of tables and loads that it borrows, to what solves it.
+/// Builds the static problem from borrowed tables and loads, and calls `solve` with it.
 pub(crate) fn with_static_problem<T>(
     method: &Discretisation,
     setup: &Setup,
@@ -221,7 +223,7 @@ pub(crate) fn with_static_problem<T>(
     })
 }
 
-/// Linear systems solved in a step: an iteration of no length only found that it had converged.
+/// Number of linear systems solved in a step. An iteration of zero length only confirmed convergence.
 pub(crate) fn solves(step: &Step) -> u64 {
     step.iterations.iter().filter(|i| i.length > 0.0).count() as u64
 }

@@ -1,4 +1,5 @@
-//! A problem that a solver outside this program solves: written to files, asked, and its answer taken for the solution.
+//! External solvers: the problem is written to files, the solver is called, and its answer is read as the
+//! solution.
 
 pub(crate) mod problem;
 
@@ -17,16 +18,16 @@ use crate::outcome::{LoadStep, Meters, Metric};
 use crate::prepare::ConditionForces;
 use crate::scenario::setup::Setup;
 
-/// What is known of the program that solved.
+/// Properties of the external program that solved the problem.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct OfProgram {
-    /// Most bytes that its processes had together.
+    /// Peak memory of all its processes together, bytes.
     pub(crate) memory: u64,
-    /// Its name and version, as far as it says.
+    /// Name and version, if the program reports them.
     pub(crate) version: Option<String>,
 }
 
-/// The phases that a solver reports of itself.
+/// Phases that a solver may report, with their names in records.
 const OWN_PHASES: [(&str, &str); 6] = [
     ("read", "own-read"),
     ("prepare", "own-prepare"),
@@ -35,10 +36,10 @@ const OWN_PHASES: [(&str, &str); 6] = [
     ("solve", "own-solve"),
     ("write", "own-write"),
 ];
-/// Any other.
+/// Name in records of any other phase.
 const OTHER_PHASE: &str = "own-other";
 
-/// What is left for this program to do.
+/// Stages of a run with an external solver.
 pub(super) fn stages(outside: &Outside) -> Stages {
     let by = || (false, format!("{} solves it", outside.adapter.manifest.name));
     Stages {
@@ -52,10 +53,11 @@ pub(super) fn stages(outside: &Outside) -> Stages {
     }
 }
 
-/// Writes, asks and reads. Only the time of the program's own processes is the solution's.
+/// Writes the problem, calls the solver and reads its answer. Only the time of the solver's own processes
+/// counts as solution time.
 pub(super) fn solve(problem: &Problem, outside: &Outside, meters: &mut Meters) -> Result<Solution, Failure> {
     let failed = |reason| Failure::from(Foreign::new(ForeignStatus::Failed, reason));
-    // Asked once for all runs: no part of any.
+    // The version is queried once for all runs and belongs to none of them.
     let known_version =
         adapter::ready(&outside.adapter).ok().and_then(|()| adapter::version(&outside.adapter));
     let began = Instant::now();
@@ -96,8 +98,9 @@ pub(super) fn solve(problem: &Problem, outside: &Outside, meters: &mut Meters) -
     Ok(Solution { program: Some(program), history, ..solution })
 }
 
-/// What a displacement (m) makes of a solution, given at the end of each of equal steps up to the part `end` of the load, or at the end alone: its
-/// energies, volume ratios, forces of supports and forces out of balance are those of our own elements.
+/// Builds a solution from displacements (m). `fields` has one displacement for each of the equal steps up to
+/// the load fraction `end`, or only that at the end. Energies, volume ratios, support forces and residuals
+/// are those of this program's own elements.
 pub(crate) fn taken(problem: &Problem, fields: Vec<Vec<Vector3>>, end: f64) -> Result<Solution, Failure> {
     let outer = statics::nodal_forces(&problem.prepared.volume.rows, &problem.prepared.loads())?;
     let history = (steps(problem.setup) > 0).then(|| history(problem, &outer, &fields, end));
@@ -109,17 +112,19 @@ pub(crate) fn taken(problem: &Problem, fields: Vec<Vec<Vector3>>, end: f64) -> R
     Ok(Solution { u, supports, dofs: problem.free_dofs(), residual, history, ..Solution::default() })
 }
 
-/// Whether every point has its own dilation. With a projection, what the points have by themselves is neither in balance nor the energy.
+/// Whether every quadrature point has its own dilation. With a projection, the stress and energy at the
+/// points alone are neither in balance nor the energy of the body.
 fn is_plain(problem: &Problem) -> bool {
     problem.prepared.volume.groups.is_none() && problem.prepared.volume.pressure.is_none()
 }
 
-/// Whether inner forces, loads and forces of supports at nodes are all that acts: no tool touches, and supports hold nodes.
+/// Whether only internal forces, loads and support forces act on the nodes: without contact, and with all
+/// supports at nodes.
 fn is_of_nodes(problem: &Problem) -> bool {
     is_plain(problem) && problem.prepared.holds_nodes_alone() && problem.prepared.contact().is_none()
 }
 
-/// Load steps of a procedure that has some.
+/// Number of load steps of a static procedure; 0 for others.
 pub(crate) fn steps(setup: &Setup) -> usize {
     match &setup.procedure {
         Procedure::Static(asked) => asked.steps,
@@ -127,7 +132,7 @@ pub(crate) fn steps(setup: &Setup) -> usize {
     }
 }
 
-/// The steps of an answer, or its end alone, with energies and volume ratios of our own elements.
+/// Load steps of an answer, or only its end, with energies and volume ratios of this program's own elements.
 fn history(problem: &Problem, outer: &[Vector3], fields: &[Vec<Vector3>], end: f64) -> StepHistory {
     let count = fields.len() as f64;
     let (plain, of_nodes) = (is_plain(problem), is_of_nodes(problem));
@@ -155,7 +160,8 @@ fn history(problem: &Problem, outer: &[Vector3], fields: &[Vec<Vector3>], end: f
     }
 }
 
-/// Forces that our elements leave unbalanced at free nodes, over the larger of inner forces and loads.
+/// Residual forces at free nodes by this program's own elements, relative to the larger of the internal
+/// forces and the loads.
 fn residual(problem: &Problem, outer: &[Vector3], inner: &[Vector3], load: f64) -> f64 {
     let size = |forces: &[Vector3]| forces.iter().map(Vector3::norm_squared).sum::<f64>().sqrt();
     let largest = size(inner).max(load * size(outer));
@@ -166,7 +172,8 @@ fn residual(problem: &Problem, outer: &[Vector3], inner: &[Vector3], load: f64) 
     if largest > 0.0 { size(&left) / largest } else { 0.0 }
 }
 
-/// Force (N) of each support on the body, of the inner forces at this part of the load; none where a field is none of ours.
+/// Force of each support on the body from the internal forces at this load fraction, N; empty if a force is
+/// not finite.
 fn supports(problem: &Problem, outer: &[Vector3], inner: &[Vector3], load: f64) -> Vec<Vector3> {
     let nodes: Vec<Vector3> = inner.iter().zip(outer).map(|(inner, outer)| inner - outer * load).collect();
     let forces = ConditionForces { nodes: &nodes, rows: &[], weak: &[] };
@@ -174,7 +181,7 @@ fn supports(problem: &Problem, outer: &[Vector3], inner: &[Vector3], load: f64) 
     if found.iter().all(|force| force.iter().all(|f| f.is_finite())) { found } else { Vec::new() }
 }
 
-/// Internal nodal forces of our elements, N.
+/// Internal nodal forces by this program's own elements, N.
 fn inner_forces(problem: &Problem, u: &[Vector3]) -> Vec<Vector3> {
     let volume = &problem.prepared.volume;
     let mut inner = vec![Vector3::zeros(); u.len()];
@@ -188,12 +195,12 @@ fn inner_forces(problem: &Problem, u: &[Vector3]) -> Vec<Vector3> {
     inner
 }
 
-/// The law of a quadrature point.
+/// Material law of a quadrature point.
 fn law<'a>(problem: &'a Problem, q: usize) -> &'a Law {
     &problem.setup.laws[problem.prepared.volume.region.get(q).map_or(0, |&region| usize::from(region))]
 }
 
-/// Strain energy (J) by our quadrature, and the smallest volume ratio at its points.
+/// Strain energy (J) by this program's own quadrature, and the smallest volume ratio at its points.
 fn energy(problem: &Problem, u: &[Vector3]) -> (f64, f64) {
     let volume = &problem.prepared.volume;
     let gradients = volume.rows.at().displacement_gradients(u);

@@ -1,4 +1,5 @@
-//! A problem as files: a text of what it is, and arrays of nodes, cells, supports and forces. All numbers are SI.
+//! Problem files for external solvers: a description in JSON, and arrays of nodes, cells, supports and
+//! forces. All numbers are in SI units.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -15,54 +16,54 @@ use crate::adapter::{About, npy};
 use crate::error::{Foreign, ForeignStatus};
 use crate::procedure::Problem;
 
-/// Version of these files: one that a reader does not know, it refuses.
+/// Version of the problem files. A reader refuses versions that it does not know.
 pub(crate) const SCHEMA: u32 = 1;
-/// The text.
+/// Name of the description.
 pub(crate) const TEXT: &str = "problem.json";
-/// The rigid tools, where there are some.
+/// Name of the file of rigid tools, if there are any.
 pub(crate) const TOOLS: &str = "tools.json";
-/// Arrays, in the order that they are part of the problem's id.
+/// Names of the arrays, in the order in which they enter the problem's id.
 pub(crate) const ARRAYS: [&str; 6] =
     ["nodes.npy", "cells.npy", "regions.npy", "fixed.npy", "force.npy", "probes.npy"];
 /// Meshes for programs that read no arrays.
 pub(crate) const MESHES: [&str; 2] = ["mesh.inp", "mesh.vtu"];
 
-/// `problem.json`.
+/// Contents of `problem.json`.
 #[derive(Debug, Serialize, Deserialize)]
 pub(crate) struct Text {
-    /// Version of the files.
+    /// Version of the problem files.
     pub(crate) schema: u32,
-    /// Of all that is in them; an answer may repeat it.
+    /// Hash of the contents of all files, which an answer may repeat.
     pub(crate) id: String,
     pub(crate) case: String,
     pub(crate) method: String,
     /// `tet4`, `tet10`, `hex8` or `hex20`: rows of `cells.npy` have the node order of VTK.
     pub(crate) element: String,
-    /// Points per cell of our own quadrature; curved cells differ by it.
+    /// Quadrature points per cell in this program. On curved cells the results depend on the number.
     pub(crate) points_per_cell: usize,
-    /// One per number in `regions.npy`.
+    /// Material of each region number in `regions.npy`.
     pub(crate) materials: Vec<MaterialText>,
     pub(crate) procedure: ProcedureText,
     pub(crate) limits: LimitsText,
     pub(crate) threads: usize,
-    /// What the scene gives the adapter beside the problem.
+    /// Settings of the adapter in the scene.
     pub(crate) settings: BTreeMap<String, Setting>,
 }
 
-/// A law with its constants; moduli are those at small strain.
+/// Material law with its constants. The moduli are those at small strain.
 #[derive(Debug, Serialize, Deserialize)]
 pub(crate) struct MaterialText {
     pub(crate) region: String,
-    /// By its name in scenes.
+    /// Name of the law in scenes.
     pub(crate) law: String,
     pub(crate) young: f64,
     pub(crate) poisson: f64,
     pub(crate) mu: f64,
     pub(crate) lambda: f64,
     pub(crate) bulk: f64,
-    /// kg/m^3.
+    /// Density, kg/m^3.
     pub(crate) density: Option<f64>,
-    /// What a law has beside its moduli.
+    /// Other constants of the law.
     pub(crate) constants: Value,
 }
 
@@ -70,11 +71,11 @@ pub(crate) struct MaterialText {
 pub(crate) struct ProcedureText {
     /// `linear` or `static`.
     pub(crate) kind: String,
-    /// Equal load steps; 0 of a linear procedure.
+    /// Number of equal load steps; 0 for a linear procedure.
     pub(crate) steps: usize,
-    /// Relative residual of a step.
+    /// Relative residual at which a step has converged.
     pub(crate) tolerance: f64,
-    /// Most iterations of a step.
+    /// Largest number of iterations of a step.
     pub(crate) iterations: usize,
 }
 
@@ -84,7 +85,7 @@ pub(crate) struct LimitsText {
     pub(crate) bytes: u64,
 }
 
-/// Writes the files of a problem, with these meshes; returns its id.
+/// Writes the files of a problem, with the named meshes, and returns the problem's id.
 pub(crate) fn write(
     problem: &Problem,
     about: &About,
@@ -113,7 +114,7 @@ fn save(path: &Path, bytes: &[u8]) -> Result<(), String> {
     disk::write(path, bytes).map_err(|bad| format!("{}: can't be written: {bad}", path.display()))
 }
 
-/// Of the text without limits and threads, which do not change a solution, and of all arrays.
+/// Hash of the description without limits and threads, which do not change a solution, and of all arrays.
 fn id(text: &Text, folder: &Path) -> Result<String, String> {
     let mut hasher = blake3::Hasher::new();
     let Text { schema, element, materials, procedure, settings, .. } = text;
@@ -138,7 +139,7 @@ fn arrays(problem: &Problem, folder: &Path) -> Result<(), String> {
     npy::write_integers(&folder.join("cells.npy"), kind.node_count(), nodes)?;
     let regions = (0..mesh.cell_count()).map(|cell| i64::from(mesh.region(cell)));
     npy::write_integers(&folder.join("regions.npy"), 1, regions)?;
-    // A corner of two supports is fixed twice, to the same value.
+    // A corner between two supports is prescribed twice, to the same value.
     let fixed: BTreeMap<(u32, u8), f64> =
         prepared.fixed().iter().map(|dof| ((dof.node, dof.axis), dof.value)).collect();
     let rows = fixed.iter().flat_map(|(&(node, axis), &value)| [f64::from(node), f64::from(axis), value]);
@@ -187,7 +188,7 @@ fn text(problem: &Problem, about: &About) -> Text {
     }
 }
 
-/// What a law has beside its moduli.
+/// Constants of a law other than its moduli.
 fn constants(law: &Law) -> Value {
     match law {
         Law::NeoHookeanIsochoric(law) => json!({ "c10": law.c10(), "d1": law.d1() }),
@@ -200,7 +201,7 @@ fn constants(law: &Law) -> Value {
     }
 }
 
-/// The tools with their frames and ways; their surfaces are those of the scene's shapes.
+/// Tools with their frames and drives. Their surfaces are those of the scene's shapes.
 fn tools(problem: &Problem) -> Value {
     let one = |placed: &crate::scenario::PlacedTool| {
         let tool = &placed.tool;
@@ -224,7 +225,8 @@ fn tools(problem: &Problem) -> Value {
     Value::Array(problem.setup.tools.iter().map(one).collect())
 }
 
-/// A shape in its own frame, m: about the origin; a cylinder's and a capsule's axis is z, a plate is z = 0 with the tool below.
+/// Shape in its own frame, centred at the origin, lengths in m. The axis of a cylinder or capsule is z. A
+/// plate is the plane z = 0 with the tool below.
 fn shape(shape: &ToolShape) -> Value {
     let name = shape.name();
     match shape {
