@@ -136,7 +136,8 @@ function drawn(chart: Chart, width: number): SVGSVGElement | HTMLElement {
   const height = chart.height ?? 340;
   const axis = (a: Axis, ends: [number, number]) => ({ type: (a.log ? "log" : "linear") as "log" | "linear", domain: ends, axis: null });
   const named = chart.named;
-  const every = named ? Math.ceil(named.length / Math.max(1, Math.floor(width / 95))) : 1;
+  const breadth = Math.max(95, ...(named ?? []).map((text) => 7 * text.length + 16));
+  const every = named ? Math.ceil(named.length / Math.max(1, Math.floor(width / breadth))) : 1;
   const across = named ? named.flatMap((_, at) => (at % every ? [] : [at])) : ticks(chart.x, x, width / 95);
   const up = ticks(chart.y, y, height / 60);
   const near = { x: "x", y: "y", maxRadius: 40 } as const;

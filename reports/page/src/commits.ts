@@ -16,8 +16,14 @@ export const MEASURES: Measure[] = [
 
 const QUIET = new Map([[true, "machine quiet"], [false, "machine not quiet"], [null, "not known whether the machine was quiet"]]);
 
+/** Characters of the longest label below an axis. */
+const LONGEST = 24;
+
 const about = (c: Commit, value: number, axis: string) =>
   `commit ${c.name}\n${axis.replace(" [1]", "")}: ${digits(value, 4)}\n${c.runs} runs, ${duration(c.seconds)}\n${QUIET.get(c.quiet)}${c.moved && `\n${c.moved}`}`;
+
+/** A commit by its first seven digits, a label in its own words. */
+const short = (name: string) => (/^[0-9a-f]{12}\+?$/.test(name) ? name.slice(0, 7) : name.length > LONGEST ? `${name.slice(0, LONGEST - 1)}…` : name);
 
 /** One measure: a line for each trend, a ring around each step. */
 export function over(measure: Measure): Chart {
@@ -30,7 +36,7 @@ export function over(measure: Measure): Chart {
   const longest = page.trends.reduce((a, b) => (b.commits.length > a.commits.length ? b : a));
   return {
     title: measure.title, x: { label: "commit", log: false }, y: { label: measure.axis, log: false }, lines, height: 300,
-    named: longest.commits.map((c) => c.name.slice(0, 7)),
+    named: longest.commits.map((c) => short(c.name)),
     see: { x: [0, longest.commits.length - 1], y: [1] },
     under: () => [Plot.ruleY([1], { stroke: "currentColor", strokeOpacity: 0.4, strokeDasharray: "4 3" })],
     over: () => [Plot.dot(lines.flat().filter((p) => p.moved), { x: "x", y: "y", r: 9, stroke: "var(--accent)", strokeWidth: 2.2 })],

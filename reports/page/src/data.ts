@@ -7,7 +7,7 @@ export interface Line {
 }
 
 export interface Ask {
-  case: string; title: string; what: string; repeated: boolean; error: string; scalar: boolean; kernels: boolean;
+  case: string; title: string; what: string; repeated: boolean; time: string; error: string; scalar: boolean; kernels: boolean;
   reference: string | null; band: number | null; rank: (boolean | number)[]; lines: Line[];
 }
 
@@ -44,7 +44,7 @@ export interface Trend { label: number; commits: Commit[] }
 export interface Page {
   source: string;
   program: { version: string; commit: string; dirty: boolean; rustc: string; target: string; features: string; profile: string };
-  machine: { cpu: string; instructions: string; threads: number; load: number | null; quiet: boolean | null };
+  machine: { cpu: string; model: string; clock: number | null; instructions: string; threads: number; load: number | null; quiet: boolean | null };
   scenes: { case: string; blake3: string; title: string }[];
   records: string;
   counts: {

@@ -70,7 +70,7 @@ export function chart(ask: Ask, error: number | null, off?: (label: string) => b
   const found = error === null ? [] : within(all, error).slice(0, 1);
   return {
     title: `${ask.what} of ${ask.title}: run time against error`,
-    x: { label: ask.repeated ? "time of one solve in a loop, 99 % within [s]" : "run time, median [s]", log: true },
+    x: { label: ask.time, log: true },
     y: { label: ask.error.includes("[1]") ? ask.error : `${ask.error} [1]`, log: true },
     lines: all,
     joined: !ask.kernels,
@@ -137,7 +137,7 @@ export function question(place: HTMLElement) {
       ask.scalar && "A single number can be right by chance: a thin line leads up to a third of the displacement's error, and a run counts as that.",
       chance.length && `Right by chance, not counted at ${percent(error, 1)}: ${[...new Set(chance.map((p) => name(p.label)))].join(", ")}.`,
       ask.reference && `The reference is ${ask.reference}.`,
-      page.machine.quiet === false && "The machine was not quiet: times are too long.",
+      page.machine.quiet === false && `The machine was not quiet: ${ask.time.startsWith("CPU") ? "runs are compared by the seconds of the processors" : "times may be too long"}.`,
     ].filter(Boolean).join(" ");
     const make = () => chart(asked()!, Number(state.within));
     if (redraw) redraw(); else redraw = put(plot, make);

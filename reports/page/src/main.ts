@@ -10,7 +10,7 @@ import { map, mapKey, tally } from "./map";
 import type { Body } from "./solid";
 import { address, change, fits, isOff, listen, state, toggle } from "./state";
 import { rowsLeft, sheet } from "./table";
-import { list, percent, plural, slug, whole } from "./text";
+import { digits, list, percent, plural, slug, whole } from "./text";
 
 declare global {
   interface Window { showBodies?: (place: HTMLElement, bodies: Body[]) => void }
@@ -178,7 +178,7 @@ function caseSection(it: (typeof page.cases)[number]): HTMLElement {
       }),
       h("div", { class: "figures" }, ...asks.map(front), ...locking.concat(plots).map(plotted)),
       ...maps.map((m) => link(`map-${slug(`${m.case} ${m.name}`)}`, `Where methods bend and break: ${m.name}`, "block")),
-      ...(found.length ? [folded([`${found.length} more findings`], "", false, (inner) => inner.append(bullets(found)))] : []),
+      ...(found.length ? [folded([plural(found.length, "more finding")], "", false, (inner) => inner.append(bullets(found)))] : []),
     );
     if (!body.childElementCount) body.append(h("p", { class: "soft" }, "Its numbers are in the tables."));
   });
@@ -252,9 +252,9 @@ function provenance(): HTMLElement {
   const { program: p, machine: m } = page;
   const facts: [string, string][] = [
     ["version", p.version], ["commit", p.commit + (p.dirty ? ", sources changed since" : "")], ["compiler", p.rustc], ["build profile", p.profile],
-    ["built for", `${p.target} (${p.features})`], ["processor", m.cpu], ["instruction sets", m.instructions], ["threads", String(m.threads)],
+    ["built for", `${p.target} (${p.features})`], ["processor", [m.cpu, m.model, m.clock && `${digits(m.clock)} GHz`].filter(Boolean).join(", ")], ["instruction sets", m.instructions], ["threads", String(m.threads)],
   ];
-  if (m.load !== null) facts.push(["load at the start", `${m.load}${m.quiet === false ? ": not quiet, times are too long" : m.quiet ? ": quiet" : ""}`]);
+  if (m.load !== null) facts.push(["load at the start", `${m.load}${m.quiet === false ? ": not quiet" : m.quiet ? ": quiet" : ""}`]);
   const terms = (all: [string, string][]) => h("dl", {}, ...all.flatMap(([a, b]) => [h("dt", {}, a), h("dd", {}, b)]));
   return section("provenance", "Provenance", terms(facts),
     page.scenes.length ? folded([`Content of the ${page.scenes.length} scene files (BLAKE3)`], "", false, (body) => body.append(terms(page.scenes.map((s) => [s.case, s.blake3])))) : null,

@@ -437,7 +437,7 @@ export function show(place: HTMLElement, packed: Body[]) {
     const met = s.met(ray, (place) => !view.axis || plane.distanceToPoint(place) >= 0);
     const [, , unit, times] = FIELDS.find((f) => f[0] === view.field)!;
     here.textContent = met && Number.isFinite(met.value)
-      ? `${digits(met.value * times, 3)} ${unit} at ${met.place.toArray().map((x) => digits(1e3 * x, 3)).join(", ")} mm` : "";
+      ? `${digits(met.value * times, 3)} ${unit} at ${met.place.toArray().map((x) => digits(Math.abs(x) < 1e-6 * size ? 0 : 1e3 * x, 3)).join(", ")} mm` : "";
   }
 
   const methods: [string, string][] = bodies.map((b) => [b.method, b.title]);

@@ -28,8 +28,11 @@ export function rowsLeft(table: Table): number[] {
 const texts = (table: Table, rows: number[], exact: boolean): string[][] =>
   rows.map((row) => table.columns.map((c) => (exact && c.values ? String(c.values[row] ?? "") : c.words[c.rows[row]])));
 
+/** A cell that a spreadsheet would run as a formula has an apostrophe before it, as in the files of tables. */
+const guarded = (t: string) => (/^'*[=+\-@\t\r]/.test(t) && !/^[-+]?[\d.]+(e[-+]?\d+)?$/i.test(t) ? `'${t}` : t);
+
 const csv = (rows: string[][]): string =>
-  rows.map((row) => row.map((t) => (/[",\n]/.test(t) ? `"${t.replace(/"/g, '""')}"` : t)).join(",")).join("\n") + "\n";
+  rows.map((row) => row.map(guarded).map((t) => (/[",\r\n]/.test(t) ? `"${t.replace(/"/g, '""')}"` : t)).join(",")).join("\n") + "\n";
 
 function markdown(table: Table, rows: string[][]): string {
   const line = (cells: string[]) => `| ${cells.map((t) => t.replace(/[\\|*_`[\]#]/g, "\\$&").replace(/</g, "&lt;")).join(" | ")} |\n`;

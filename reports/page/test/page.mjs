@@ -2,8 +2,9 @@
 //
 // Skipped, and says so, where no Chromium is installed.
 import assert from "node:assert/strict";
-import { readFileSync } from "node:fs";
-import { resolve } from "node:path";
+import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join, resolve } from "node:path";
 import { launch } from "./browser.mjs";
 
 const file = process.argv[2];
@@ -28,6 +29,20 @@ const onFirstScreen = (selector) => `(() => { const r = document.querySelector($
 const click = (selector) => `(() => { const e = document.querySelector(${JSON.stringify(selector)}); if (!e) throw new Error("nothing is " + ${JSON.stringify(selector)}); e.click(); return true; })()`;
 const choose = (label, value) => `(() => { const e = document.querySelector('select[aria-label="${label}"]'); e.value = ${JSON.stringify(value)}; e.dispatchEvent(new Event("change")); return e.value; })()`;
 const data = 'JSON.parse(document.getElementById("data").textContent)';
+const folder = mkdtempSync(join(tmpdir(), "tissuebench-altered-"));
+
+/** The address of the report with changed data. */
+function altered(change) {
+  const [start, end] = ['<script type="application/json" id="data">', "</script>"];
+  const html = readFileSync(resolve(file), "utf8");
+  const at = html.indexOf(start) + start.length;
+  const last = html.indexOf(end, at);
+  const own = JSON.parse(html.slice(at, last));
+  change(own);
+  const path = join(folder, "report.html");
+  writeFileSync(path, html.slice(0, at) + JSON.stringify(own).replaceAll("<", "\\u003c") + html.slice(last));
+  return `file://${path}`;
+}
 
 test("the first screen asks, answers and draws", async (open) => {
   const page = await open();
@@ -90,6 +105,16 @@ test("methods are switched off and on, and the answer follows", async (open) => 
   assert.match(await page.eval("location.hash"), /off=/);
   await page.eval(click(chip));
   assert.equal(await page.eval(text("#answer")), before);
+});
+
+test("the axis of times names the clock, and the note tells why", async (open) => {
+  const change = (d) => {
+    d.machine.quiet = false;
+    d.asks.forEach((a) => { if (!a.repeated) a.time = "CPU time, median [s]"; });
+  };
+  const page = await open("", { at: altered(change) });
+  assert.ok((await page.eval(`${all("#front svg text")}.map((t) => t.textContent)`)).includes("CPU time, median"));
+  assert.match(await page.eval(text("#question")), /The machine was not quiet: runs are compared by the seconds of the processors/);
 });
 
 test("hovering tells of a run, with its record", async (open) => {
@@ -175,6 +200,19 @@ test("a table sorts both ways and is copied", async (open) => {
   }
 });
 
+test("copied CSV has no formulas", async (open) => {
+  const words = ["=1+1", "+cmd", "-2+3", "@SUM(A1)", "'=1", "-1.5e-3", "plain, with a comma"];
+  const column = (head) => ({ head, number: false, words, rows: words.map((_, k) => k) });
+  const made = { name: "made", title: "Made", caption: "Made", note: "", columns: [column("text"), column("again")] };
+  const page = await open("#at=table-made", { at: altered((d) => { d.tables.push(made); }) });
+  await page.until(`${all("#table-made tbody tr")}.length`);
+  await page.eval(`navigator.clipboard.writeText = async (t) => { window.copied = t; }`);
+  await page.eval(`${all("#table-made .tools button")}[0].click()`);
+  await page.until("window.copied");
+  const cells = ["'=1+1", "'+cmd", "'-2+3", "'@SUM(A1)", "''=1", "-1.5e-3", '"plain, with a comma"'];
+  assert.deepEqual((await page.eval("window.copied")).trim().split("\n").slice(1), cells.map((c) => `${c},${c}`));
+});
+
 test("two clicks reach what locks, what fails, and where methods break", async (open) => {
   const page = await open();
   const links = await page.eval(`${all("nav a")}.map((a) => a.innerText)`);
@@ -231,6 +269,15 @@ test("a study over commits has its steps ringed and told", async (open) => {
   assert.ok(moved.length ? moved.every((c) => told.includes(c.name) && told.includes(c.moved)) : told.includes("No step is outside of noise"), told.slice(0, 400));
   const rings = await page.eval(`${all("#commits [aria-label=dot][stroke='var(--accent)'] *")}.length`);
   assert.equal(rings, moved.reduce((n, c) => n + c.errors_moved + c.times_moved, 0));
+});
+
+test("a history shows labels whole, and commits by seven digits", async (open) => {
+  const names = ["0123456789ab+", "before-projection", "the branch with a label of many words"];
+  const commit = (name) => ({ name, quiet: true, runs: 1, seconds: 1, time: 1, error: 1, errors_moved: false, times_moved: false, moved: "", changes: [] });
+  const page = await open("#at=commits", { at: altered((d) => { d.trends = [{ label: 0, commits: names.map(commit) }]; }) });
+  await page.until(`${all("#commits svg.plot, #commits .plot svg")}.length`);
+  const shown = await page.eval(`${all("#commits svg text")}.map((t) => t.textContent)`);
+  for (const name of ["0123456", "before-projection", "the branch with a label…"]) assert.ok(shown.includes(name), `${name}: ${shown}`);
 });
 
 test("keys reach the question, the methods, the plot and every section", async (open) => {
@@ -344,7 +391,7 @@ let failed = 0;
 for (const [name, run] of tests) {
   const opened = [];
   const open = async (hash = "", options = {}) => {
-    const page = await browser.open(url + hash, options);
+    const page = await browser.open((options.at ?? url) + hash, options);
     opened.push(page);
     return page;
   };
@@ -359,5 +406,6 @@ for (const [name, run] of tests) {
   for (const page of opened) await page.close();
 }
 await browser.close();
+rmSync(folder, { recursive: true });
 console.log(failed ? `${failed} of ${tests.length} failed` : `${tests.length} passed`);
 process.exit(failed ? 1 : 0);
