@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{objects, tissuebench, write};
+use common::{objects, packed, tissuebench, write};
 use serde_json::Value;
 use tempfile::TempDir;
 
@@ -85,6 +85,37 @@ fn stress_is_not_smoothed_over_the_border_of_two_materials() {
                 assert!((stress[2] + 1e3).abs() < 1e-3 && (stress[0] - across).abs() < 1e-3, "{run}");
             }
         }
+    }
+}
+
+/// The body in three dimensions has two points at a node of the border, each in its own material's colour.
+#[test]
+fn a_picture_has_the_stress_of_each_material_at_their_border() {
+    let dir = TempDir::new().unwrap();
+    let out = common::inside(&dir, "out");
+    let poisson = [0.3, 0.45];
+    let text = layers("young = \"20 MPa\", poisson = 0.45", poisson[0], "linear", &[HEX8, CLOUD]);
+    let text = format!("{text}reference = {{ method = \"hex8\" }}\n");
+    let done = tissuebench(&["run", &write(&dir, "layers.toml", &text), "--out", &out]);
+    assert_eq!(done.code, 0, "{}", done.stderr);
+    let expected = poisson.map(|nu| 1e3 / 3.0 * (1.0 + nu) / (1.0 - nu));
+    for id in ["hex8", "cloud"] {
+        let field = std::fs::read_to_string(format!("{out}/fields/layers--{id}.json")).unwrap();
+        let body = &serde_json::from_str::<Value>(&field).unwrap()["body"];
+        let mut at_border = [0, 0];
+        for part in [body, &body["inside"]] {
+            let points = packed(&part["points"]);
+            let pressure = packed(&part["states"][0]["values"][0]);
+            assert_eq!(points.len(), 3 * pressure.len(), "{id}");
+            for (x, p) in points.chunks_exact(3).zip(pressure) {
+                let of = expected.map(|expected| (f64::from(p) / expected - 1.0).abs() < 1e-4);
+                assert!(of != [false; 2], "{id}: {p} at {x:?}");
+                let z = f64::from(x[2]) - 10e-3;
+                assert!(z.abs() < 1e-8 || of[usize::from(z > 0.0)], "{id}: {p} at {x:?}");
+                (0..2).filter(|&k| z.abs() < 1e-8 && of[k]).for_each(|k| at_border[k] += 1);
+            }
+        }
+        assert_eq!(at_border, [25, 25], "{id}");
     }
 }
 

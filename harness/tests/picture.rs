@@ -2,19 +2,11 @@
 
 mod common;
 
-use base64::Engine as _;
-use base64::engine::general_purpose::STANDARD;
-use common::{PRESSED, inside, tissuebench, write};
+use common::{PRESSED, inside, packed, tissuebench, write};
 use serde_json::Value;
 
 fn floats(value: &Value) -> Vec<f64> {
     value.as_array().unwrap().iter().map(|v| v.as_f64().unwrap()).collect()
-}
-
-/// Numbers in single precision, as they are packed for the view in three dimensions.
-fn packed(text: &Value) -> Vec<f32> {
-    let bytes = STANDARD.decode(text.as_str().unwrap()).unwrap();
-    bytes.chunks_exact(4).map(|b| f32::from_le_bytes(b.try_into().unwrap())).collect()
 }
 
 /// A block between plates is stretched alike everywhere, its sides free: true stress `F l / (A J)` along z and none across, so

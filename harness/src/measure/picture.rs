@@ -4,6 +4,7 @@
 use geometry::{Mesh, Point3, Vector3};
 use reports::{Section, SectionCell, SurfaceField, ToolHull};
 
+use super::states::at_mesh;
 use super::{Solved, mean_pressure};
 use crate::Failure;
 use crate::outcome::{Identity, LoadStep};
@@ -16,7 +17,7 @@ pub(crate) fn picture(
     run: &Solved,
     last: Option<&LoadStep>,
 ) -> Result<SurfaceField, Failure> {
-    let Solved { method, setup, prepared, solution } = *run;
+    let Solved { method, setup, solution, .. } = *run;
     let u = &solution.u;
     let mesh = method.mesh();
     let mut triangles: Vec<[u32; 3]> = Vec::new();
@@ -31,11 +32,7 @@ pub(crate) fn picture(
     for corner in triangles.iter_mut().flatten() {
         *corner = used.binary_search(corner).expect("listed above") as u32;
     }
-    let of_mesh = if method.interpolates {
-        u.clone()
-    } else {
-        prepared.source.at_points(mesh.points())?.0.rows().apply(u)
-    };
+    let of_mesh = at_mesh(run)?.map_or_else(|| u.clone(), |rows| rows.rows().apply(u));
     let closures = last.iter().flat_map(|step| step.tools.iter().map(|t| t.closure));
     let tools: Vec<ToolHull> =
         setup.tools.iter().zip(closures).map(|(set, closure)| hull(set, closure, mesh)).collect();

@@ -1,7 +1,7 @@
 //! What a run leaves for programs that draw bodies: displacement, stress and tools at every recorded state.
 
 use geometry::{Mesh, Point3, Search, Vector3};
-use shape::Matrix3;
+use shape::{Matrix3, PointRows};
 
 use super::Solved;
 use super::stress::own_stress;
@@ -10,20 +10,73 @@ use crate::discretise::Volume;
 use crate::outcome::{LoadStep, State, States, Tensors, ToolSkin};
 use crate::scenario::PlacedTool;
 
+/// A recorded state of a run.
+pub(super) struct Recorded<'a> {
+    /// Time (s) in dynamics, part of the load in statics, 1 of a linear solution, number of a mode.
+    time: f64,
+    /// Nodal parameters, m.
+    pub(super) u: &'a [Vector3],
+    /// Parameters (Pa) of a pressure field; `None` if the stress is not known.
+    pub(super) parameters: Option<&'a [f64]>,
+    step: Option<&'a LoadStep>,
+}
+
 /// The recorded states of a procedure in steps, the end of one without, or the modes of vibration; at most so many of them, evenly, the
 /// last with them.
+pub(super) fn recorded<'a>(run: &Solved<'a>, most: usize) -> Vec<Recorded<'a>> {
+    let Solved { prepared, solution, .. } = *run;
+    // Pressures of a field of its own are known at the end alone.
+    let mixed = prepared.volume.pressure.is_some();
+    match (&solution.history, &solution.vibration) {
+        (Some(history), _) => {
+            let last = history.steps.len().saturating_sub(1);
+            let each = history.steps.iter().zip(&history.fields).enumerate();
+            each.filter(|(k, _)| is_kept(*k, history.steps.len(), most))
+                .map(|(k, (step, u))| {
+                    let is_end = k == last && history.last.load == step.load;
+                    let parameters = (!mixed || is_end).then_some(&solution.pressure[..]);
+                    Recorded { time: step.time().unwrap_or(step.load), u, parameters, step: Some(step) }
+                })
+                .collect()
+        }
+        (None, Some(vibration)) => {
+            let shapes = vibration.modes.shapes.iter().take(vibration.count).enumerate();
+            let mode = |(k, u): (usize, &'a Vec<Vector3>)| Recorded {
+                time: (k + 1) as f64,
+                u,
+                parameters: None,
+                step: None,
+            };
+            shapes.map(mode).collect()
+        }
+        (None, None) if solution.u.is_empty() => Vec::new(),
+        (None, None) => {
+            let parameters = Some(&solution.pressure[..]);
+            vec![Recorded { time: 1.0, u: &solution.u, parameters, step: None }]
+        }
+    }
+}
+
+/// Shape values of the method's nodes at the points of its mesh; `None` if these are the nodes.
+pub(super) fn at_mesh(run: &Solved) -> Result<Option<PointRows>, Failure> {
+    let Solved { method, prepared, .. } = *run;
+    Ok(match method.interpolates {
+        true => None,
+        false => Some(prepared.source.at_points(method.mesh().points())?.0),
+    })
+}
+
+/// The states of [`recorded`], for programs that draw bodies.
 pub(crate) fn states(run: &Solved, most: usize) -> Result<States, Failure> {
     let Solved { method, setup, prepared, solution } = *run;
     let mesh = method.mesh();
-    let to_mesh = match method.interpolates {
-        true => None,
-        false => Some(prepared.source.at_points(mesh.points())?.0),
-    };
+    let to_mesh = at_mesh(run)?;
     let at_nodes = |u: &[Vector3]| to_mesh.as_ref().map_or_else(|| u.to_vec(), |rows| rows.rows().apply(u));
     let cells = (solution.vibration.is_none() && !setup.relaxes())
         .then(|| Averages::new(mesh, &prepared.volume, prepared.source.points_per_cell()));
     let contact = prepared.contact();
-    let state = |time, u: &[Vector3], parameters: Option<&[f64]>, step: Option<&LoadStep>| {
+    let state = |at: Recorded| {
+        let Recorded { time, u, parameters, step } = at;
         let displacement = at_nodes(u);
         let closures: Vec<f64> =
             step.map_or(Vec::new(), |step| step.tools.iter().map(|tool| tool.closure).collect());
@@ -45,28 +98,7 @@ pub(crate) fn states(run: &Solved, most: usize) -> Result<States, Failure> {
             closures,
         }
     };
-    // Pressures of a field of its own are known at the end alone.
-    let mixed = prepared.volume.pressure.is_some();
-    let states = match (&solution.history, &solution.vibration) {
-        (Some(history), _) => {
-            let last = history.steps.len().saturating_sub(1);
-            let each = history.steps.iter().zip(&history.fields).enumerate();
-            each.filter(|(k, _)| is_kept(*k, history.steps.len(), most))
-                .map(|(k, (step, u))| {
-                    let is_end = k == last && history.last.load == step.load;
-                    let known = !mixed || is_end;
-                    let parameters = known.then_some(&solution.pressure[..]);
-                    state(step.time().unwrap_or(step.load), u, parameters, Some(step))
-                })
-                .collect()
-        }
-        (None, Some(vibration)) => {
-            let shapes = vibration.modes.shapes.iter().take(vibration.count).enumerate();
-            shapes.map(|(k, shape)| state((k + 1) as f64, shape, None, None)).collect()
-        }
-        (None, None) if solution.u.is_empty() => Vec::new(),
-        (None, None) => vec![state(1.0, &solution.u, Some(&solution.pressure), None)],
-    };
+    let states: Vec<State> = recorded(run, most).into_iter().map(state).collect();
     let tools = if solution.history.is_some() {
         setup.tools.iter().map(|tool| skin(tool, mesh)).collect()
     } else {

@@ -2,11 +2,12 @@
 
 use geometry::{Facet, Mesh, Point3, Search, Vector3};
 use reports::{Body, BodyState, Faces, Inside, InsideState, Skin, pack};
-use shape::Matrix3;
+use shape::PointRows;
 
-use super::{Field, Request, Solved, against, compared, states};
+use super::states::{Recorded, at_mesh, recorded};
+use super::{Field, Recovered, Request, Solved, against, compared, states};
 use crate::Failure;
-use crate::outcome::{State, Tensors, ToolSkin, von_mises};
+use crate::outcome::{State, ToolSkin, von_mises};
 
 /// States kept of a run: as many as tell a way. A body of 1000 surface nodes has 20 kB in each.
 const KEPT: usize = 6;
@@ -22,47 +23,114 @@ pub(crate) fn surface(run: &Solved, field: &Field, request: &Request) -> Result<
     let mut facets = mesh.boundary();
     let nodes = |facet: &Facet| mesh.facet_nodes(*facet).len();
     facets.sort_by_key(nodes);
-    let mut used: Vec<u32> = facets.iter().flat_map(|f| mesh.facet_nodes(*f)).collect();
-    used.sort_unstable();
-    used.dedup();
+    let points = Points::new(mesh, &facets, run.setup.alike());
     let faces = facets.chunk_by(|a, b| nodes(a) == nodes(b)).map(|alike| {
-        let own = alike.iter().flat_map(|f| mesh.facet_nodes(*f));
-        let place = |node: u32| used.binary_search(&node).expect("listed above") as u32;
-        Faces { nodes: nodes(&alike[0]), indices: pack(own.map(place)) }
+        let own = alike.iter().flat_map(|f| mesh.facet_nodes(*f).map(|node| (node, f.cell as usize)));
+        let index = |(node, cell)| points.index(mesh, node, cell).expect("listed above") as u32;
+        Faces { nodes: nodes(&alike[0]), indices: pack(own.map(index)) }
     });
-    let states: Vec<(&State, Option<Values>)> =
-        all.states.iter().map(|s| (s, s.tensors.as_ref().map(|cells| at_nodes(mesh, cells)))).collect();
+    let rows = at_mesh(run)?;
+    let recorded = recorded(run, KEPT);
+    let values = |(state, at): (&State, &Recorded)| values(run, &points, state, at, rows.as_ref());
+    let values: Vec<Option<Values>> = all.states.iter().zip(&recorded).map(values).collect();
+    let states: Vec<(&State, Option<&Values>)> =
+        all.states.iter().zip(values.iter().map(Option::as_ref)).collect();
     Ok(Body {
-        points: vectors(used.iter().map(|&n| mesh.points()[n as usize].coords)),
+        points: vectors(points.skin().map(|n| mesh.points()[n].coords)),
         faces: faces.collect(),
-        off: off(run, field, request, used.iter().map(|&n| &mesh.points()[n as usize]))?,
-        inside: (mesh.cell_count() <= CELLS).then(|| inside(mesh, &used, &states)),
+        off: off(run, field, request, points.skin().map(|n| &mesh.points()[n]))?,
+        inside: keeps_inside(mesh).then(|| inside(mesh, &points, &states)),
         cloud: cloud(run)?,
         tools: all.tools.iter().map(skin).collect(),
-        states: states.iter().map(|(state, values)| body_state(state, values.as_ref(), &used)).collect(),
+        states: states.iter().map(|(state, values)| body_state(state, *values, &points)).collect(),
         left_out: all.left_out,
     })
 }
 
-/// Pressure, von Mises stress and determinant of the deformation gradient at every node.
+/// Whether the inside of a body is kept too.
+fn keeps_inside(mesh: &Mesh) -> bool {
+    mesh.cell_count() <= CELLS
+}
+
+/// The points of a body: a node of its mesh once for each material that it is in, as stress jumps where
+/// materials meet. A point is a node and the first region of a material.
+struct Points {
+    /// Those of faces, ascending, and then the others, ascending, of a body whose inside is kept.
+    all: Vec<(u32, u16)>,
+    /// How many are of faces.
+    skin: usize,
+    /// For each region the first of the same material.
+    alike: Vec<u16>,
+}
+
+impl Points {
+    fn new(mesh: &Mesh, facets: &[Facet], alike: Vec<u16>) -> Points {
+        let material = |cell: usize| alike[usize::from(mesh.region(cell))];
+        let unique = |mut points: Vec<(u32, u16)>| {
+            points.sort_unstable();
+            points.dedup();
+            points
+        };
+        let of_faces = facets.iter().flat_map(|f| mesh.facet_nodes(*f).map(|n| (n, f.cell as usize)));
+        let skin = unique(of_faces.map(|(n, cell)| (n, material(cell))).collect());
+        let kept = if keeps_inside(mesh) { mesh.cell_count() } else { 0 };
+        let cells = (0..kept).flat_map(|cell| mesh.cell(cell).iter().map(move |&n| (n, cell)));
+        let of_cells = cells.map(|(n, cell)| (n, material(cell)));
+        let inner = unique(of_cells.filter(|point| skin.binary_search(point).is_err()).collect());
+        Points { skin: skin.len(), all: [skin, inner].concat(), alike }
+    }
+
+    /// The point of a node in a cell; `None` inside a body whose inside is not kept.
+    fn index(&self, mesh: &Mesh, node: u32, cell: usize) -> Option<usize> {
+        let point = (node, self.alike[usize::from(mesh.region(cell))]);
+        let (skin, inner) = self.all.split_at(self.skin);
+        let inside = || Some(self.skin + inner.binary_search(&point).ok()?);
+        skin.binary_search(&point).ok().or_else(inside)
+    }
+
+    /// Nodes of the points of faces.
+    fn skin(&self) -> impl Iterator<Item = usize> {
+        self.all[..self.skin].iter().map(|point| point.0 as usize)
+    }
+
+    /// Nodes of the points of no face.
+    fn inner(&self) -> impl Iterator<Item = usize> {
+        self.all[self.skin..].iter().map(|point| point.0 as usize)
+    }
+}
+
+/// Pressure (Pa), von Mises stress (Pa) and determinant of the deformation gradient at every point.
 type Values = Vec<[f32; 3]>;
 
-/// Means over the cells around each node: of the stress, not of its invariants.
-fn at_nodes(mesh: &Mesh, cells: &Tensors) -> Values {
-    let mut sums = vec![(Matrix3::zeros(), 0.0, 0.0); mesh.points().len()];
-    for cell in 0..mesh.cell_count() {
+/// The values of a state; `rows` has the shape values of its mesh where nodes are no points of it.
+fn values(
+    run: &Solved,
+    points: &Points,
+    state: &State,
+    at: &Recorded,
+    rows: Option<&PointRows>,
+) -> Option<Values> {
+    let mesh = run.method.mesh();
+    let recovered = Recovered::new(run, at.u, at.parameters?)?;
+    // The mean over the cells of the material around.
+    let mut j = vec![(0.0, 0.0); points.all.len()];
+    let det_f = &state.tensors.as_ref()?.det_f;
+    for (cell, det_f) in det_f.iter().enumerate() {
         for &node in mesh.cell(cell) {
-            let (stress, j, count) = &mut sums[node as usize];
-            *stress += cells.stress[cell];
-            *j += cells.det_f[cell];
-            *count += 1.0;
+            if let Some(k) = points.index(mesh, node, cell) {
+                j[k] = (j[k].0 + det_f, j[k].1 + 1.0);
+            }
         }
     }
-    let mean = |(stress, j, count): (Matrix3, f64, f64)| {
-        let stress = stress / f64::max(count, 1.0);
-        [-stress.trace() / 3.0, von_mises(&stress), j / f64::max(count, 1.0)].map(|v| v as f32)
+    let value = |(&(node, region), (sum, count)): (&(u32, u16), (f64, f64))| {
+        let x = &mesh.points()[node as usize];
+        let stress = match rows {
+            Some(rows) => recovered.at(x, region, rows.rows().row(node as usize)),
+            None => recovered.at(x, region, (&[node], &[1.0])),
+        };
+        [-stress.trace() / 3.0, von_mises(&stress), sum / count].map(|v| v as f32)
     };
-    sums.into_iter().map(mean).collect()
+    Some(points.all.iter().zip(j).map(value).collect())
 }
 
 /// How far points of the body are from the reference or the exact solution at the end: interpolated by
@@ -89,33 +157,29 @@ fn off<'a>(
     Ok(pack(points.map(at)))
 }
 
-/// Cells, and nodes on no face; `used` are those on faces, ascending.
-fn inside(mesh: &Mesh, used: &[u32], states: &[(&State, Option<Values>)]) -> Inside {
-    let mut place = vec![u32::MAX; mesh.points().len()];
-    used.iter().zip(0..).for_each(|(&node, k)| place[node as usize] = k);
-    let inner: Vec<u32> =
-        (0..mesh.points().len() as u32).filter(|&n| place[n as usize] == u32::MAX).collect();
-    inner.iter().zip(used.len() as u32..).for_each(|(&node, k)| place[node as usize] = k);
+/// Cells, and points on no face.
+fn inside(mesh: &Mesh, points: &Points, states: &[(&State, Option<&Values>)]) -> Inside {
     let mut cells: Vec<usize> = (0..mesh.cell_count()).collect();
     let nodes = |cell: usize| mesh.cell(cell).len();
     cells.sort_by_key(|&cell| nodes(cell));
-    let cells = cells.chunk_by(|&a, &b| nodes(a) == nodes(b)).map(|alike| Faces {
-        nodes: nodes(alike[0]),
-        indices: pack(alike.iter().flat_map(|&cell| mesh.cell(cell)).map(|&node| place[node as usize])),
+    let index = |(cell, node)| points.index(mesh, node, cell).expect("each is listed") as u32;
+    let cells = cells.chunk_by(|&a, &b| nodes(a) == nodes(b)).map(|alike| {
+        let own = alike.iter().flat_map(|&cell| mesh.cell(cell).iter().map(move |&node| (cell, node)));
+        Faces { nodes: nodes(alike[0]), indices: pack(own.map(index)) }
     });
-    let state = |(state, values): &(&State, Option<Values>)| InsideState {
-        u: vectors(inner.iter().map(|&n| state.displacement[n as usize])),
-        values: values.as_ref().map(|values| packed(values, &inner)),
+    let state = |(state, values): &(&State, Option<&Values>)| InsideState {
+        u: vectors(points.inner().map(|n| state.displacement[n])),
+        values: values.map(|values| packed(&values[points.skin..])),
     };
     Inside {
-        points: vectors(inner.iter().map(|&n| mesh.points()[n as usize].coords)),
+        points: vectors(points.inner().map(|n| mesh.points()[n].coords)),
         cells: cells.collect(),
         states: states.iter().map(state).collect(),
     }
 }
 
-fn packed(values: &Values, nodes: &[u32]) -> [String; 3] {
-    [0, 1, 2].map(|k| pack(nodes.iter().map(|&n| values[n as usize][k])))
+fn packed(values: &[[f32; 3]]) -> [String; 3] {
+    [0, 1, 2].map(|k| pack(values.iter().map(|v| v[k])))
 }
 
 /// Nodes of a cloud where they are at the end.
@@ -129,14 +193,14 @@ fn cloud(run: &Solved) -> Result<String, Failure> {
     Ok(vectors(method.nodes().iter().zip(moved).map(|(x, u)| x.coords + u)))
 }
 
-fn body_state(state: &State, values: Option<&Values>, used: &[u32]) -> BodyState {
+fn body_state(state: &State, values: Option<&Values>, points: &Points) -> BodyState {
     BodyState {
         time: state.time,
-        u: vectors(used.iter().map(|&n| state.displacement[n as usize])),
+        u: vectors(points.skin().map(|n| state.displacement[n])),
         closures: state.closures.clone(),
         touching: pack(state.touching.iter().flat_map(|(x, gap)| [x.x, x.y, x.z, -gap].map(|v| v as f32))),
         deepest_node: (-state.gap).max(0.0),
-        values: values.map(|values| packed(values, used)),
+        values: values.map(|values| packed(&values[..points.skin])),
     }
 }
 

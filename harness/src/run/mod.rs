@@ -209,7 +209,7 @@ fn loaded(
         outcome.identity.lane_path = forces.path.map(|path| path.name().into());
     }
     conclude(&mut outcome.plan, solution, &counters);
-    let recovered = Recovered::new(run);
+    let recovered = Recovered::new(run, &solution.u, &solution.pressure);
     compare(outcome, run, &displaced, recovered.as_ref(), request)?;
     outcome.tools = setup.tools.iter().map(|t| t.name.clone()).collect();
     places(outcome, run)?;

@@ -7,6 +7,8 @@ pub mod blocks;
 use std::path::Path;
 use std::process::Command;
 
+use base64::Engine as _;
+use base64::engine::general_purpose::STANDARD;
 use serde_json::Value;
 use tempfile::TempDir;
 
@@ -87,6 +89,12 @@ pub fn assert_fails(done: &Done, code: i32, says: &str) {
 /// The objects of a run, one a line.
 pub fn objects(stdout: &str) -> Vec<Value> {
     stdout.lines().map(|line| serde_json::from_str(line).unwrap()).collect()
+}
+
+/// Numbers in single precision, as they are packed for the view in three dimensions.
+pub fn packed(text: &Value) -> Vec<f32> {
+    let bytes = STANDARD.decode(text.as_str().unwrap()).unwrap();
+    bytes.chunks_exact(4).map(|b| f32::from_le_bytes(b.try_into().unwrap())).collect()
 }
 
 /// A scene of the project by the name of its file, whichever folder it is in.

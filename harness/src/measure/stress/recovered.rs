@@ -34,9 +34,11 @@ const QUADRATIC_RIDGE: f64 = 1e-3;
 /// motion has no more, and no stress to tell. In free fall the gradients themselves are rounding.
 const ROUNDING: f64 = 1e-20;
 
-/// The fits of a run.
+/// The fits of a state of a run.
 pub(crate) struct Recovered<'a> {
     run: Solved<'a>,
+    /// Nodal parameters of the state, m.
+    u: &'a [Vector3],
     /// Stress at the quadrature points, Pa.
     own: Vec<Matrix3>,
     /// For each region the first of the same material.
@@ -56,15 +58,16 @@ struct Patch {
 }
 
 impl<'a> Recovered<'a> {
-    /// `None` of tissue that relaxes, whose stress is that of its past and followed at quadrature points
+    /// Of a state with nodal parameters `u` (m) and the parameters (Pa) of a pressure field, where there is
+    /// one. `None` of tissue that relaxes, whose stress is that of its past and followed at quadrature points
     /// only.
-    pub fn new(run: &Solved<'a>) -> Option<Recovered<'a>> {
+    pub fn new(run: &Solved<'a>, u: &'a [Vector3], parameters: &[f64]) -> Option<Recovered<'a>> {
         if run.setup.relaxes() {
             return None;
         }
-        let own = own_stress(run, &run.solution.u, &run.solution.pressure);
+        let own = own_stress(run, u, parameters);
         let alike = run.setup.alike();
-        let mut recovered = Recovered { run: *run, own, alike, patches: Vec::new() };
+        let mut recovered = Recovered { run: *run, u, own, alike, patches: Vec::new() };
         recovered.patches =
             (0..recovered.alike.len()).map(|material| recovered.of_material(material)).collect();
         Some(recovered)
@@ -100,9 +103,8 @@ impl<'a> Recovered<'a> {
     /// jumps.
     pub fn jump(&self) -> Option<f64> {
         let volume = &self.run.prepared.volume.rows;
-        let u = &self.run.solution.u;
-        let gradients = volume.at().displacement_gradients(u);
-        let largest = u.iter().map(|u| u.norm_squared()).fold(0.0, f64::max);
+        let gradients = volume.at().displacement_gradients(self.u);
+        let largest = self.u.iter().map(|u| u.norm_squared()).fold(0.0, f64::max);
         let (low, high) = place::bounds(self.run.method.mesh());
         let as_strain = largest / (high - low).norm_squared();
         let (mut own, mut off, mut scale) = (0.0, 0.0, 0.0);
