@@ -55,6 +55,11 @@ fn results_of_commits_are_kept_and_a_worse_error_is_marked() {
     assert!(!Path::new(&verified).exists());
     assert_eq!(verify(&history).code, 0);
     assert!(Path::new(&verified).join("report/tables/over-commits.csv").is_file());
+    let labelled = ["history", "add", &results, "--to", &history, "--label", "a label of many words"];
+    assert_eq!(tissuebench(&labelled).code, 0);
+    let shown = tissuebench(&["history", "show", &history]).stdout;
+    let line = |says: &str| shown.lines().find(|line| line.contains(says)).unwrap().trim_end().len();
+    assert_eq!(line("number  commit"), line("a label of many words"), "{shown}");
     std::fs::write(&second, "source = 1").unwrap();
     assert_fails(&tissuebench(&["report", &results, "--history", &history]), 2, "0002-");
     assert_fails(&tissuebench(&["history", "show", &history]), 2, "0002-");

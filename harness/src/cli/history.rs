@@ -81,18 +81,19 @@ fn show(args: &ShowArgs) -> Result<u8, ReportError> {
 
 fn print(trend: &Trend) {
     println!("{} on {}", trend.source, trend.machine);
+    let longest = trend.points.iter().map(|point| point.name().chars().count()).fold(12, usize::max) + 2;
     println!(
-        "{:>6}  {:14}{:>6}{:>8}{:>7}{:>11}{:>9}{:>9}  ",
+        "{:>6}  {:longest$}{:>6}{:>8}{:>7}{:>11}{:>9}{:>9}  ",
         "number", "commit", "runs", "failed", "quiet", "CPU [s]", "CPU", "errors"
     );
     for point in &trend.points {
-        println!("{}", row(point));
+        println!("{}", row(point, longest));
         point.step.iter().for_each(step);
     }
 }
 
-/// Ratios are to the first commit.
-fn row(point: &Point) -> String {
+/// Ratios are to the first commit; names have so many characters.
+fn row(point: &Point, longest: usize) -> String {
     let ratio = |ratio: Option<f64>| ratio.map_or("-".into(), |ratio| format!("{ratio:.3}"));
     let quiet = match point.quiet {
         Some(true) => "yes",
@@ -101,7 +102,7 @@ fn row(point: &Point) -> String {
     };
     let commit = point.name();
     format!(
-        "{:>6}  {commit:14}{:>6}{:>8}{quiet:>7}{:>11.3}{:>9}{:>9}",
+        "{:>6}  {commit:longest$}{:>6}{:>8}{quiet:>7}{:>11.3}{:>9}{:>9}",
         point.number,
         point.runs,
         point.checks_failed,
