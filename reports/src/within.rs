@@ -3,12 +3,15 @@
 use crate::asks::{Ask, Line, asks};
 use crate::fronts::{Clock, WANTED};
 use crate::record::Family;
+use crate::seconds::Seconds;
 use crate::select::Run;
 
 /// The quantity judged in a case: the tool force if its error is known, otherwise the displacement.
 pub(crate) struct Problem {
     /// Title: the case, with a note if the force is judged.
     pub(crate) title: String,
+    /// The clock by which the runs are compared.
+    pub(crate) by: Seconds,
     /// Each method that was run, with its smallest time within the error.
     pub(crate) methods: Vec<Cheapest>,
 }
@@ -39,6 +42,7 @@ pub(crate) fn problems(runs: &[Run]) -> Vec<Problem> {
     chosen.sort_by_key(|ask| std::cmp::Reverse(ask.rank));
     let problem = |ask: Ask| Problem {
         methods: ask.lines.iter().map(cheapest).collect(),
+        by: ask.by,
         title: ask.title + if ask.question.scalar { ", force" } else { "" },
     };
     chosen.into_iter().map(problem).collect()

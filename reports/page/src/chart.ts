@@ -93,9 +93,10 @@ function card(point: Point): (Node | string)[] {
   const errors = Object.entries(r.errors)
     .filter(([, values]) => values[at] !== null)
     .map(([quantity, values]) => `${quantity} ${quantity === "penetration" ? `${digits(1e3 * values[at]!, 2)} mm` : percent(values[at]!, 3)}`);
+  const clock = page.asks.find((a) => a.case === r.case[at] && !a.repeated)?.time.split(",")[0] ?? "run time";
   const facts = [
     `${whole(r.nodes[at])} nodes`, `${whole(r.elements[at])} cells`, `${whole(r.dofs[at])} unknowns`, r.settings[at],
-    r.solver[at] && `solved by ${r.solver[at]}`, r.seconds[at] !== null && `run time ${duration(r.seconds[at]!)}`,
+    r.solver[at] && `solved by ${r.solver[at]}`, r.seconds[at] !== null && `${clock} ${duration(r.seconds[at]!)}`,
     r.memory[at] !== null && `memory ${digits(r.memory[at]! / 2 ** 20, 3)} MiB`,
   ].filter(Boolean);
   const record = page.records

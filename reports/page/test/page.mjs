@@ -381,6 +381,8 @@ test("dark mode is dark, and print keeps the front", async (open) => {
   await page.send("Emulation.setEmulatedMedia", { media: "print", features: [{ name: "prefers-color-scheme", value: "dark" }] });
   assert.ok((await page.eval(brightness)) > 600, "a dark page is printed light");
   assert.ok(await page.eval(`document.querySelector("#front svg").getBoundingClientRect().height > 100`));
+  await page.send("Emulation.setDeviceMetricsOverride", { width: 794, height: 1123, deviceScaleFactor: 1, mobile: false });
+  assert.ok(await page.eval("document.documentElement.scrollWidth") <= 794, "a table is wider than the paper");
   const { data: pdf } = await page.send("Page.printToPDF", {});
   assert.ok(pdf.length > 10000);
   const undrawn = await page.eval(`${all("figure")}.filter((f) => f.checkVisibility() && !f.querySelector("svg.plot, .plot svg, .picture svg")).length`);

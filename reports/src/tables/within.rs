@@ -1,6 +1,7 @@
 //! The smallest time within an error: a row for each method, a column for each case.
 
 use crate::fronts::wanted;
+use crate::seconds::Seconds;
 use crate::select::{Run, solved};
 use crate::table::Column::{Number, Words};
 use crate::table::{Cell, Table};
@@ -9,7 +10,8 @@ use crate::within::{methods, problems, ratios};
 /// Table of every method on every case that it was run on.
 pub(super) fn within(runs: &[Run]) -> Table {
     let problems = problems(&solved(runs));
-    let heads: Vec<String> = problems.iter().map(|p| format!("{} [s]", p.title)).collect();
+    let unit = |by: Seconds| if by == Seconds::Cpu { "CPU s" } else { "s" };
+    let heads: Vec<String> = problems.iter().map(|p| format!("{} [{}]", p.title, unit(p.by))).collect();
     let mut header = vec![("method", Words), ("reached", Words)];
     header.extend(heads.iter().map(|head| (head.as_str(), Number)));
     let within = wanted();
@@ -17,7 +19,7 @@ pub(super) fn within(runs: &[Run]) -> Table {
         "within",
         &format!("Cheapest within {within}"),
         &format!(
-            "Run time of the cheapest run of each method within {within} of the tool force of each case, or of its displacement where no force is \
+            "Time of the cheapest run of each method within {within} of the tool force of each case, or of its displacement where no force is \
              known; a force counts as a third of the displacement's error where that is larger. Reached: on how many of the cases that any \
              method reaches and that it was run on"
         ),
