@@ -148,7 +148,8 @@ def test_the_reference_of_a_scene_is_solved_once():
         if event["event"] in ("begin", "start", "step"):
             before.append(event["event"])
 
-    for steps in (2, 0):
+    # Two steps of the reference, and two of the coarser one by which its own error is estimated.
+    for steps in (4, 0):
         before.clear()
         run = scene.run("hex8", states=True, progress=steps_before_the_start)
         assert before[: steps + 2] == ["begin"] + steps * ["step"] + ["start"], before
