@@ -74,8 +74,9 @@ impl Results {
             let (method, records) = (&outcome.identity.method, outcome.records());
             let own = |c: &&scene::Check| c.methods.is_empty() || c.methods.contains(method);
             for check in self.scene.checks.iter().filter(own).filter(|c| !check::is_of_many(c)) {
-                let value = check::value(check.metric.name, &records);
-                set.checks.push(check::judge(check, &case, method, value));
+                let name = check.metric.name;
+                let (value, band) = (check::value(name, &records), check::band(name, &records));
+                set.checks.push(check::judge(check, &case, method, value, band));
             }
             set.plans.extend(outcome.plan_entries());
             set.warnings.extend(outcome.warning_rows());
