@@ -1,11 +1,11 @@
-//! `tissuebench claims`: published claims held against stored results.
+//! `tissuebench claims`: compares published claims with stored results.
 
 use reports::{ClaimVerdict, read_claims, read_run};
 
 use crate::cli::args::ClaimsArgs;
 use crate::cli::unreported;
 
-/// Prints what the results say of each claim; the exit code.
+/// Prints the verdict of the results on each claim and returns the exit code.
 pub(super) fn claims(args: &ClaimsArgs) -> u8 {
     let read = read_claims(&args.file).and_then(|claims| Ok((claims, read_run(&args.results)?)));
     let (claims, set) = match read {

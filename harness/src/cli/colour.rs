@@ -1,4 +1,4 @@
-//! Colours of the words that tell good from bad: on a terminal, unless `NO_COLOR` or `--color never` says no.
+//! Colours of verdicts on a terminal, unless `NO_COLOR` or `--color never` is given.
 
 use std::io;
 
@@ -6,14 +6,14 @@ use anstream::AutoStream;
 use anstyle::{AnsiColor, Style};
 use clap::ColorChoice;
 
-/// Something failed.
+/// Style of failures.
 pub(super) const BAD: Style = AnsiColor::Red.on_default().bold();
-/// Something did not run, or is said against a number.
+/// Style of warnings and of checks that did not run.
 pub(super) const DOUBTFUL: Style = AnsiColor::Yellow.on_default();
-/// Something held.
+/// Style of success.
 pub(super) const GOOD: Style = AnsiColor::Green.on_default();
 
-/// Sets when words are coloured, from here on.
+/// Sets when output is coloured, for the rest of the program.
 pub(super) fn choose(choice: ColorChoice) {
     let choice = match choice {
         ColorChoice::Auto => anstream::ColorChoice::Auto,
@@ -23,12 +23,12 @@ pub(super) fn choose(choice: ColorChoice) {
     choice.write_global();
 }
 
-/// The text in a style, where stdout takes colours.
+/// Returns the text in a style if stdout supports colours.
 pub(super) fn out(style: Style, text: &str) -> String {
     painted(AutoStream::choice(&io::stdout()), style, text)
 }
 
-/// The text in a style, where stderr takes colours.
+/// Returns the text in a style if stderr supports colours.
 pub(super) fn err(style: Style, text: &str) -> String {
     painted(AutoStream::choice(&io::stderr()), style, text)
 }

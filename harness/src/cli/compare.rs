@@ -1,4 +1,4 @@
-//! `tissuebench compare`: results before and after.
+//! `tissuebench compare`: compares results before and after a change.
 
 use std::path::Path;
 
@@ -8,10 +8,11 @@ use reports::compare::{Comparison, NumberChange, Numbers, Ratio, Scope, Times, a
 use super::args::{CompareArgs, Format};
 use super::colour::{self, BAD, DOUBTFUL, GOOD};
 
-/// Lines of a list before the rest is only counted.
+/// Number of list entries printed; further ones are only counted.
 const SHOWN: usize = 40;
 
-/// Compares and prints; 0 if nothing differs, 1 if something does, 2 if a folder can't be compared.
+/// Compares and prints. Returns 0 if nothing differs, 1 if anything differs, 2 if a folder cannot be
+/// compared.
 pub(super) fn compare(args: &CompareArgs) -> u8 {
     let pairs = match read(args) {
         Ok(pairs) => pairs,
@@ -37,7 +38,7 @@ pub(super) fn compare(args: &CompareArgs) -> u8 {
     u8::from(!found.is_same())
 }
 
-/// Reads the folders two by two.
+/// Reads the folders in pairs.
 fn read(args: &CompareArgs) -> Result<Vec<(RunSet, RunSet)>, String> {
     if args.results.len() % 2 == 1 {
         let last = args.results.last().map_or(Path::new(""), |path| path.as_path());
@@ -138,7 +139,7 @@ fn row(ratio: &Ratio) {
     println!("  {scope:8} {name:32} {count:>6} {ratio:>12.3}  {:.3} to {limit:.3}{verdict}", 1.0 / limit);
 }
 
-/// Prints the first of a list and counts the rest.
+/// Prints the first entries of a list and counts the rest.
 fn shown<T>(list: &[T], print: impl Fn(&T)) {
     list.iter().take(SHOWN).for_each(print);
     if list.len() > SHOWN {

@@ -1,10 +1,10 @@
-//! `tissuebench export`: the problem of one method as files that any solver can read.
+//! `tissuebench export`: writes the problem of one method as files that any solver can read.
 
 use crate::cli::args::{ExportArgs, SceneArgs};
 use crate::cli::{affordable_methods, fail, open};
 use crate::run::{Group, Repeats};
 
-/// Writes the folder; returns the exit code.
+/// Writes the folder and returns the exit code.
 pub(super) fn export(args: &ExportArgs) -> u8 {
     let ExportArgs { scene: file, method, set, .. } = args;
     let wanted = SceneArgs { file: file.clone(), methods: vec![method.clone()], set: set.clone() };

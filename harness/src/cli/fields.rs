@@ -1,4 +1,4 @@
-//! The body at every recorded state as files: `tissuebench fields`, and beside the results of `run --out`.
+//! Writes the body at every recorded state to files, for `tissuebench fields` and for `run --out`.
 
 use std::fs;
 use std::path::Path;
@@ -10,10 +10,10 @@ use crate::cli::{affordable_methods, open, unreported};
 use crate::outcome::States;
 use crate::run::{Group, Repeats, RunOptions};
 
-/// Beside the results of a scene.
+/// Name of the folder of fields next to the results of a scene.
 pub(super) const FOLDER: &str = "volumes";
 
-/// Runs the methods and writes their fields; returns the exit code.
+/// Runs the methods, writes their fields and returns the exit code.
 pub(super) fn run(args: &FieldsArgs) -> u8 {
     let (scene, chosen) = match open(&args.scene) {
         Ok(opened) => opened,
@@ -60,7 +60,8 @@ pub(super) fn run(args: &FieldsArgs) -> u8 {
     code
 }
 
-/// Writes the files of a method into a folder, which is created where missing; parts of an earlier series of the method are removed.
+/// Writes the files of a method to a folder, which is created if missing. Parts of an earlier series of the
+/// method are removed.
 pub(super) fn write(states: &States, method: &str, folder: &Path) -> Result<(), ReportError> {
     if states.is_empty() {
         return Ok(());
@@ -70,25 +71,25 @@ pub(super) fn write(states: &States, method: &str, folder: &Path) -> Result<(), 
     fs::create_dir_all(&parts).map_err(|source| ReportError::Unwritten { path: parts.clone(), source })?;
     let mut files = states.files(method);
     let series = files.next();
-    // The series comes last: it names parts that are there.
+    // The series file is written last, so that all parts it names exist.
     files.chain(series).try_for_each(|(name, bytes)| write_text(&folder.join(name), bytes))
 }
 
-/// Removes the files of earlier series from a folder, and with them the folder if nothing else is in it.
+/// Removes the files of earlier series from a folder, and the folder itself if it is then empty.
 pub(super) fn clear(folder: &Path) -> Result<(), ReportError> {
     let unwritten = |source| ReportError::Unwritten { path: folder.into(), source };
     let Ok(entries) = fs::read_dir(folder) else { return Ok(()) };
     for entry in entries {
         let entry = entry.map_err(unwritten)?;
         let path = entry.path();
-        // A folder behind a link is somebody else's.
+        // A linked folder does not belong to the results.
         if entry.file_type().map_err(unwritten)?.is_dir() {
             clear(&path)?;
         } else if States::is_file(&entry.file_name().to_string_lossy()) {
             disk::remove(&path).map_err(|source| ReportError::Unwritten { path, source })?;
         }
     }
-    // Where something else is left the folder stays.
+    // A folder with other files stays.
     let _ = fs::remove_dir(folder);
     Ok(())
 }

@@ -1,4 +1,4 @@
-//! `tissuebench history`: a study over commits.
+//! `tissuebench history`: errors and times of a study over commits.
 
 use std::path::PathBuf;
 
@@ -10,39 +10,39 @@ use super::args::Format;
 use super::colour::{self, BAD, DOUBTFUL, GOOD};
 use super::unreported;
 
-/// What is done with a history.
+/// Actions on a history.
 #[derive(Subcommand)]
 pub enum HistoryAction {
-    /// Keep the errors and times of results in a history: one small file, to be committed
+    /// Add the errors and times of results to a history, as one small file to be committed
     Add {
-        /// A folder of results
+        /// Folder of results
         results: PathBuf,
-        /// The folder of the history
+        /// Folder of the history
         #[arg(long, value_name = "DIR", default_value = "history")]
         to: PathBuf,
-        /// A name for them beside their commit, such as v1.2 or "new assembly"
+        /// Label next to the commit, such as v1.2 or "new assembly"
         #[arg(long, value_name = "TEXT", default_value = "", hide_default_value = true)]
         label: String,
     },
-    /// Show accuracy and time from commit to commit, and the steps that are outside of noise
+    /// Show accuracy and time by commit, and the changes beyond noise
     Show(ShowArgs),
 }
 
 /// Arguments of `history show`.
 #[derive(Args)]
 pub struct ShowArgs {
-    /// The folder of the history
+    /// Folder of the history
     #[arg(default_value = "history")]
     pub history: PathBuf,
-    /// What to print on stdout: a table, or one JSON object
+    /// Output format on stdout: a table or one JSON object
     #[arg(long, value_enum, default_value_t = Format::Table)]
     pub format: Format,
-    /// A figure to write, as SVG
+    /// Figure to write, as SVG
     #[arg(long, value_name = "FILE")]
     pub figure: Option<PathBuf>,
 }
 
-/// Lines of a step before the rest is only counted.
+/// Number of lines printed per change; further ones are only counted.
 const SHOWN: usize = 5;
 
 pub(super) fn act(action: &HistoryAction) -> u8 {
@@ -92,7 +92,7 @@ fn print(trend: &Trend) {
     }
 }
 
-/// Ratios are to the first commit; names have so many characters.
+/// Formats one commit, with its name padded to `longest` characters. Ratios are relative to the first commit.
 fn row(point: &Point, longest: usize) -> String {
     let ratio = |ratio: Option<f64>| ratio.map_or("-".into(), |ratio| format!("{ratio:.3}"));
     let quiet = match point.quiet {
@@ -112,7 +112,7 @@ fn row(point: &Point, longest: usize) -> String {
     )
 }
 
-/// What is outside of noise since the commit before.
+/// Prints the changes beyond noise since the previous commit.
 fn step(step: &Step) {
     let Step { worse, better, lost, new, called, .. } = step;
     if lost + new > 0 {

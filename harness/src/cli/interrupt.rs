@@ -1,4 +1,4 @@
-//! Ctrl-C, and the signals by which systems end a program: what is finished stays, and what runs in other processes ends.
+//! Ctrl-C and termination signals: finished results are kept and child processes are killed.
 
 use std::path::PathBuf;
 use std::sync::Mutex;
@@ -8,11 +8,11 @@ use crate::process::group;
 
 type Last = Box<dyn FnMut() + Send>;
 
-/// Says or writes what is left.
+/// Action before the program ends on a signal.
 static LAST: Mutex<Option<Last>> = Mutex::new(None);
 
-/// From now on a signal ends the program with exit code 5, after what was set by [`at_last`], and without a
-/// trace of what it has started.
+/// Makes signals end the program with exit code 5, after the action set by [`at_last`]. Child processes and
+/// temporary folders are removed.
 pub(super) fn install() {
     let handler = || {
         match LAST.lock().ok().and_then(|mut last| last.take()) {
@@ -28,17 +28,17 @@ pub(super) fn install() {
     }
 }
 
-/// Sets what a signal does before the program ends.
+/// Sets the action before the program ends on a signal.
 pub(super) fn at_last(last: impl FnMut() + Send + 'static) {
     if let Ok(mut known) = LAST.lock() {
         *known = Some(Box::new(last));
     }
 }
 
-/// Says that a study can be continued.
+/// Returns an action that reports that the study can be continued.
 pub(super) fn resumable(out: PathBuf) -> impl FnMut() + Send + 'static {
     move || {
-        // Runs in other processes would be taken for failed ones.
+        // Otherwise killed runs in other processes would be recorded as failed.
         group::end_all();
         eprintln!(
             "tissuebench: interrupted; {} is incomplete and keeps the finished runs: the same command with --resume goes on",
@@ -47,7 +47,7 @@ pub(super) fn resumable(out: PathBuf) -> impl FnMut() + Send + 'static {
     }
 }
 
-/// Says that nothing but files without meaning is left.
+/// Returns an action that reports that only incomplete files are left.
 pub(super) fn incomplete(out: Option<PathBuf>) -> impl FnMut() + Send + 'static {
     move || match &out {
         Some(out) => eprintln!("tissuebench: interrupted; {} is incomplete", out.display()),

@@ -1,4 +1,4 @@
-//! The JSON object of one run, as scripts read it.
+//! The JSON object of one run, for scripts.
 
 use std::collections::BTreeMap;
 
@@ -9,65 +9,67 @@ use serde::Serialize;
 
 use crate::outcome::{Counters, LoadStep, Metric, Outcome, Plan, Unfinished, Warning};
 
-/// Version of the object. A change that a reader of it would notice raises it.
+/// Version of the object, raised by every change that affects its readers.
 const FORMAT: u32 = 1;
 
-/// One run as `tissuebench run --format json` prints it.
+/// One run as printed by `tissuebench run --format json`.
 #[derive(Serialize, JsonSchema)]
 pub struct RunObject<'a> {
     /// Version of this object.
     format: u32,
-    /// Name of the scene: that of its file.
+    /// Name of the scene, from its file.
     scene: &'a str,
     method: &'a str,
-    /// `ok`; `relaxed` where dynamic relaxation continued from where Newton's method ended; how it ended early, its numbers those of the load it carried (`stalled` for a static path; `inverted`,
-    /// `step-too-large`, `not-finite` or `contact-lost` in dynamics); or what kind of failure: `bad-input`, `not-available`
-    /// or `could-not-run`; of a solver outside this program `refused`, `stalled`, `failed`, `timed-out`, `not-offered` or `stale`.
+    /// `ok`; `relaxed` if dynamic relaxation continued from the end of Newton's method. If the run ended
+    /// early, its numbers are those of the load reached: `stalled` for a static path; `inverted`,
+    /// `step-too-large`, `not-finite` or `contact-lost` in dynamics. If it failed: `bad-input`,
+    /// `not-available` or `could-not-run`; for an external solver `refused`, `stalled`, `failed`,
+    /// `timed-out`, `not-offered` or `stale`.
     status: &'static str,
-    /// Why it failed or ended early, with file, line and key; absent on success.
+    /// Reason for a failure or early end, with file, line and key; absent on success.
     #[serde(skip_serializing_if = "Option::is_none")]
     message: Option<String>,
     nodes: u64,
     elements: u64,
     dofs: u64,
     metrics: BTreeMap<String, Number>,
-    /// On the wall, s.
+    /// Wall-clock time, s.
     phases: BTreeMap<String, f64>,
-    /// The same of all processors together, where they are known.
+    /// CPU time of all processors, s, if known.
     cpu_phases: BTreeMap<String, f64>,
     probes: Vec<ProbeObject>,
     /// Rigid tools at the end.
     tools: Vec<ToolObject<'a>>,
     /// Supports at the end.
     supports: Vec<SupportObject<'a>>,
-    /// Faces whose mean is asked for, at the end.
+    /// Mean displacements of the requested surfaces at the end.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     means: Vec<MeanObject<'a>>,
     /// The lowest modes of vibration.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     modes: Vec<BTreeMap<String, Number>>,
-    /// Load steps of a static procedure, as far as it came; absent in a linear one.
+    /// Load steps that a static procedure reached; absent in a linear procedure.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     steps: Vec<StepObject<'a>>,
-    /// The reference of the numbers, with its own error.
+    /// Reference of the metrics, with its own error.
     #[serde(skip_serializing_if = "Option::is_none")]
     reference: Option<&'a Reference>,
-    /// What is to be said against these numbers; empty in a run without any.
+    /// Warnings about these numbers; empty without any.
     warnings: &'a [Warning],
     plan: &'a Plan,
-    /// What evaluated the internal forces of explicit dynamics or relaxation.
+    /// Kernel of the internal forces in explicit dynamics or relaxation.
     #[serde(skip_serializing_if = "Option::is_none")]
     force_kernel: Option<&'a str>,
-    /// Instructions of its lanes; absent where it is the plain loop.
+    /// Instruction set of the kernel's SIMD lanes; absent for the scalar loop.
     #[serde(skip_serializing_if = "Option::is_none")]
     lane_path: Option<&'a str>,
-    /// The adapter of a solver outside this program, with its settings.
+    /// Adapter of an external solver, with its settings.
     #[serde(skip_serializing_if = "Option::is_none")]
     adapter: Option<&'a str>,
-    /// What solved the equations of a linear procedure, or found the modes of vibration.
+    /// Solver of the linear equations, or of the modes of vibration.
     #[serde(skip_serializing_if = "Option::is_none")]
     linear_solver: Option<&'a str>,
-    /// Counts of what was done; all 0 in a run that failed.
+    /// Operation counts; all 0 in a failed run.
     work: Counters,
 }
 
@@ -80,23 +82,23 @@ struct Number {
 #[derive(Serialize, JsonSchema)]
 struct ToolObject<'a> {
     name: &'a str,
-    /// m.
+    /// Closure, m.
     closure: f64,
-    /// On the tool, N.
+    /// Force on the tool, N.
     force: [f64; 3],
 }
 
 #[derive(Serialize, JsonSchema)]
 struct SupportObject<'a> {
-    /// Where it is, in the words of the scene.
+    /// Place of the support, as written in the scene.
     name: &'a str,
-    /// On the body, N.
+    /// Force on the body, N.
     force: [f64; 3],
 }
 
 #[derive(Serialize, JsonSchema)]
 struct MeanObject<'a> {
-    /// Where it is, in the words of the scene.
+    /// Surface, as written in the scene.
     name: &'a str,
     /// Mean displacement, m.
     u: [f64; 3],
@@ -104,9 +106,9 @@ struct MeanObject<'a> {
 
 #[derive(Serialize, JsonSchema)]
 struct StepObject<'a> {
-    /// Part of the loading, 0 to 1; of the time in dynamics.
+    /// Fraction of the loading, 0 to 1; of the duration in dynamics.
     load: f64,
-    /// J.
+    /// Strain energy, J.
     strain_energy: Option<f64>,
     smallest_j: f64,
     iterations: u64,
@@ -116,7 +118,7 @@ struct StepObject<'a> {
     /// Force of each support on the body, N.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     supports: Vec<[f64; 3]>,
-    /// Mean displacement of each face whose mean is asked for, m.
+    /// Mean displacement of each requested surface, m.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     means: Vec<[f64; 3]>,
     /// Time and energies in dynamics.
@@ -141,14 +143,14 @@ fn arrays(vectors: &[Vector3]) -> Vec<[f64; 3]> {
 struct ProbeObject {
     x: [f64; 3],
     u: [f64; 3],
-    /// xx, yy, zz, xy, yz, zx.
+    /// Cauchy stress, Pa: xx, yy, zz, xy, yz, zx.
     stress: Option<[f64; 6]>,
     /// Distance from the mesh, m; 0 inside.
     outside: f64,
 }
 
 impl<'a> RunObject<'a> {
-    /// A finished run; times are medians over its repeats.
+    /// Returns the object of a finished run; times are medians over its repeats.
     pub fn finished(outcome: &'a Outcome) -> RunObject<'a> {
         let mut metrics = numbers(&outcome.metrics);
         metrics.insert("memory".into(), Number { value: outcome.memory as f64, unit: "B" });
@@ -223,7 +225,7 @@ impl<'a> RunObject<'a> {
         }
     }
 
-    /// A run that gave no numbers: what it would have done, and how large it got.
+    /// Returns the object of a failed run, with its plan and size.
     pub fn failed(scene: &'a str, method: &'a str, run: &'a Unfinished) -> RunObject<'a> {
         RunObject {
             format: FORMAT,

@@ -1,11 +1,11 @@
-//! `tissuebench merge`: the shares of a study joined.
+//! `tissuebench merge`: joins the parts of a study.
 
 use crate::cli::verify::write;
 use crate::cli::{fail, refuse, take};
 use crate::study::folder;
 use crate::study::merge::{self, MergeArgs, Unmerged};
 
-/// Joins the shares and judges them as `verify` does; returns the exit code.
+/// Joins the parts, checks them as `verify` does and returns the exit code.
 pub(super) fn merge(args: &MergeArgs) -> u8 {
     let (study, plan, verify) = match merge::plan(args) {
         Ok(found) => found,

@@ -1,4 +1,4 @@
-//! `tissuebench mesh`: what a mesh file holds, and the same body in other cells.
+//! `tissuebench mesh`: prints the contents of mesh files and converts their cells.
 
 use std::path::Path;
 
@@ -10,14 +10,14 @@ use super::mesh_info::info;
 use crate::Failure;
 use crate::cli::args::{ConvertArgs, MeshAction};
 
-/// Millimetre files are read and written in their own unit.
+/// Unit in which files are read and written, m; their coordinates stay the same.
 const MILLIMETRE: f64 = 1e-3;
 
 /// Runs one mesh command.
 pub fn act(action: &MeshAction) -> Result<(), Failure> {
     match action {
         MeshAction::Info { files, unit, format } => {
-            // Every file is reported; the first that is wrong gives the exit code.
+            // Every file is reported; the first invalid one gives the exit code.
             let each = files.iter().map(|file| info(file, *unit, *format));
             each.fold(Ok(()), Result::and)
         }
@@ -53,7 +53,7 @@ fn convert(args: &ConvertArgs) -> Result<(), Failure> {
     Ok(())
 }
 
-/// The mesh with its pieces joined, and what to print of that.
+/// Joins the pieces of a mesh; returns the mesh and the text to print.
 fn joined(mesh: Mesh, from: &Path) -> Result<(Mesh, String), Failure> {
     let count = pieces::count(&mesh);
     let Some((mesh, faces)) = pieces::join(&mesh) else {
@@ -64,12 +64,12 @@ fn joined(mesh: Mesh, from: &Path) -> Result<(Mesh, String), Failure> {
     Ok((mesh, format!("; {count} pieces joined at {faces} faces")))
 }
 
-/// Refuses an output that is one of the files read.
+/// Refuses an output that is one of the input files.
 pub(super) fn spare(out: &Path) -> Result<(), Failure> {
     disk::spare(out).map_err(|bad| input(format!("{}: {bad}", out.display())))
 }
 
-/// The format to write; a version is one of Gmsh's.
+/// Returns the output format; a version applies only to Gmsh.
 fn format(to: &Path, version: Option<GmshVersion>) -> Result<Format, Failure> {
     match (Format::of(to).map_err(input)?, version) {
         (Format::Gmsh(_), Some(version)) => Ok(Format::Gmsh(version)),

@@ -1,4 +1,4 @@
-//! `tissuebench mesh info`: what a file holds and how good its cells are, as a table or as JSON.
+//! `tissuebench mesh info`: prints the contents of a file and the quality of its cells, as a table or JSON.
 
 use std::path::Path;
 
@@ -12,16 +12,16 @@ use super::mesh_files::{input, row};
 use super::text::digits;
 use crate::Failure;
 
-/// Volumes of organs are read in its cube, areas in its square.
+/// Unit of printed volumes (cubed) and areas (squared), m.
 const CENTIMETRE: f64 = 1e-2;
-/// Bins of the histogram begin at these aspects.
+/// Lower bounds of the bins of the aspect histogram.
 const ASPECTS: [f64; 6] = [1.0, 1.5, 2.0, 3.0, 5.0, 10.0];
-/// The worst cells that are listed.
+/// Number of worst cells listed.
 const WORST: usize = 5;
-/// Organs and the pieces of tissue that are tested are this long, m.
+/// Range of lengths of organs and tissue specimens, m.
 const LONG: [f64; 2] = [5e-3, 1.0];
 
-/// Prints what a file holds.
+/// Prints the contents of a mesh or surface file. Inverted cells are an error.
 pub fn info(file: &Path, unit: LengthUnit, format: Format) -> Result<(), Failure> {
     if files::is_surface(file) {
         let surface = files::read_surface(file, unit.metres).map_err(input)?;
@@ -73,7 +73,7 @@ fn of_surface(file: &Path, surface: &Surface, unit: LengthUnit, format: Format) 
     Ok(())
 }
 
-/// Names of a surface's groups, with their numbers of triangles.
+/// Returns the names of a surface's groups, with their numbers of triangles.
 fn groups(surface: &Surface) -> Vec<(&str, usize)> {
     let mut found: Vec<(&str, usize)> = surface.groups().names().iter().map(|name| (&**name, 0)).collect();
     for triangle in 0..surface.triangles().len() {
@@ -82,16 +82,16 @@ fn groups(surface: &Surface) -> Vec<(&str, usize)> {
     found
 }
 
-/// What is known of a mesh.
+/// Properties of a mesh.
 struct Found<'a> {
     mesh: &'a Mesh,
     rows: Vec<Row>,
     shapes: Vec<CellShape>,
-    /// Cells from the worst on.
+    /// Cells in order from the worst.
     worst: Vec<usize>,
     low: Point3,
     high: Point3,
-    /// How many there are, and faces of different ones that coincide.
+    /// Number of pieces, and of coincident faces of different pieces.
     pieces: [usize; 2],
 }
 
@@ -111,14 +111,14 @@ impl Found<'_> {
         self.shapes.iter().map(|shape| shape.volume).sum()
     }
 
-    /// Number of cells of each kind there is.
+    /// Returns the number of cells of each kind present.
     fn kinds(&self) -> Vec<(&'static str, usize)> {
         let count = |kind| (0..self.mesh.cell_count()).filter(|&c| self.mesh.kind(c) == kind).count();
         let kinds = CellKind::ALL.map(|kind| (kind.name(), count(kind)));
         kinds.into_iter().filter(|(_, count)| *count > 0).collect()
     }
 
-    /// Cells and volume (m^3) of each region, and of the groups of cells across them.
+    /// Returns cells and volume (m^3) of each region and of each group of cells.
     fn regions(&self) -> Vec<(&str, usize, f64)> {
         let mut found: Vec<_> = self.mesh.region_names().iter().map(|name| (name.as_str(), 0, 0.0)).collect();
         for (cell, shape) in self.shapes.iter().enumerate() {
@@ -131,21 +131,21 @@ impl Found<'_> {
         found.into_iter().chain(of_groups).collect()
     }
 
-    /// Pieces without a node in common, if there are several, with the faces at which they can be joined.
+    /// Describes pieces without a common node, if there are several, and their coincident faces.
     fn apart(&self) -> Option<String> {
         let [count, faces] = self.pieces;
         let join = if faces > 0 { " (join = true in a scene's body, or mesh convert --join)" } else { "" };
         (count > 1).then(|| format!("{count} pieces without a node in common, {faces} faces coincide{join}"))
     }
 
-    /// Faces and area (m^2) of each named surface.
+    /// Returns faces and area (m^2) of each named surface.
     fn surfaces(&self) -> Vec<(&str, usize, f64)> {
         let of = |name| self.mesh.group(name).unwrap_or_default();
         let area = |name| of(name).iter().map(|&facet| area(self.mesh, facet)).sum();
         self.mesh.group_names().map(|name| (name, of(name).len(), area(name))).collect()
     }
 
-    /// Number of cells from each aspect to the next.
+    /// Returns the number of cells in each bin of aspects.
     fn histogram(&self) -> [usize; ASPECTS.len()] {
         let mut counts = [0; ASPECTS.len()];
         for shape in &self.shapes {
@@ -198,7 +198,7 @@ impl Found<'_> {
         }
     }
 
-    /// The smallest and the largest angle.
+    /// Returns the smallest and the largest dihedral angle, degrees.
     fn angles(&self) -> [f64; 2] {
         let all = self.shapes.iter().map(|shape| shape.angles);
         all.fold([f64::MAX, f64::MIN], |[low, high], [a, b]| [low.min(a), high.max(b)])
@@ -235,7 +235,7 @@ impl Found<'_> {
     }
 }
 
-/// Area of a face, flat through its corners as triangles around their mean.
+/// Returns the area of a face (m^2), approximated by flat triangles around the mean of its corners.
 fn area(mesh: &Mesh, facet: Facet) -> f64 {
     let count = mesh.kind(facet.cell as usize).face_kind().corner_count();
     let corners: Vec<Vector3> =
@@ -245,10 +245,10 @@ fn area(mesh: &Mesh, facet: Facet) -> f64 {
     corners.iter().zip(next).map(|(a, b)| 0.5 * (a - mean).cross(&(b - mean)).norm()).sum()
 }
 
-/// The box in the file's unit, as `where` takes it.
+/// Formats the bounding box in the file's unit, as used in `where`.
 fn extent(low: Point3, high: Point3, unit: LengthUnit) -> String {
     let axes = ["x", "y", "z"].into_iter().enumerate().map(|(axis, name)| {
-        // Rounding leaves a corner at the origin a coordinate of 1e-17.
+        // Rounding turns the coordinate of a corner at the origin into 1e-17.
         let end = |x: f64| digits(if x.abs() < 1e-9 { 0.0 } else { x });
         let [low, high] = [low, high].map(|p| end(p[axis] / unit.metres));
         format!("{name} = {low} to {high}")
@@ -260,8 +260,8 @@ fn extent_json(low: Point3, high: Point3) -> [[f64; 2]; 3] {
     [0, 1, 2].map(|axis| [low[axis], high[axis]])
 }
 
-/// The unit in which a body of that longest extent (m, read in the unit given) is as long as organs are; the one given if it is, `None`
-/// if none is.
+/// Returns the unit in which a body is as long as organs are. `longest` is its longest extent (m, read in
+/// `unit`). `unit` itself is preferred; `None` if no unit fits.
 pub(super) fn guess(longest: f64, unit: LengthUnit) -> Option<&'static str> {
     let own = longest / unit.metres;
     let known = [(unit.name, unit.metres), ("mm", 1e-3), ("cm", 1e-2), ("m", 1.0), ("um", 1e-6)];

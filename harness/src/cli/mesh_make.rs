@@ -1,4 +1,4 @@
-//! `tissuebench mesh make`: from a closed surface to tetrahedra inside.
+//! `tissuebench mesh make`: fills a closed surface with tetrahedra.
 
 use geometry::stuffing::{self, Stuffed, Stuffing};
 use geometry::{Surface, files, quality};
@@ -8,10 +8,10 @@ use super::mesh_files::{input, row, spare};
 use crate::Failure;
 use crate::cli::text::digits;
 
-/// A number of nodes is as asked for within this part of it.
+/// Relative difference of node counts above which it is printed.
 const NEAR: f64 = 0.1;
 
-/// Fills a surface, writes the mesh and prints how close it is.
+/// Fills a surface, writes the mesh and prints how closely it fits.
 pub fn make(args: &MakeArgs) -> Result<(), Failure> {
     let MakeArgs { surface: file, unit, out, .. } = args;
     let surface = files::read_surface(file, unit.metres).map_err(input)?;
@@ -62,7 +62,7 @@ pub fn make(args: &MakeArgs) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Says so where the number of nodes is another than was asked for.
+/// Prints the requested number of nodes if the mesh differs from it.
 fn wanted(nodes: u32, made: usize) {
     if (made as f64 / f64::from(nodes) - 1.0).abs() > NEAR {
         row(

@@ -1,5 +1,5 @@
-//! The commands, each ending in an exit code: 0 all held, 1 a check failed, 2 bad usage or input, 3 could not run,
-//! 4 nothing ran, 5 incomplete.
+//! The commands. Each returns an exit code: 0 success, 1 a check failed, 2 invalid usage or input, 3 could
+//! not run, 4 nothing ran, 5 incomplete.
 
 mod adapter;
 mod args;
@@ -59,12 +59,12 @@ use args::{SceneArgs, SchemaOf};
 
 pub use args::{Cli, Command};
 
-/// Runs the command of the command line; its exit code.
+/// Runs the command given on the command line and returns its exit code.
 pub fn called() -> u8 {
     match Cli::try_parse() {
         Ok(cli) => main(cli),
         Err(bad) => {
-            // Colours and all, unless a name among the arguments has some of its own.
+            // The message keeps its colours unless an argument contains control characters.
             let text = bad.render().to_string();
             if crate::print::shown(&text, false) == text {
                 bad.exit()
@@ -88,7 +88,7 @@ fn act(cli: Cli) -> u8 {
         return 3;
     }
     colour::choose(cli.color);
-    // A leash is ended by whoever holds it.
+    // A leash is ended by the process that started it.
     if !matches!(cli.command, Command::Leash(_)) {
         interrupt::install();
     }
@@ -140,7 +140,7 @@ fn act(cli: Cli) -> u8 {
     }
 }
 
-/// The JSON schema of an input or output.
+/// Returns the JSON schema of an input or output.
 fn schema(of: SchemaOf) -> serde_json::Value {
     match of {
         SchemaOf::Scene => scene::schema(),
@@ -152,7 +152,7 @@ fn schema(of: SchemaOf) -> serde_json::Value {
     }
 }
 
-/// Prints the manual page of a command, or of the program.
+/// Prints the manual page of a command or of the program.
 fn manual(command: Option<&str>) -> u8 {
     let root = Cli::command();
     let page = match command {
@@ -188,7 +188,7 @@ fn fail(failure: &Failure) -> u8 {
     failure.exit_code()
 }
 
-/// Prints what is wrong with an input file; 2, or 3 if it is only ahead of what can run.
+/// Prints the errors of an input file. Returns 2, or 3 if the file only uses features not available yet.
 fn refuse(errors: &[SceneError]) -> u8 {
     for error in errors {
         eprintln!("{error}");
@@ -196,7 +196,8 @@ fn refuse(errors: &[SceneError]) -> u8 {
     if errors.iter().all(|e| e.kind == ErrorKind::NotAvailable) { 3 } else { 2 }
 }
 
-/// Takes the folder of results for those of a scene or study, and says what they replace; an exit code if it can't take them.
+/// Claims the results folder for a scene or study, and prints which results it replaces. Returns an exit code
+/// on failure.
 fn take(file: &Path, out: &Path) -> Result<Folder, u8> {
     let folder = folder::take(file, out).map_err(|failure| fail(&failure))?;
     if let Some(what) = folder::replaced(out) {
@@ -206,7 +207,7 @@ fn take(file: &Path, out: &Path) -> Result<Folder, u8> {
     Ok(folder)
 }
 
-/// The scene, and the indices of the methods asked for in their order.
+/// Loads the scene and returns it with the indices of the selected methods.
 fn open(args: &SceneArgs) -> Result<(Scene, Vec<usize>), u8> {
     let path = &args.file;
     let scene = scene::load_with(path, &args.set).map_err(|errors| {
@@ -220,7 +221,7 @@ fn open(args: &SceneArgs) -> Result<(Scene, Vec<usize>), u8> {
     Ok((scene, chosen))
 }
 
-/// The indices of the methods asked for, of a scene that can run.
+/// Returns the indices of the selected methods, if the scene can run.
 fn choose(scene: &Scene, args: &SceneArgs) -> Result<Vec<usize>, u8> {
     let ahead = scene.unavailable();
     if !ahead.is_empty() {
@@ -240,13 +241,13 @@ fn choose(scene: &Scene, args: &SceneArgs) -> Result<Vec<usize>, u8> {
     Ok((0..known.len()).filter(|&index| wanted(known[index])).collect())
 }
 
-/// Whether a file that was refused has a key that scenes have and studies have not, or the other way round.
+/// Whether a refused file has this top-level key, which distinguishes scenes from studies.
 fn holds_key(path: &Path, key: &str) -> bool {
     let text = disk::read_text(path, disk::Kind::SCENE).unwrap_or_default();
     text.parse::<toml::Table>().is_ok_and(|table| table.contains_key(key))
 }
 
-/// Refuses what takes more than anyone means to spend, unless it is forced: then it is a warning.
+/// Refuses runs whose cost exceeds any plausible intention. With `force` this is only a warning.
 fn affordable(found: &[SceneError], force: bool) -> Result<(), u8> {
     for error in found {
         eprintln!("{error}");
@@ -254,7 +255,7 @@ fn affordable(found: &[SceneError], force: bool) -> Result<(), u8> {
     if found.is_empty() || force { Ok(()) } else { Err(2) }
 }
 
-/// The same for some methods of a scene.
+/// Applies the same check to some methods of a scene.
 fn affordable_methods(scene: &Scene, chosen: &[usize], force: bool) -> Result<(), u8> {
     let of = |&index: &usize| too_large(scene, &scene.methods[index], 1.0);
     affordable(&chosen.iter().filter_map(of).collect::<Vec<_>>(), force)
@@ -264,7 +265,7 @@ fn report(results: &Path, out: &Path, history: Option<&Path>, quiet: bool) -> u8
     rendered(reports::render_over_commits(results, out, history), quiet)
 }
 
-/// Writes a folder of results with its report; the exit code.
+/// Writes a folder of results with its report and returns the exit code.
 fn write_results(out: &Path, set: &RunSet, history: Option<&Path>, quiet: bool) -> u8 {
     rendered(reports::write_with_report(out, set, history), quiet)
 }
@@ -281,11 +282,11 @@ fn rendered(done: Result<Rendered, ReportError>, quiet: bool) -> u8 {
     }
 }
 
-/// Says why results could not be read or written, and returns the exit code.
+/// Prints why results could not be read or written, and returns the exit code.
 fn unreported(bad: &ReportError) -> u8 {
     eprintln!("tissuebench: {bad}");
     match bad {
-        // An output that is an input, or no file.
+        // The output is an input, or not a regular file.
         ReportError::Unwritten { source, .. } if source.kind() == InvalidInput => 2,
         ReportError::Incomplete { .. } | ReportError::Unwritten { .. } => 5,
         _ => 2,

@@ -1,10 +1,10 @@
-//! `tissuebench plan`: the stages of a scene's methods, without running them.
+//! `tissuebench plan`: prints the stages of a scene's methods without running them.
 
 use crate::cli::args::SceneArgs;
 use crate::cli::{affordable_methods, open, text};
 use crate::run::{Group, Repeats};
 
-/// Prints what each method would do; returns the exit code.
+/// Prints the plan of each method and returns the exit code.
 pub(super) fn plan(args: &SceneArgs, force: bool) -> u8 {
     let (scene, chosen) = match open(args) {
         Ok(opened) => opened,
@@ -16,7 +16,7 @@ pub(super) fn plan(args: &SceneArgs, force: bool) -> u8 {
     let mut code = 0;
     for index in chosen {
         let method = &scene.methods[index];
-        // A plan needs no reference: only what the run itself would do.
+        // A plan describes the run itself and needs no reference.
         let stages = Group::unreferenced(&scene, Repeats::ONCE)
             .and_then(|group| group.plan(&group.scenario(method.clone(), 0)));
         match stages {

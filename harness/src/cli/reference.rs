@@ -1,4 +1,4 @@
-//! `tissuebench reference`: runs every method of a scene and stores what they agree on.
+//! `tissuebench reference`: runs all methods of a scene and stores their common result.
 
 use std::path::PathBuf;
 
@@ -9,7 +9,7 @@ use crate::run::stored::Stored;
 use crate::study::make_reference::make;
 use crate::study::{folder, note_inputs};
 
-/// Runs every method of a scene and writes what they agree on.
+/// Runs the methods and writes their common result.
 pub(super) fn reference(args: &ReferenceArgs) -> Result<(), u8> {
     let (scene, chosen) = open(&args.scene)?;
     let chosen: Vec<String> = chosen.iter().map(|&index| scene.methods[index].id.clone()).collect();
@@ -30,11 +30,11 @@ pub(super) fn reference(args: &ReferenceArgs) -> Result<(), u8> {
         Some(from) => from.methods().map(Into::into).collect(),
         None => chosen.clone(),
     };
-    // Refused before hours are spent on the methods.
+    // Conflicts are refused before hours are spent on the methods.
     let mut alongside = Vec::new();
     for path in &args.alongside {
         let other = read(path)?;
-        // A solution is no witness of itself.
+        // A solution cannot confirm itself.
         if let Some(twice) = other.methods().find(|id| used.iter().any(|u| u == id)) {
             let problem = format!("{}: '{twice}' is there already; name others by --method", path.display());
             return Err(fail(&Failure::Input(problem)));

@@ -1,4 +1,4 @@
-//! `tissuebench run`: one scene by some or all of its methods.
+//! `tissuebench run`: runs one scene with some or all of its methods.
 
 use std::io::IsTerminal;
 use std::sync::{Arc, Mutex};
@@ -16,12 +16,12 @@ use crate::run::{Group, Repeats, RunOptions, case_name};
 use crate::study::folder::{self, Folder};
 use crate::study::{self, check, failed, stalled};
 
-/// Time between two lines on what runs.
+/// Time between two progress lines.
 const EVERY: Duration = Duration::from_secs(10);
-/// Repeats of a single run's timings.
+/// Repeats of timing a single run.
 const REPEATS: Repeats = Repeats { most: 5, seconds: 1.0 };
 
-/// Runs the scene and reports it; returns the exit code.
+/// Runs the scene, reports the results and returns the exit code.
 pub(super) fn run(args: &RunArgs) -> u8 {
     let (scene, chosen) = match open(&args.scene) {
         Ok(opened) => opened,
@@ -56,7 +56,7 @@ pub(super) fn run(args: &RunArgs) -> u8 {
     interrupt::at_last(move || {
         if let Ok(mut made) = shared.lock() {
             made.interrupted();
-            // Nothing is added any more.
+            // The lock is never released, so that no result is added any more.
             std::mem::forget(made);
         }
     });
@@ -91,7 +91,7 @@ pub(super) fn run(args: &RunArgs) -> u8 {
     made().conclude()
 }
 
-/// Writes a line now and then, where no terminal shows what runs.
+/// Prints a progress line at intervals if stderr is not a terminal.
 fn report_now_and_then(made: Arc<Mutex<Made>>) {
     let begin = Instant::now();
     std::thread::spawn(move || {
@@ -103,9 +103,9 @@ fn report_now_and_then(made: Arc<Mutex<Made>>) {
     });
 }
 
-/// What the methods of the scene have left so far.
+/// Results of the scene's methods so far.
 struct Made {
-    /// Name of the running method or of the reference.
+    /// Name of the running method, or of the reference.
     now: String,
     args: RunArgs,
     case: String,
@@ -119,7 +119,8 @@ struct Made {
 }
 
 impl Made {
-    /// No method ran because their reference could not: each says what it would have done.
+    /// Reports that no method ran because the reference failed, with each method's plan, and returns the exit
+    /// code.
     fn unreferenced(&self, chosen: &[usize], failure: &Failure) -> u8 {
         if self.args.format == Format::Json {
             for &index in chosen {
@@ -135,7 +136,7 @@ impl Made {
         failure.exit_code()
     }
 
-    /// Notes what runs now. A terminal shows it at once: a static run may take minutes.
+    /// Records the running method. A terminal shows it immediately, because a static run may take minutes.
     fn begins(&mut self, now: String) {
         if !self.args.quiet && std::io::stderr().is_terminal() {
             eprintln!("{now} ...");
@@ -205,7 +206,7 @@ impl Made {
         self.code = self.code.max(failure.exit_code());
     }
 
-    /// Prints and writes what is finished; each method that is not becomes one that failed.
+    /// Prints and writes the finished results, and records the unfinished methods as failed.
     fn interrupted(&mut self) {
         eprintln!("tissuebench: interrupted before the end of {}", self.left.join(", "));
         for id in std::mem::take(&mut self.left) {
@@ -224,7 +225,8 @@ impl Made {
         }
     }
 
-    /// Prints the table and the checks that do not hold, and writes the folder of results.
+    /// Prints the table and the checks that did not pass, and writes the folder of results. Returns the exit
+    /// code.
     fn conclude(&mut self) -> u8 {
         let text = self.scene.text().to_string();
         self.set.provenance = provenance::provenance(self.machine.clone(), &[(self.case.clone(), text)]);

@@ -1,4 +1,4 @@
-//! Text for people: plans, the table of a run, verdicts.
+//! Printed text: plans, the table of runs, verdicts.
 
 use std::fmt::Write as _;
 
@@ -10,7 +10,7 @@ use crate::outcome::timing::PHASES;
 use crate::outcome::{Outcome, Plan};
 use crate::run::stored::Stored;
 
-/// The plan of one method of `nodes` nodes with their unknowns, those at supports included.
+/// Formats the plan of a method with `nodes` nodes. Unknowns include those at supports.
 pub fn stages(method: &str, nodes: u64, plan: &Plan) -> String {
     let mut text = format!("{method}: {nodes} nodes, {} displacement unknowns before supports\n", 3 * nodes);
     for stage in plan.stages() {
@@ -20,7 +20,7 @@ pub fn stages(method: &str, nodes: u64, plan: &Plan) -> String {
     text
 }
 
-/// The forces of a stored reference and how far its solutions differ.
+/// Formats the forces of a stored reference and the spread of its solutions.
 pub fn reference(stored: &Stored) -> String {
     let mut text = String::new();
     for step in &stored.steps {
@@ -41,19 +41,19 @@ pub fn reference(stored: &Stored) -> String {
     text
 }
 
-/// The reference of the runs, its own error and its warnings, a line each.
+/// Formats the reference of the runs, its own error and its warnings, one per line.
 pub fn compared_with(reference: &Reference) -> String {
     let warnings = reference.warnings.iter();
     let warnings = warnings.map(|text| format!("warning: reference {}: {text}\n", reference.method));
     std::iter::once(format!("compared with {}\n", reference.sentence())).chain(warnings).collect()
 }
 
-/// One line on a check that did not hold.
+/// Formats a verdict in one line.
 pub fn verdict(check: &Check) -> String {
     format!("{}: {}", word(check.status), judged(check))
 }
 
-/// The same for stderr, its first word in colour where that is taken.
+/// Formats a verdict for stderr, with its first word in colour if supported.
 pub fn painted_verdict(check: &Check) -> String {
     let style = match check.status {
         Status::Fail => colour::BAD,
@@ -63,7 +63,7 @@ pub fn painted_verdict(check: &Check) -> String {
     format!("{}: {}", colour::err(style, word(check.status)), judged(check))
 }
 
-/// Whether a verdict is printed: what does not hold, and what holds and proves nothing.
+/// Whether a verdict is printed: for checks that did not pass, and for passed checks that prove nothing.
 pub fn is_told(check: &Check) -> bool {
     match check.status {
         Status::Fail | Status::NotRun => true,
@@ -85,8 +85,8 @@ fn judged(check: &Check) -> String {
     format!("{} {} {}: {} ({})", check.case, check.method, check.metric, check.bound, check.reason)
 }
 
-/// A table of finished runs: sizes, errors, displacement, milliseconds per phase by the seconds that runs are
-/// compared by.
+/// Formats a table of finished runs: sizes, errors, displacement, and milliseconds per phase by the clock
+/// that is compared.
 pub fn outcomes(outcomes: &[Outcome], by: Seconds) -> String {
     let columns: [(&str, &str, f64); 19] = [
         ("l2", "L2 [%]", 100.0),
@@ -112,7 +112,7 @@ pub fn outcomes(outcomes: &[Outcome], by: Seconds) -> String {
     let shown: Vec<_> = columns.iter().filter(|c| outcomes.iter().any(|o| o.metric(c.0).is_some())).collect();
     let mut rows: Vec<Vec<String>> = Vec::new();
     let mut head: Vec<String> = ["method", "nodes", "dofs"].map(String::from).to_vec();
-    // Of a motion the largest displacement at the end is not the largest of all.
+    // In dynamics the largest displacement at the end is not the largest of all times.
     let moves = outcomes.iter().any(|o| o.metric("max-over-time").is_some());
     let of_end = |title: &str| {
         if moves && title.starts_with("max") { title.replacen("max", "end", 1) } else { title.into() }
@@ -143,7 +143,8 @@ pub fn outcomes(outcomes: &[Outcome], by: Seconds) -> String {
     aligned(&rows)
 }
 
-/// What a person looks for besides, below the table of runs: forces of supports, means over faces, frequencies; empty without any.
+/// Formats the tables below that of the runs: support forces, mean displacements and frequencies; empty
+/// without any.
 pub fn places(outcomes: &[Outcome]) -> String {
     let mut text = String::new();
     let row = |method: &str, rest: Vec<String>| [vec![method.to_string()], rest].concat();
@@ -182,7 +183,7 @@ pub fn places(outcomes: &[Outcome]) -> String {
     text
 }
 
-/// A small table after an empty line, if it has rows.
+/// Appends a small table after an empty line, if it has rows.
 fn section(text: &mut String, head: &[&str], rows: Vec<Vec<String>>) {
     if rows.is_empty() {
         return;
@@ -192,7 +193,7 @@ fn section(text: &mut String, head: &[&str], rows: Vec<Vec<String>>) {
     writeln!(text, "\n{}", aligned(&rows)).expect("a string");
 }
 
-/// Rows as columns, the first to the left, the others to the right.
+/// Aligns rows in columns, the first to the left, the others to the right.
 pub(super) fn aligned(rows: &[Vec<String>]) -> String {
     let width = |c: usize| rows.iter().map(|r| r[c].chars().count()).max().unwrap_or(0);
     let widths: Vec<usize> = (0..rows[0].len()).map(width).collect();
@@ -207,7 +208,7 @@ pub(super) fn aligned(rows: &[Vec<String>]) -> String {
     lines.collect::<Vec<_>>().join("\n")
 }
 
-/// What is to be said against the numbers above, a line for each warning with the methods it is of.
+/// Formats warnings about the results, one line each with the methods concerned.
 pub fn warnings(rows: &[reports::Warning]) -> String {
     let mut found: Vec<(String, Vec<&str>)> = Vec::new();
     for warning in rows {
@@ -230,7 +231,8 @@ fn line(warning: &reports::Warning) -> String {
     format!("{place}{} ({})", warning.message, warning.code)
 }
 
-/// The method that the others are compared with: it differs by nothing from itself. An exact solution is no method.
+/// Whether the run is the reference method, which does not differ from itself. An exact solution is not a
+/// method.
 fn is_reference(outcome: &Outcome) -> bool {
     outcome.metric("relative-rms") == Some(0.0) && outcome.metric("l2").is_none()
 }
@@ -239,7 +241,7 @@ fn phase(outcome: &Outcome, name: &str, by: Seconds) -> Option<f64> {
     outcome.phases.iter().find(|timed| timed.phase == name).map(|timed| timed.by(by))
 }
 
-/// Four significant digits, in exponents where plain digits would hide them.
+/// Formats a number with four significant digits, with an exponent if plain digits would hide them.
 pub fn digits(value: f64) -> String {
     match value.abs() {
         0.0 => "0".into(),

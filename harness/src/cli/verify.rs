@@ -1,4 +1,4 @@
-//! `tissuebench verify`: a study, whose checks gate the exit code.
+//! `tissuebench verify`: runs a study, whose checks determine the exit code.
 
 use std::path::Path;
 
@@ -13,7 +13,7 @@ use crate::cli::{
 use crate::study::folder::{self, Folder};
 use crate::study::{self, Event, Events, Finished, Plan, VerifyArgs};
 
-/// Runs the study, writes its results and the report; returns the exit code.
+/// Runs the study, writes its results and the report, and returns the exit code.
 pub(super) fn verify(args: &VerifyArgs, ci: &CiArgs) -> u8 {
     let path = args.path();
     let study = match scene::load_study(&path) {
@@ -63,7 +63,7 @@ pub(super) fn verify(args: &VerifyArgs, ci: &CiArgs) -> u8 {
     if let Err(code) = affordable(&plan.too_large(args), args.force) {
         return code;
     }
-    // A history that can't be read is refused before the runs, which may take hours.
+    // An unreadable history is refused before the runs, which may take hours.
     if let Some(Err(bad)) = args.history.as_deref().map(reports::commits::check) {
         return unreported(&bad);
     }
@@ -103,7 +103,7 @@ pub(super) fn verify(args: &VerifyArgs, ci: &CiArgs) -> u8 {
     code
 }
 
-/// Sends the last event; the exit code, which is 5 where all held but events are missing.
+/// Sends the last event. Returns the exit code, which is 5 if the study succeeded but events were lost.
 fn ended(events: Option<Events>, ci: &CiArgs, finished: &Finished, code: u8) -> u8 {
     let Some(events) = events else { return code };
     let [passed, failed, known, not_run] = counts(finished);
@@ -114,13 +114,13 @@ fn ended(events: Option<Events>, ci: &CiArgs, finished: &Finished, code: u8) -> 
     if code == 0 { 5 } else { code }
 }
 
-/// Checks that passed, failed, are known not to pass, and did not run.
+/// Returns the numbers of checks that passed, failed, are known not to pass, and did not run.
 fn counts(finished: &Finished) -> [usize; 4] {
     let count = |status| finished.set.checks.iter().filter(|c| c.status == status).count();
     [Status::Pass, Status::Fail, Status::KnownFailure, Status::NotRun].map(count)
 }
 
-/// Takes the folder of results, or joins those that work in it.
+/// Claims the folder of results, or joins the processes that already work in it.
 fn enter(args: &VerifyArgs, path: &Path) -> Result<Folder, u8> {
     if !args.join {
         return take(path, &args.out).inspect(|_| study::clean(args));
@@ -130,11 +130,12 @@ fn enter(args: &VerifyArgs, path: &Path) -> Result<Folder, u8> {
     begun.map_err(|failure| fail(&failure))
 }
 
-/// Writes the results and the report, and says what held, of what did not hold alone if it is to be `quiet`; the exit code.
+/// Writes the results and the report, prints the verdicts, and returns the exit code. With `quiet` only
+/// checks that did not pass are printed.
 pub(super) fn write(finished: &Finished, folder: &Folder, args: &VerifyArgs) -> u8 {
     let VerifyArgs { out, history, quiet, .. } = args;
     let set = &finished.set;
-    // Of several processes that work on a study one writes what all of them have.
+    // If several processes work on a study, one of them writes the results of all.
     let (lock, written) = folder.writing();
     let rendered = match written {
         true => 0,

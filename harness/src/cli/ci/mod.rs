@@ -1,4 +1,4 @@
-//! What is read by machines rather than people: names of runs, JUnit XML, GitHub's annotations, events.
+//! Machine-readable output: run names, JUnit XML, GitHub annotations and events.
 
 mod annotations;
 mod junit;
@@ -14,27 +14,27 @@ use annotations::annotate;
 use junit::junit;
 pub(super) use listing::{forecast, names};
 
-/// What `verify` writes for continuous integration.
+/// Output of `verify` for continuous integration.
 #[derive(Args, Clone, Debug, Default)]
 pub struct CiArgs {
-    /// Print the names of the runs, and make none
+    /// Print the names of the runs without running them
     #[arg(long, conflicts_with = "dry_run")]
     pub list: bool,
-    /// Print the runs with what each is estimated to take, and make none
+    /// Print the runs with their estimated cost without running them
     #[arg(long)]
     pub dry_run: bool,
     /// Also write the runs and their checks as JUnit XML
     #[arg(long, value_name = "FILE")]
     pub junit: Option<PathBuf>,
-    /// Also print what failed as annotations of GitHub's workflows
+    /// Also print failures as annotations of GitHub workflows
     #[arg(long)]
     pub annotations: bool,
-    /// Also write what happens as it happens, one JSON object a line; `-` is stdout
+    /// Also write events as they occur, one JSON object per line; `-` is stdout
     #[arg(long, value_name = "FILE")]
     pub events: Option<PathBuf>,
 }
 
-/// Begins the events, and refuses files that the study reads.
+/// Opens the event stream and refuses output files that the study reads.
 pub(super) fn begin(args: &CiArgs, plan: &Plan) -> Result<Option<Events>, String> {
     if args.events.is_some() || args.junit.is_some() {
         plan.note_inputs();
@@ -46,7 +46,7 @@ pub(super) fn begin(args: &CiArgs, plan: &Plan) -> Result<Option<Events>, String
     Events::to(file).map(Some).map_err(|bad| format!("--events {}: {bad}", file.display()))
 }
 
-/// Writes and prints what was asked for; says what could not be written.
+/// Writes the requested files and prints the annotations. The error says which file could not be written.
 pub(super) fn write(args: &CiArgs, study: &Path, runs: &[RunSummary]) -> Result<(), String> {
     if args.annotations {
         print!("{}", annotate(runs));

@@ -1,14 +1,14 @@
-//! One thing that a scene can name, and how it is printed.
+//! An item that a scene can name, and how it is printed.
 
 use catalogue::{Entry, Kind, Parameter, Range, short};
 
-/// Longest line.
+/// Longest line, in characters.
 const WIDTH: usize = 110;
 
-/// A word with what it takes; a setting of one is an item too.
+/// A word with its value type and meaning. Its settings are items too.
 pub struct Item {
     pub name: String,
-    /// Dimension or type of its value; empty for what has none.
+    /// Dimension or type of the value; empty if the item has none.
     pub value: String,
     pub meaning: String,
     pub settings: Vec<Item>,
@@ -16,13 +16,13 @@ pub struct Item {
 
 impl Item {
     pub fn new(name: &str, value: &str, meaning: &str) -> Item {
-        // Meanings are sentences where they are comments of the source, and clauses in the catalogue.
+        // Meanings are sentences in source comments and clauses in the catalogue.
         let meaning = meaning.replace('`', "").split_whitespace().collect::<Vec<_>>().join(" ");
         let meaning = meaning.strip_suffix('.').unwrap_or(&meaning).to_string();
         Item { name: name.into(), value: value.into(), meaning, settings: Vec::new() }
     }
 
-    /// The entries of a catalogue with their parameters.
+    /// Returns the entries of a catalogue with their parameters.
     pub fn of_entries<B>(entries: &[Entry<B>]) -> Vec<Item> {
         let item = |entry: &Entry<B>| {
             let source = if entry.source.is_empty() { String::new() } else { format!(" [{}]", entry.source) };
@@ -54,12 +54,12 @@ impl Item {
     }
 }
 
-/// A name in brackets if it may be left out.
+/// Puts the name of an optional setting in brackets.
 pub fn optional(name: &str, required: bool) -> String {
     if required { name.into() } else { format!("[{name}]") }
 }
 
-/// Items one below the other, each followed by its settings.
+/// Formats items below each other, each followed by its settings.
 pub fn print(items: &[Item]) -> String {
     let mut text = String::new();
     let columns = columns(items);
@@ -71,14 +71,14 @@ pub fn print(items: &[Item]) -> String {
     text
 }
 
-/// Widths of names and of values.
+/// Returns the widths of the name and value columns.
 fn columns(items: &[Item]) -> [usize; 2] {
     let widest =
         |of: fn(&Item) -> &String| items.iter().map(|item| of(item).chars().count()).max().unwrap_or(0);
     [widest(|item| &item.name), widest(|item| &item.value)]
 }
 
-/// Name, value and meaning, the meaning broken into lines.
+/// Appends name, value and meaning, with the meaning broken into lines.
 fn line(text: &mut String, indent: usize, [names, values]: [usize; 2], item: &Item) {
     let mut head = format!("{:indent$}{:names$}", "", item.name);
     if values > 0 {

@@ -1,4 +1,4 @@
-//! `tissuebench list`: everything that a scene can name, from the catalogue's entries and from the schema of scenes.
+//! `tissuebench list`: everything that a scene can name, from the catalogue and the schema of scenes.
 
 mod item;
 mod schema;
@@ -18,7 +18,7 @@ use schema::forms;
 /// A part of the list.
 struct Part {
     name: &'static str,
-    /// Where a scene names one of them.
+    /// Key at which a scene names the items.
     key: &'static str,
     items: fn() -> Vec<Item>,
 }
@@ -52,7 +52,7 @@ const PARTS: [Part; 22] = [
     part("files", "scenes and studies below this folder", || files(Path::new("cases"))),
 ];
 
-/// Prints all parts, or the one of that name; the exit code.
+/// Prints all parts, or the part of this name, and returns the exit code.
 pub fn list(what: Option<&str>) -> u8 {
     let names = PARTS.map(|part| part.name);
     if let Some(what) = what.filter(|what| !names.contains(what)) {
@@ -83,7 +83,7 @@ fn transfers() -> Vec<Item> {
     Item::of_entries(interp::SCHEMES).into_iter().chain(own).collect()
 }
 
-/// Units to offer by dimension, then every other word of a unit.
+/// Returns the offered units by dimension, then all unit words.
 fn dimensions() -> Vec<Item> {
     let named = |dimension: &&Dimension| !dimension.is_plain();
     let item = |dimension: &Dimension| {
@@ -114,7 +114,7 @@ fn warnings() -> Vec<Item> {
     WARNINGS.iter().map(|warning| Item::new(warning.code, warning.unit(), warning.meaning)).collect()
 }
 
-/// The TOML files of the folders `scenes` and `studies` and below, those of a folder in order of their names.
+/// Returns the TOML files below the folders `scenes` and `studies`, sorted by name within each folder.
 fn files(cases: &Path) -> Vec<Item> {
     let mut found = Vec::new();
     ["scenes", "studies"].iter().for_each(|folder| collect(&cases.join(folder), &mut found));

@@ -1,10 +1,10 @@
-//! What a scene can name at one of its keys, from the schema of scenes.
+//! Lists the values of a scene's key, from the schema of scenes.
 
 use serde_json::{Map, Value};
 
 use super::item::{Item, optional};
 
-/// What may stand at `path`: keys, and words that tell forms of a table apart, joined by dots.
+/// Returns the values allowed at `path`: keys joined by dots, with words that select a form of a table.
 pub fn forms(path: &str) -> Vec<Item> {
     let schema = cases::scene::schema();
     let mut forms = vec![&schema];
@@ -13,7 +13,7 @@ pub fn forms(path: &str) -> Vec<Item> {
     }
     let mut found: Vec<Item> = Vec::new();
     for item in forms.into_iter().filter_map(items) {
-        // The items of a list are the value alone once more.
+        // The item type of a list repeats that of a single value.
         if found.iter().all(|other| other.name != item.name) {
             found.push(item);
         }
@@ -21,7 +21,7 @@ pub fn forms(path: &str) -> Vec<Item> {
     found
 }
 
-/// The alternatives of a value or of the items of a list, `null` left out.
+/// Returns the alternatives of a value or of the items of a list, without `null`.
 fn alternatives(schema: &Value) -> Vec<&Value> {
     let list = ["anyOf", "oneOf"].into_iter().find_map(|word| schema[word].as_array());
     match list {
@@ -31,7 +31,7 @@ fn alternatives(schema: &Value) -> Vec<&Value> {
     }
 }
 
-/// The form itself if `step` is its word, else what stands at its key of that name.
+/// Returns the form itself if `step` is its word, otherwise the alternatives at its key of that name.
 fn below<'s>(form: &'s Value, step: &str) -> Vec<&'s Value> {
     let Some(keys) = form["properties"].as_object() else { return vec![] };
     match keys.get(step) {
@@ -41,12 +41,12 @@ fn below<'s>(form: &'s Value, step: &str) -> Vec<&'s Value> {
     }
 }
 
-/// The key that tells a form of a table from others, and its word.
+/// Returns the key that distinguishes a form of a table, and its word.
 fn tag(keys: &Map<String, Value>) -> Option<(&str, &str)> {
     keys.iter().find_map(|(key, schema)| Some((key.as_str(), schema["const"].as_str()?)))
 }
 
-/// A word; or a table, by its word if it has one.
+/// Returns the item of a word or of a table, which is named by its word if it has one.
 fn items(form: &Value) -> Option<Item> {
     let meaning = form["description"].as_str().unwrap_or_default();
     if let Some(word) = form["const"].as_str() {
@@ -60,7 +60,7 @@ fn items(form: &Value) -> Option<Item> {
     Some(Item { settings, ..Item::new(name, "", meaning) })
 }
 
-/// The keys of a table, those it needs first, each followed by those of a table that it may be.
+/// Returns the keys of a table, required keys first, each followed by the keys of its own tables.
 fn settings(above: &str, table: &Value, tag: Option<&str>) -> Vec<Item> {
     let keys: Vec<_> = table["properties"].as_object().into_iter().flatten().collect();
     let required = |key: &str| table["required"].as_array().is_some_and(|keys| keys.iter().any(|k| k == key));
@@ -83,7 +83,7 @@ fn settings(above: &str, table: &Value, tag: Option<&str>) -> Vec<Item> {
     found
 }
 
-/// The type of a value in words.
+/// Describes the type of a value.
 fn value(schema: &Value, forms: &[&Value]) -> String {
     if forms.iter().any(|form| form["const"].is_string()) {
         return "word".into();
@@ -113,7 +113,7 @@ fn value(schema: &Value, forms: &[&Value]) -> String {
     names.into_iter().find(|(name, _)| is(name)).map_or("value", |(_, said)| said).into()
 }
 
-/// The names of the parts of a body's surface: of every such body, and of those that a key adds.
+/// Returns the names of a body's surfaces, including those added by a key.
 fn surfaces(form: &Value, keys: &Map<String, Value>) -> Vec<Item> {
     let names = |schema: &Value| -> Option<String> {
         let names = schema["x-surfaces"].as_array()?.iter().filter_map(Value::as_str);

@@ -1,4 +1,4 @@
-//! The options of `pick`.
+//! Options of `pick`.
 
 use std::path::PathBuf;
 
@@ -9,35 +9,37 @@ use crate::cli::args::{Format, SceneArgs};
 /// Arguments of `pick`.
 #[derive(Args)]
 pub struct PickArgs {
-    /// The scene to search; it needs a reference
+    /// Scene to search; it needs a reference
     #[command(flatten)]
     pub scene: SceneArgs,
-    /// Largest error that will do, such as 3%
+    /// Largest accepted error, such as 3%
     #[arg(long, value_name = "PERCENT", value_parser = percent)]
     pub error: f64,
-    /// What is to be right: displacement, force, pressure, stress, energy, peak, probes, frequency, or a metric that is a relative error
+    /// Quantity to be accurate: displacement, force, pressure, stress, energy, peak, probes, frequency, or a
+    /// metric that is a relative error
     #[arg(long, value_name = "QUANTITY", default_value = "displacement")]
     pub quantity: String,
-    /// Another quantity that has to be right too, such as force=5% (may be given several times). A single number such as a force can be
-    /// right by chance: unless this says otherwise, three times the error is allowed of the displacement then
+    /// Additional quantity with its error, such as force=5% (repeatable). A single number such as a force can
+    /// be accurate by chance: the displacement must then be within three times the error, unless given here
     #[arg(long, value_name = "QUANTITY=PERCENT", value_parser = companion)]
     pub also: Vec<(String, f64)>,
-    /// Besides the methods of the scene the usual ones that fit it: tet4, tet4-nodal, tet10, hex8-mean, hex20, efg. A scene without methods
-    /// has these
+    /// Also try the usual methods that suit the scene: tet4, tet4-nodal, tet10, hex8-mean, hex20, efg. This
+    /// is the default for a scene without methods
     #[arg(long)]
     pub usual: bool,
-    /// Longest time of one run, as it is foreseen: finer sizes are not tried
+    /// Longest estimated time of one run: finer sizes are not tried
     #[arg(long, value_name = "TIME", default_value = "60 s", value_parser = time)]
     pub at_most: f64,
-    /// What to print on stdout
+    /// Output format on stdout
     #[arg(long, value_enum, default_value_t = Format::Table)]
     pub format: Format,
-    /// Also write records, tables and figures of all runs to this folder, in place of earlier results of the scene
+    /// Also write records, tables and figures of all runs to this folder, replacing earlier results of the
+    /// scene
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
 }
 
-/// A percentage, as a part of one.
+/// Parses a percentage and returns it as a fraction.
 fn percent(text: &str) -> Result<f64, String> {
     let wrong = || "is no percentage: write 3%".to_string();
     let number = text.trim().strip_suffix('%').ok_or_else(wrong)?.trim();
@@ -49,7 +51,7 @@ fn percent(text: &str) -> Result<f64, String> {
     }
 }
 
-/// `QUANTITY=PERCENT`.
+/// Parses `QUANTITY=PERCENT`.
 fn companion(text: &str) -> Result<(String, f64), String> {
     let (name, value) = text.split_once('=').ok_or("is not QUANTITY=PERCENT, such as force=5%")?;
     Ok((name.trim().to_string(), percent(value)?))

@@ -6,26 +6,28 @@ use cases::scene::{Cloud, Family, Fem, Method, Scene, Size};
 
 use crate::scenario::estimate;
 
-/// Nodes of the coarsest size of a method whose scene gives one size alone, and sizes at most, each with twice the nodes.
+/// Number of nodes of the coarsest size of a method with a single size in the scene, and number of sizes.
+/// Each size has twice the nodes of the one before.
 const COARSEST: usize = 100;
 const SIZES: u32 = 12;
 
-/// One approach in several sizes.
+/// One approach in several sizes, from coarse to fine.
 pub(super) struct Ladder {
     rungs: VecDeque<Method>,
-    /// Whether a rung that cannot be made ends it: sizes of ours, not of the scene.
+    /// Whether the sizes are chosen here instead of in the scene. A size that cannot be made then ends the
+    /// ladder.
     pub ours: bool,
-    /// Nodes and seconds of the last run.
+    /// Number of nodes and time, s, of the last run.
     pub last: Option<(u64, f64)>,
 }
 
 impl Ladder {
-    /// The next size.
+    /// Removes and returns the next size.
     pub fn next(&mut self) -> Option<Method> {
         self.rungs.pop_front()
     }
 
-    /// What the next size is expected to take, s: by what the last one took, or by an estimate.
+    /// Returns the estimated time of the next size, s, scaled from the last run if there is one.
     pub fn foreseen(&self, scene: &Scene) -> Option<f64> {
         let next = estimate(scene, &self.rungs.front()?.family);
         Some(match self.last {
@@ -35,8 +37,8 @@ impl Ladder {
     }
 }
 
-/// The ladders of a scene's methods: those of one series are its sizes; one alone is run in sizes of ours, unless it is bound to a file
-/// or a background of its own.
+/// Returns the ladders of a scene's methods. Methods of one series are the sizes of one ladder. A single
+/// method is run in sizes chosen here, unless it has a mesh file or its own background mesh.
 pub(super) fn ladders(scene: &Scene, chosen: &[usize]) -> Vec<Ladder> {
     let mut series: Vec<(&str, Vec<&Method>)> = Vec::new();
     for method in chosen.iter().map(|&index| &scene.methods[index]) {
@@ -66,7 +68,7 @@ fn nodes(scene: &Scene, method: &Method) -> f64 {
     estimate(scene, &method.family).nodes
 }
 
-/// Whether a method runs in any number of nodes.
+/// Whether a method can run with any number of nodes.
 fn has_any_size(method: &Method) -> bool {
     let free = |size: &Size| !matches!(size, Size::File(_));
     let of_elements = |fem: &Fem| free(&fem.size);

@@ -1,4 +1,5 @@
-//! `tissuebench pick`: the cheapest method of a scene that is right within an error, with the front of run time against error.
+//! `tissuebench pick`: finds the cheapest method of a scene within an error bound, and the Pareto front of
+//! run time against error.
 
 mod args;
 mod ladder;
@@ -23,12 +24,13 @@ use search::{Demand, Found, Tried, search};
 
 pub use args::PickArgs;
 
-/// Repeats of a run's timing: the median of three keeps the first run's page faults out.
+/// Repeats of a run's timing. The median of three excludes the page faults of the first run.
 const REPEATS: Repeats = Repeats { most: 3, seconds: 0.5 };
-/// Of a single number's error, what the displacement may be off where nothing else is said.
+/// Factor from the error bound of a single number to that of the displacement, unless the user gives one.
 const BESIDE: f64 = 3.0;
 
-/// Searches and prints; 0 where a method is within the error, 1 where none is, 2 for what is asked wrongly, 3 where nothing could run.
+/// Searches and prints. Returns 0 if a method is within the bound, 1 if none is, 2 for invalid input, 3 if
+/// nothing could run.
 pub(super) fn pick(args: &PickArgs) -> u8 {
     let demand = match demand(args) {
         Ok(demand) => demand,
@@ -101,7 +103,8 @@ fn wrong(what: &str) -> u8 {
     2
 }
 
-/// What is asked for: of a single number the displacement too, unless something is said of it.
+/// Returns the accuracy requirements. For a single number they include the displacement, unless the user
+/// requires another field.
 fn demand(args: &PickArgs) -> Result<Demand, String> {
     let quantity = Quantity::named(&args.quantity).map_err(|bad| format!("--quantity {bad}"))?;
     let of_field = |(name, most): &(String, f64)| Ok((Quantity::named(name)?, *most));
@@ -113,7 +116,7 @@ fn demand(args: &PickArgs) -> Result<Demand, String> {
     Ok(Demand { quantity, error: args.error, also, at_most: args.at_most })
 }
 
-/// The scene with the methods to try.
+/// Loads the scene and selects the methods to try.
 fn opened(args: &PickArgs) -> Result<(Scene, Vec<usize>), u8> {
     let (scene, own) = usual::with_usual(&args.scene, args.usual).map_err(|errors| refuse(&errors))?;
     if own == 0 || args.usual {
@@ -124,24 +127,24 @@ fn opened(args: &PickArgs) -> Result<(Scene, Vec<usize>), u8> {
     Ok((scene, chosen))
 }
 
-/// The result as scripts read it.
+/// The result as JSON for scripts.
 #[derive(Serialize)]
 struct Answer<'a> {
     scene: String,
     quantity: &'a str,
-    /// Largest error that will do.
+    /// Error bound of the quantity.
     error: f64,
-    /// The same of further quantities.
+    /// Error bounds of additional quantities.
     also: Vec<(&'a str, f64)>,
-    /// The quickest run that keeps all of them.
+    /// The fastest run within all bounds.
     cheapest: Option<&'a Tried>,
-    /// Clock whose seconds are compared: `wall`, `cpu` or `least`.
+    /// Time that is compared: `wall`, `cpu` or `least`.
     by: Seconds,
-    /// All runs, by time.
+    /// All runs, sorted by time.
     runs: &'a [Tried],
-    /// The reference of the runs, with its own error.
+    /// The runs' reference, with its own error.
     reference: Option<&'a Reference>,
-    /// The answer in words.
+    /// The result in words.
     sentence: String,
 }
 
@@ -182,7 +185,7 @@ fn print(
     }
 }
 
-/// Every run by time, the front marked.
+/// Formats all runs sorted by time, with the Pareto front marked.
 fn table(demand: &Demand, tried: &[Tried], by: Seconds) -> String {
     let mut others: Vec<&str> = Vec::new();
     for (name, _) in tried.iter().flat_map(|run| &run.errors) {
@@ -214,19 +217,19 @@ fn error_of(run: &Tried, name: &str) -> Option<f64> {
     run.errors.iter().find(|(other, _)| other == name).map(|(_, error)| *error)
 }
 
-/// A part as it was given: 3 %, not 3.000 %.
+/// Formats a fraction as the user gave it: 3 %, not 3.000 %.
 fn asked(part: f64) -> String {
     format!("{} %", (1e8 * part).round() / 1e6)
 }
 
-/// All that is demanded, in words.
+/// Describes all requirements.
 fn bound(demand: &Demand) -> String {
     let also =
         demand.also.iter().map(|(quantity, most)| format!(" and {} of {}", asked(*most), quantity.name));
     format!("{} of {}{}", asked(demand.error), demand.quantity.name, also.collect::<String>())
 }
 
-/// The answer where the reference is off itself by more than a method may be.
+/// Returns the result for a reference with a larger error than the bound.
 fn beyond(demand: &Demand, quantity: &Quantity, most: f64, own: f64) -> String {
     format!(
         "No method can be named within {}: the reference's own error of {} is about {} %, more than {}. No run was made: take a finer \
@@ -238,7 +241,7 @@ fn beyond(demand: &Demand, quantity: &Quantity, most: f64, own: f64) -> String {
     )
 }
 
-/// The answer in one sentence.
+/// Returns the result in one sentence.
 fn sentence(demand: &Demand, found: &Found) -> String {
     let percent = |part: f64| format!("{} %", text::digits(100.0 * part));
     let name = &demand.quantity.name;
@@ -272,7 +275,7 @@ fn sentence(demand: &Demand, found: &Found) -> String {
     }
 }
 
-/// Writes the folder of results, if one is asked for.
+/// Writes the folder of results, if requested.
 fn write(args: &PickArgs, scene: &Scene, mut found: Found) -> u8 {
     let Some(out) = &args.out else { return 0 };
     found.set.records.extend(study::reference_records(scene));

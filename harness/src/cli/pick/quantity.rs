@@ -1,4 +1,4 @@
-//! What is to be right, and by which metric a run answers.
+//! Quantities that must be accurate, and the metrics that measure their errors.
 
 use catalogue::metric::{self, Kind, METRICS, Metric};
 use catalogue::{Dimension, nearest};
@@ -6,7 +6,8 @@ use reports::Reference;
 
 use crate::outcome::Outcome;
 
-/// Words for what people want right, the best metric of each first, and whether it is a single number, which can be right by chance.
+/// Words for quantities. Each has its metrics, the preferred one first, and a flag for a single number, which
+/// can be accurate by chance.
 const WORDS: [(&str, &[&Metric], bool); 8] = [
     ("displacement", &[&metric::L2, &metric::RELATIVE_RMS], false),
     ("force", &[&metric::TOOL_FORCE_ERROR], true),
@@ -18,7 +19,7 @@ const WORDS: [(&str, &[&Metric], bool); 8] = [
     ("frequency", &[&metric::FREQUENCY_ERROR], true),
 ];
 
-/// A quantity with the errors that measure it.
+/// A quantity and the metrics of its error.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Quantity {
     pub name: String,
@@ -27,7 +28,7 @@ pub(super) struct Quantity {
 }
 
 impl Quantity {
-    /// By its word, or the name of a metric that is a relative error.
+    /// Returns the quantity of a word, or of a metric that is a relative error.
     pub fn named(name: &str) -> Result<Quantity, String> {
         if let Some((word, metrics, scalar)) = WORDS.iter().find(|(word, ..)| *word == name) {
             return Ok(Quantity { name: (*word).into(), metrics: metrics.to_vec(), scalar: *scalar });
@@ -36,7 +37,7 @@ impl Quantity {
             m.dimension == Dimension::None && (m.kind == Kind::Error || ***m == metric::TOOL_FORCE_ERROR)
         };
         if let Some(found) = METRICS.iter().filter(relative).find(|m| m.name == name) {
-            // Errors over the whole field are no single numbers; of others nobody knows.
+            // Errors over a whole field are not single numbers. Other metrics count as single numbers.
             let field = [&metric::L2, &metric::RELATIVE_RMS, &metric::RELATIVE_MAX, &metric::STRESS];
             let scalar = !field.contains(found) && **found != metric::PRESSURE;
             return Ok(Quantity { name: name.into(), metrics: vec![found], scalar });
@@ -48,7 +49,7 @@ impl Quantity {
         Err(format!("'{name}' is no quantity with a relative error:{near} give {}", words.join(", ")))
     }
 
-    /// The relative error of a run, of several tools the largest; `None` where it has none.
+    /// Returns the relative error of a run, the largest over several tools; `None` if the run has none.
     pub fn error(&self, outcome: &Outcome) -> Option<f64> {
         self.metrics.iter().find_map(|metric| {
             let each = outcome.metrics.iter().filter(|m| m.entry == *metric).map(|m| m.value);
@@ -56,7 +57,7 @@ impl Quantity {
         })
     }
 
-    /// The own error of a reference in it, of several tools the largest; `None` where it is unknown.
+    /// Returns the reference's own error of this quantity, the largest over several tools; `None` if unknown.
     pub fn band(&self, reference: &Reference) -> Option<f64> {
         self.metrics.iter().find_map(|metric| {
             let of = |index: usize| reference.band.get(&metric.numbered(index)).copied();
@@ -64,7 +65,7 @@ impl Quantity {
         })
     }
 
-    /// The quantities that are shown beside the one that is asked for, where runs have them.
+    /// Iterates over the quantities that are shown in addition, if runs have them.
     pub fn shown() -> impl Iterator<Item = Quantity> {
         ["displacement", "force", "pressure", "peak"].into_iter().map(|word| {
             let (_, metrics, scalar) = WORDS.iter().find(|(name, ..)| *name == word).expect("a word");

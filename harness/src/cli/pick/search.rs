@@ -1,4 +1,5 @@
-//! The search: every approach from coarse to fine, the cheapest next size first, until each is right or dearer than one that is.
+//! The search: runs every approach from coarse to fine, the cheapest next size first, until it is accurate or
+//! more expensive than another accurate run.
 
 use cases::scene::{Method, Scene};
 use reports::{Machine, Reference, RunSet, Seconds, Took};
@@ -12,19 +13,19 @@ use crate::outcome::timing::Timed;
 use crate::run::{Group, RunOptions};
 use crate::study::{compared_with, failed, stalled};
 
-/// What an answer has to keep.
+/// Requirements on the result.
 pub(super) struct Demand {
     pub quantity: Quantity,
     pub error: f64,
-    /// Further quantities with their largest errors.
+    /// Additional quantities with their error bounds.
     pub also: Vec<(Quantity, f64)>,
-    /// Longest time of a run that is foreseen, s.
+    /// Longest estimated time of a run, s.
     pub at_most: f64,
 }
 
 impl Demand {
-    /// The quantity in which a reference is off itself by more than it may be, with its largest error and the
-    /// reference's own.
+    /// Returns the quantity for which the reference's own error exceeds the bound, with the bound and that
+    /// error.
     pub fn beyond(&self, reference: &Reference) -> Option<(&Quantity, f64, f64)> {
         let all =
             std::iter::once((&self.quantity, self.error)).chain(self.also.iter().map(|(q, most)| (q, *most)));
@@ -33,43 +34,43 @@ impl Demand {
     }
 }
 
-/// One run.
+/// Result of one run.
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct Tried {
     pub method: String,
     pub nodes: u64,
     pub dofs: u64,
-    /// Of the quantity; absent where the run ended early or has none.
+    /// Error of the quantity; absent if the run ended early or has none.
     pub error: Option<f64>,
-    /// Errors of the others by their names.
+    /// Errors of the other quantities, by name.
     pub errors: Vec<(String, f64)>,
-    /// By the seconds that all are compared by.
+    /// Time used in comparisons, s.
     pub seconds: f64,
-    /// The seconds on the wall, of all processors together, and the least repeat on the wall.
+    /// Wall-clock time, CPU time of all processors, and shortest wall-clock time of the repeats, s.
     #[serde(skip)]
     pub timed: Timed,
     pub status: &'static str,
-    /// Whether all that is demanded holds.
+    /// Whether all requirements are met.
     pub within: bool,
-    /// Whether no other run is as quick and as right.
+    /// Whether the run is on the Pareto front of time and error.
     pub front: bool,
 }
 
-/// What was found.
+/// Result of the search.
 #[derive(Default)]
 pub(super) struct Found {
     pub tried: Vec<Tried>,
     pub set: RunSet,
-    /// Approaches whose next size was foreseen to take too long: a name and the seconds.
+    /// Methods whose next size was estimated to take too long, with the estimate, s.
     pub too_long: Vec<(String, f64)>,
-    /// The seconds by which runs are compared.
+    /// Clock used to compare runs.
     pub by: Seconds,
-    /// Exit code of what failed.
+    /// Exit code of failed runs.
     pub code: u8,
 }
 
 impl Found {
-    /// The quickest run that keeps all.
+    /// Returns the fastest run that meets all requirements.
     pub fn cheapest(&self) -> Option<&Tried> {
         self.tried.iter().filter(|run| run.within).min_by(|a, b| a.seconds.total_cmp(&b.seconds))
     }
@@ -78,7 +79,7 @@ impl Found {
 /// Runs the ladders.
 ///
 /// # Errors
-/// What is wrong with the demand, once the first run shows it: a quantity that no run of this scene has.
+/// Returns an error if the first run shows that no run of this scene has the required quantity.
 pub(super) fn search(
     scene: &Scene,
     group: &Group,
@@ -99,7 +100,7 @@ pub(super) fn search(
             continue;
         }
         let scenario = group.scenario(method.clone(), 0);
-        // Sizes of ours may give the mesh of the one before again, and the usual methods need not fit a body.
+        // Sizes chosen here may repeat the previous mesh, and the usual methods may not suit the body.
         if ladder.ours {
             match group.plan(&scenario) {
                 Ok((_, size)) if ladder.last.is_none_or(|(nodes, _)| nodes < size.nodes) => {}
@@ -164,7 +165,8 @@ impl Found {
     }
 }
 
-/// What a run came to. One that ended early, and the reference itself, which differs from itself by nothing, answer nothing.
+/// Returns the result of a run. A run that ended early has no error. The reference has none either, since its
+/// difference from itself is zero.
 fn tried(outcome: &Outcome, demand: &Demand) -> Tried {
     let whole = outcome.stalled.is_none();
     let is_reference = outcome.metric("relative-rms") == Some(0.0) && outcome.metric("l2").is_none();
@@ -198,14 +200,14 @@ fn tried(outcome: &Outcome, demand: &Demand) -> Tried {
     }
 }
 
-/// Seconds that a run would take if it had the processors for itself, as far as both clocks say.
+/// Returns the time, s, of a run without other load on the processors, as far as both clocks show.
 fn undisturbed(total: &Timed) -> f64 {
     let Took { wall, cpu } = total.took();
     cpu.map_or(wall, |cpu| cpu.min(wall))
 }
 
-/// Marks the runs that no other beats in time and error, and sorts all by time. No error counts for less than
-/// `band`, that of the reference.
+/// Marks the Pareto front of time and error, and sorts all runs by time. Errors below `band`, the error of
+/// the reference, count as `band`.
 fn mark_front(tried: &mut [Tried], band: f64) {
     tried.sort_by(|a, b| a.seconds.total_cmp(&b.seconds));
     let mut least = f64::INFINITY;
@@ -246,7 +248,7 @@ mod tests {
             all.each_ref().map(|r| (r.seconds, r.front)),
             [(0.1, false), (0.5, false), (1.0, true), (2.0, false), (3.0, true)]
         );
-        // A reference that is off by half itself cannot separate these.
+        // A reference with an error of one half cannot separate these runs.
         all.iter_mut().for_each(|run| run.front = false);
         mark_front(&mut all, 0.5);
         assert_eq!(all.iter().filter(|run| run.front).map(|run| run.seconds).collect::<Vec<_>>(), [1.0]);

@@ -1,10 +1,10 @@
-//! The usual methods, of which a scene gets those that fit its body, law, procedure and contact.
+//! The usual methods: a scene receives those that suit its body, law, procedure and contact.
 
 use cases::scene::{self, Scene, SceneError};
 
 use crate::cli::args::SceneArgs;
 
-/// Tables of TOML by id. Their size is the start of a ladder.
+/// Methods as TOML by id. Their size is the first of a ladder.
 const USUAL: [(&str, &str); 6] = [
     ("tet4", "family = \"fem\"\nelement = \"tet4\"\nsize = { nodes = 100 }"),
     ("tet4-nodal", "family = \"fem\"\nelement = \"tet4\"\ndilation = \"nodal-mean\"\nsize = { nodes = 100 }"),
@@ -21,8 +21,8 @@ const USUAL: [(&str, &str); 6] = [
     ),
 ];
 
-/// The scene with the usual methods that it can have beside its own, and how many methods are its own. A scene that is wrong for
-/// another reason than that it has no methods is refused as it is.
+/// Returns the scene with the usual methods that suit it added to its own, and the number of its own methods.
+/// A scene with other errors than missing methods is refused unchanged.
 pub(super) fn with_usual(args: &SceneArgs, always: bool) -> Result<(Scene, usize), Vec<SceneError>> {
     let path = &args.file;
     let own = scene::load_with(path, &args.set);
@@ -42,7 +42,7 @@ pub(super) fn with_usual(args: &SceneArgs, always: bool) -> Result<(Scene, usize
             _ => return best.map(|scene| (scene, count)),
         }
         let Ok(text) = toml::to_string(&with) else { continue };
-        // One that the scene has, or cannot have, is left out.
+        // A method that the scene has already, or that does not suit it, is left out.
         if let Ok(scene) = scene::parse_with(&text, &path.display().to_string(), &args.set)
             && scene.unavailable().is_empty()
         {

@@ -1,5 +1,5 @@
-//! The hidden command `solve`: a problem in files solved by this program, as any other one would that an adapter calls. It measures what
-//! the protocol costs and, asked to misbehave, tests whoever calls it.
+//! The hidden command `solve`: solves a problem in files, as a program called by an adapter does. It serves
+//! to measure the overhead of the protocol. It can also misbehave on request, to test the calling code.
 
 mod own;
 
@@ -19,22 +19,23 @@ use own::Solved;
 /// Arguments of the hidden command `solve`.
 #[derive(Args)]
 pub struct SolveArgs {
-    /// The folder of the problem
+    /// Folder of the problem
     pub problem: PathBuf,
-    /// The folder to answer in
+    /// Folder for the answer
     pub answer: PathBuf,
-    /// How to misbehave, in place of the setting `mode`
+    /// Kind of misbehaviour, instead of the setting `mode`
     #[arg(long)]
     pub mode: Option<String>,
 }
 
-/// What a misbehaving solver may do, by the setting `mode`.
+/// Values of the setting `mode`: kinds of misbehaviour.
 const MODES: &str = "own, zeros, scaled, garbage, nan, shape, result, silence, exit, sleep, children, memory, refused, stalled, stale";
 
-/// How long a child that is left behind would stay, in seconds; a number that no other process has.
+/// Duration, s, for which a child process left behind would stay. No other process has this number in its
+/// command line.
 const CHILD: &str = "86387";
 
-/// Solves and answers; the exit code.
+/// Solves, answers and returns the exit code.
 pub(super) fn solve(args: &SolveArgs) -> u8 {
     match answer(args) {
         Ok(code) => code,
@@ -85,7 +86,7 @@ fn answer(args: &SolveArgs) -> Result<u8, String> {
     found(&args.answer, &text, mode, solved)
 }
 
-/// Writes a displacement, as it is or as the mode has it.
+/// Writes the displacement, modified according to the mode.
 fn found(folder: &Path, text: &Text, mode: &str, solved: Solved) -> Result<u8, String> {
     let path = folder.join("displacement.npy");
     let nodes = solved.u.len();
@@ -140,7 +141,7 @@ fn leave_a_child() -> Result<(), String> {
     Ok(())
 }
 
-/// Takes memory until there is no more.
+/// Allocates memory until none is left.
 fn take_memory() {
     let mut taken: BTreeMap<usize, Vec<u8>> = BTreeMap::new();
     for block in 0.. {

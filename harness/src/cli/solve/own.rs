@@ -1,4 +1,4 @@
-//! This program's own solution of a problem in files.
+//! Solves a problem in files with this program.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -14,19 +14,19 @@ use statics::{Body, Dilation, LinearProblem, Load, NewtonParams, Solid, StaticPa
 use crate::adapter::npy;
 use crate::procedure::external::problem::{MaterialText, Text};
 
-/// Part of a load step below which cutting it back is given up.
+/// Smallest fraction of a load step before its reduction is given up.
 const SMALLEST: f64 = 1.0 / 64.0;
 
-/// A displacement, and what it took.
+/// A displacement, and the cost of computing it.
 pub(super) struct Solved {
-    /// m.
+    /// Displacement of the nodes, m.
     pub(super) u: Vec<Vector3>,
-    /// Seconds.
+    /// Time by phase, s.
     pub(super) phases: BTreeMap<&'static str, f64>,
     pub(super) counts: BTreeMap<&'static str, f64>,
 }
 
-/// Reads the arrays and solves.
+/// Reads the arrays and solves the problem.
 pub(super) fn solve(folder: &Path, text: &Text) -> Result<Solved, String> {
     let mut phases = BTreeMap::new();
     let mut lap = Instant::now();
@@ -102,7 +102,7 @@ fn mesh(folder: &Path, text: &Text) -> Result<Mesh, String> {
     Ok(mesh.with_regions(regions, names))
 }
 
-/// An array of rows of so many numbers, one row after the other.
+/// Reads an array with `columns` numbers per row, row by row.
 fn array(folder: &Path, name: &str, columns: usize) -> Result<Vec<f64>, String> {
     let array = npy::read(&folder.join(name), disk::Kind::ARRAY).map_err(|bad| format!("{name}: {bad}"))?;
     match array.shape[..] {
@@ -122,7 +122,7 @@ fn fixed(folder: &Path) -> Result<Vec<FixedDof>, String> {
     Ok(rows.iter().map(|row| FixedDof { node: row.x as u32, axis: row.y as u8, value: row.z }).collect())
 }
 
-/// Of the laws that are known by their moduli at small strain.
+/// Returns a law that is defined by its small-strain moduli.
 fn law(of: &MaterialText) -> Result<Law, String> {
     let entry = LAWS.iter().find(|entry| entry.name == of.law);
     let entry = entry.ok_or_else(|| format!("law {} is not known", of.law))?;
