@@ -1,4 +1,4 @@
-//! What continuous integration and shells read of the built program.
+//! Output of the built program that continuous integration and shells read.
 
 mod common;
 
@@ -6,7 +6,7 @@ use common::{BLOCK, Done, assert_fails, inside, tissuebench, write};
 use serde_json::Value;
 use tempfile::TempDir;
 
-/// Two scenes; of the second run one check holds, one fails and one method can't run.
+/// A study of two scenes. In the second run one check holds, one check fails, and one method cannot run.
 fn study(dir: &TempDir) -> String {
     let free = BLOCK.replace("support =", "# support =");
     write(dir, "block.toml", BLOCK);
@@ -65,7 +65,7 @@ fn stored_times_are_what_runs_are_foreseen_to_take() {
     let dir = tempfile::tempdir().unwrap();
     let (study, out) = (study(&dir), inside(&dir, "out"));
     assert_eq!(tissuebench(&["verify", &study, "--case", "two", "--quiet", "--out", &out]).code, 1);
-    // A time that no estimate would give.
+    // Stores a time that no estimate would give.
     for entry in std::fs::read_dir(dir.path().join("out/tasks")).unwrap() {
         let path = entry.unwrap().path();
         let text = std::fs::read_to_string(&path).unwrap();
@@ -73,7 +73,7 @@ fn stored_times_are_what_runs_are_foreseen_to_take() {
         let (before, after) = rest.split_once("\"seconds\":").unwrap();
         let end = after.find([',', '}']).unwrap();
         let rest = format!("{before}\"seconds\":700.0{}", &after[end..]);
-        // It is believed by its hash, which is of its key too.
+        // The hash must match, and includes the key.
         let mut hasher = blake3::Hasher::new();
         hasher.update(path.file_stem().unwrap().as_encoded_bytes()).update(rest.as_bytes());
         std::fs::write(&path, format!("{{\"hash\":\"{}\",{rest}", hasher.finalize().to_hex())).unwrap();
@@ -91,7 +91,7 @@ fn stored_times_are_what_runs_are_foreseen_to_take() {
     let (learned, said) = seconds(&["--times", &out]);
     assert!(said.contains("2 of 4 runs have times in "), "{said}");
     assert_eq!(learned[2..], [700.0, 700.0]);
-    // The others are foreseen to take as many times as long as estimated.
+    // The expected times of the other runs are scaled by the same ratio.
     assert!(estimated[0] < 1.0 && learned[0] > 100.0, "{estimated:?} {learned:?}");
     let nothing = tissuebench(&["verify", &study, "--dry-run", "--times", &inside(&dir, "nothing")]);
     assert_fails(&nothing, 2, "has no stored runs");
@@ -105,7 +105,7 @@ fn what_failed_is_in_junit_annotations_and_events() {
     let options = ["--junit", &junit, "--annotations", "--events", &events, "--quiet", "--out", &out];
     let done = tissuebench(&[&["verify", &study], &options[..]].concat());
     assert_eq!(done.code, 1, "{}", done.stderr);
-    // Of a quiet run stdout has what was asked for alone.
+    // With `--quiet`, stdout contains only the requested output.
     let annotations: Vec<&str> = done.stdout.lines().collect();
     assert_eq!(annotations.len(), 2, "{annotations:?}");
     assert!(annotations[0].starts_with("::error file=") && annotations[0].contains(",title=two hex8"));

@@ -1,11 +1,11 @@
-//! Clouds from files: the same answer as from the nodes themselves, or a refusal with numbers.
+//! Clouds from files: they give the same result as the same nodes without a file, or a refusal with numbers.
 
 mod common;
 
 use common::{assert_fails, tissuebench, write};
 use serde_json::Value;
 
-/// A patch test by a cloud.
+/// Scene of a patch test with a cloud.
 fn scene(cloud: &str) -> String {
     format!(
         r#"title = "A block in an affine field"
@@ -40,7 +40,7 @@ fn a_file_of_nodes_is_a_cloud() {
     }
 }
 
-/// An array of three columns in NumPy's format.
+/// Encodes an array of three columns in NumPy's format.
 fn npy(rows: &[[f64; 3]]) -> Vec<u8> {
     let mut head = format!("{{'descr': '<f8', 'fortran_order': False, 'shape': ({}, 3), }}", rows.len());
     while (10 + head.len() + 1) % 64 != 0 {

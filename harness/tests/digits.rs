@@ -1,4 +1,5 @@
-//! Sound problems whose residual is beyond rounding of the load are solved, and say how many digits are certain where these are few.
+//! Well-posed problems whose residual exceeds rounding of the load: they are solved, and the run warns if few
+//! digits are reliable.
 
 mod common;
 
@@ -6,7 +7,7 @@ use common::{objects, tissuebench, write, written_out};
 use serde_json::Value;
 use tempfile::TempDir;
 
-/// The objects of a scene's runs, all of which have to end well.
+/// Runs a scene, which must succeed; returns its JSON objects.
 #[track_caller]
 fn run(dir: &TempDir, text: &str) -> Vec<Value> {
     let done = tissuebench(&["run", &write(dir, "scene.toml", text), "--once", "--format", "json"]);
@@ -18,13 +19,13 @@ fn metric(run: &Value, name: &str) -> f64 {
     run["metrics"][name]["value"].as_f64().unwrap_or_else(|| panic!("no {name} in {run}"))
 }
 
-/// The certain digits that a run warns of.
+/// Number of reliable digits in a run's warning, if any.
 fn few_digits(run: &Value) -> Option<f64> {
     let warnings = run["warnings"].as_array().unwrap();
     warnings.iter().find(|w| w["code"] == "few-digits").map(|w| w["value"].as_f64().unwrap())
 }
 
-/// A cantilever under an end load, 10 mm high and as many times as long, by elements with their keys.
+/// A cantilever under an end load, 10 mm high and `times` as long. `elements` are method ids with their keys.
 fn slender(times: usize, elements: &[(&str, &str)]) -> String {
     let length = 10 * times;
     let method = |(id, keys): &(&str, &str)| {
@@ -46,7 +47,7 @@ method = [
     )
 }
 
-/// Their residuals are 1e-8 to 2e-7 of the load.
+/// The residuals are 1e-8 to 2e-7 of the load.
 #[test]
 fn slender_beams_bend_as_beams_do() {
     let elements = [
@@ -65,7 +66,7 @@ fn slender_beams_bend_as_beams_do() {
             let (h, l) = (0.01f64, 0.01 * times as f64);
             let bent = 1e-3 * h * h * l.powi(3) / (3.0 * 20e3 * h.powi(4) / 12.0);
             let method = run["method"].as_str().unwrap();
-            // Two linear elements across are too stiff or too soft to bend.
+            // Two linear elements over the height are too stiff or too soft in bending.
             let within = match method {
                 "tet4-nodal" => 0.4,
                 "tet10-mean" | "hex8-mean" => 0.1,
@@ -88,7 +89,7 @@ fn a_beam_of_few_certain_digits_says_how_many() {
     assert!(text.contains(&format!("no more than {digits:.1} digits")), "{text}");
 }
 
-/// By every method of the scene, of which many lock.
+/// The sphere is solved by every method of the scene; many of them lock.
 #[test]
 fn a_nearly_incompressible_sphere_is_solved() {
     let dir = tempfile::tempdir().unwrap();

@@ -50,11 +50,11 @@ fn states_are_recorded_with_energies_that_balance() {
             assert!(of("energy-drift").abs() < 1e-2 && of("friction-dissipation") >= 0.0);
         }
         assert!(metric(object, "energy-drift") < 1e-2 && metric(object, "energy-drift") > 0.0);
-        // 3 mm of 20 mm: the mean stretch along z is 0.85; sides give way at nu = 0.45.
+        // The compression is 3 mm of 20 mm, a mean stretch of 0.85 along z; at nu = 0.45 the sides expand.
         assert!(metric(object, "smallest-j") > 0.8 && metric(object, "smallest-j") < 1.0);
         let steps = metric(object, "time-steps");
         assert_eq!(steps, object["work"]["time_steps"].as_f64().unwrap());
-        // The last state has a step of its own.
+        // The last state takes an additional step.
         assert!((steps - 1.0) * 0.9 * metric(object, "critical-step") >= 20e-3 * 0.9, "{steps}");
         assert!((metric(object, "mass") / 0.032 - 1.0).abs() < 1e-12);
         assert_eq!((metric(object, "tool-mass"), metric(object, "load-carried")), (0.0, 1.0));
@@ -69,7 +69,7 @@ fn states_are_recorded_with_energies_that_balance() {
     assert_eq!(count("newton-iterations"), 0);
 }
 
-/// Slow, damped and with friction left out, dynamics ends where the static procedure does.
+/// If slow and damped, and without friction, dynamics ends in the static solution.
 #[test]
 fn a_slow_damped_motion_ends_where_a_static_path_does() {
     let slow = |drive: &str| {
@@ -123,7 +123,7 @@ fn a_step_too_large_and_an_inversion_are_named_and_exit_with_3() {
         assert_eq!((metric(object, "load-carried"), metric(object, "time-steps")), (0.0, 0.0));
     }
 
-    // Nothing else holds the top: 60 kPa on 20 kPa in 20 ms.
+    // Only inertia resists the load at the top: 60 kPa on 20 kPa in 20 ms.
     let text = BLOCK
         .replace("law = \"linear\"", "law = \"neo-hookean\", density = \"1000 kg/m^3\"")
         .replace("1 kPa", "200 kPa")
@@ -144,7 +144,7 @@ fn a_step_too_large_and_an_inversion_are_named_and_exit_with_3() {
     assert!(metric(object, "smallest-j") > 0.0 && metric(object, "max-z") > 0.0);
 }
 
-/// A ball of 5 mm that starts 1 mm above a block and goes down by 10 mm.
+/// A ball of 5 mm radius that starts 1 mm above a block and moves down by 10 mm.
 const STRUCK: &str = r#"title = "A ball on a block"
 body = { shape = "box", size = ["40 mm", "40 mm", "20 mm"] }
 material = { law = "neo-hookean", young = "20 kPa", poisson = 0.45, density = "1000 kg/m^3" }
@@ -165,19 +165,20 @@ fn a_tool_that_loses_its_contact_is_named_and_exits_with_3() {
     for object in &told {
         assert_eq!(object["status"], "contact-lost", "{object}");
         let message = object["message"].as_str().unwrap();
-        // Half of the ball's radius.
+        // The limit is half of the ball's radius.
         assert!(message.contains("(limit 2.5e-3 m, half its inradius)"), "{message}");
-        // Touching at 1 mm or somewhat later, it is so deep from 3.5 mm on where nothing gives way; states are 0.9 mm apart.
+        // The ball touches the block at 1 mm or somewhat later. If the block does not yield, this depth is
+        // reached at 3.5 mm. States are 0.9 mm apart.
         let (states, closure) = (object["steps"].as_array().unwrap().len(), metric(object, "closure"));
         assert!(states == 3 && closure > 2.6e-3 && closure < 4.4e-3, "{states}: {closure}");
         assert!((metric(object, "load-carried") - 0.3).abs() < 1e-12);
         assert!(metric(object, "tool-force") > 0.0 && metric(object, "penetration") < 2.5e-3);
     }
-    // Stiff enough, it stays outside to the end.
+    // With a stiffer contact, the ball stays outside to the end.
     let (done, told) = run(&STRUCK.replace("1e-4 MPa", "1e-1 MPa"));
     assert_eq!((done.code, &told[0]["status"]), (0, &"ok".into()), "{}", done.stderr);
 
-    // Between the points of a coarse surface a ball slips through, and would hang on it from within: at rest too.
+    // A ball slips between the points of a coarse surface and would be held from inside, also at rest.
     let coarse = STRUCK.replace("1e-4 MPa", "1e-2 MPa").replace("[8, 8, 4]", "[4, 4, 2]");
     let still = coarse.replace("kind = \"explicit\", duration = \"20 ms\"", "kind = \"static\"");
     for (scene, status) in [(&coarse, "contact-lost"), (&still, "stalled")] {
@@ -188,7 +189,7 @@ fn a_tool_that_loses_its_contact_is_named_and_exits_with_3() {
         assert!((0.5..0.75).contains(&carried) && metric(&told[0], "tool-force") > 0.0, "{carried}");
     }
 
-    // Driven by force, a tool swings on its contact with its own mass.
+    // A force-controlled tool oscillates on its contact with its own mass.
     let light = STRUCK
         .replace("closure = \"10 mm\"", "force = \"2 N\"")
         .replace("steps = 10", "steps = 10, tool-mass = 1e-6")
@@ -203,7 +204,7 @@ fn a_tool_that_loses_its_contact_is_named_and_exits_with_3() {
 
 #[test]
 fn what_overflows_is_named_and_exits_with_3() {
-    // Accelerations of 1e200 m/s^2 are numbers; the square of the velocity is none.
+    // Accelerations of 1e200 m/s^2 are finite numbers; the square of the velocity overflows.
     let text = BLOCK.replace("poisson = 0.3", "poisson = 0.3, density = \"1000 kg/m^3\"");
     let text = text.replace("1 kPa", "1e200 Pa");
     let text = format!("{text}procedure = {{ kind = \"explicit\", duration = \"50 ms\", steps = 50 }}\n");

@@ -1,4 +1,4 @@
-//! A study over commits: kept, shown and drawn.
+//! The history of a study over commits: stored, shown and drawn.
 
 mod common;
 
@@ -6,7 +6,7 @@ use std::path::Path;
 
 use common::{BLOCK, assert_fails, inside, tissuebench, write};
 
-/// The results of another commit: a summary with its commit, and its errors so many times as large.
+/// Writes the results of another commit: a summary with its commit, and errors multiplied by `times`.
 fn another_commit(file: &Path, times: f64) {
     let mut summary: toml::Table = std::fs::read_to_string(file).unwrap().parse().unwrap();
     summary["program"]["commit"] = "fedcba987654".into();
@@ -47,7 +47,7 @@ fn results_of_commits_are_kept_and_a_worse_error_is_marked() {
     assert_eq!(done.code, 0, "{}", done.stderr);
     let table = Path::new(&results).join("report/tables/over-commits.csv");
     assert!(std::fs::read_to_string(table).unwrap().contains("worse"));
-    // A study draws it too, and says before its runs that a history can't be read.
+    // A study draws the history too, and reports an unreadable history before its runs.
     let study = write(&dir, "study.toml", "title = \"one block\"\n[[run]]\nscene = \"block.toml\"\n");
     let verified = inside(&dir, "verified");
     let verify = |history: &str| tissuebench(&["verify", &study, "--out", &verified, "--history", history]);

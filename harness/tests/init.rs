@@ -1,4 +1,4 @@
-//! From the surface of an organ to numbers and a picture with no file edited by hand.
+//! From the surface of an organ to results and a picture, without editing a file.
 
 mod common;
 
@@ -8,7 +8,8 @@ use std::path::Path;
 use common::{assert_fails, inside, objects, tissuebench, write};
 use tempfile::TempDir;
 
-/// A bean of about 70 x 40 x 30 mm in STL: an ellipsoid bent so that its middle lies near its hollow side, as a kidney's does.
+/// A bean of about 70 x 40 x 30 mm, as STL: an ellipsoid bent so that its centroid lies near its hollow side,
+/// like that of a kidney.
 fn bean() -> String {
     let (along, around) = (20, 28);
     let at = |i: usize, j: usize| {
@@ -42,14 +43,14 @@ fn bean() -> String {
     text + "endsolid\n"
 }
 
-/// Whether there is a file of this suffix in a folder.
+/// Whether a folder contains a file with this suffix.
 fn has(folder: &Path, suffix: &str) -> bool {
     let entries =
         std::fs::read_dir(folder).map(|entries| entries.map(|e| e.unwrap().path()).collect::<Vec<_>>());
     entries.unwrap_or_default().iter().any(|path| path.extension().is_some_and(|e| e == suffix))
 }
 
-/// A folder with the bean, and the paths of file and scene.
+/// Creates a folder with the bean; returns the folder and the paths of the file and the scene.
 fn folder() -> (TempDir, String, String) {
     let dir = tempfile::tempdir().unwrap();
     let file = write(&dir, "bean.stl", &bean());
@@ -66,7 +67,7 @@ fn a_surface_becomes_a_scene_that_runs() {
         "--young \"20 kPa\"",
         "--poisson \"0.45\"",
         "--press-from \"top\"",
-        // A fifth of the body as its own coarsest mesh has it.
+        // A fifth of the body's height, by its own coarsest mesh.
         "--hold \"z <= -8.75 mm\"",
         "--closure \"1.5 mm\"",
     ] {
@@ -88,7 +89,7 @@ fn a_surface_becomes_a_scene_that_runs() {
     }
     let table = std::fs::read_to_string(results.join("report/tables/support-forces.csv")).unwrap();
     assert!(table.lines().count() == 1 + 3, "a support of the finest run of each method: {table}");
-    // What holds the organ bears the plate.
+    // The support carries the force of the plate.
     for run in &runs {
         let [held, plate] =
             ["reaction-z", "tool-force"].map(|name| run["metrics"][name]["value"].as_f64().unwrap());
@@ -111,7 +112,7 @@ fn a_scene_is_replaced_only_by_force() {
     drop(dir);
 }
 
-/// Cells of a coarse mesh cut off the tip of a pyramid, and a probe there would be outside of the body.
+/// Cells of a coarse mesh cut off the tip of a pyramid, where a probe would lie outside the mesh.
 #[test]
 fn a_body_with_a_tip_has_its_probes_inside() {
     let corners = [[0, 0, 0], [30, 0, 0], [0, 30, 0], [0, 0, 30]];
@@ -131,7 +132,7 @@ fn a_body_with_a_tip_has_its_probes_inside() {
     assert_eq!(done.code, 0, "{}", done.stderr);
 }
 
-/// Every side, method, drive and strain makes a scene that can be planned; a few are run.
+/// Every side, method, drive and strain level makes a scene that can be planned; a few scenes are run.
 #[test]
 fn every_choice_makes_a_scene() {
     let (dir, file, _) = folder();

@@ -1,5 +1,5 @@
-//! The own error of a reference: large if it locks, small if it is good, unknown if there is nothing to
-//! compare it with.
+//! Own error of a reference: large if the reference locks, small if it is accurate, unknown if there is
+//! nothing to compare it with.
 
 mod common;
 
@@ -9,7 +9,7 @@ use common::{inside, tissuebench, write};
 use serde_json::Value;
 use tempfile::TempDir;
 
-/// A block of nearly incompressible tissue under a pressure, its base bonded, against a reference.
+/// A bonded block of nearly incompressible tissue under a pressure, compared with a reference.
 fn block(reference: &str) -> String {
     format!(
         r#"title = "A bonded block"
@@ -30,7 +30,7 @@ method = [
 const LOCKING: &str = "method = \"tet4\", size = { cells = [4, 4, 2] }";
 const GOOD: &str = "method = \"hex20\", size = { cells = [8, 8, 4] }";
 
-/// The objects of the methods of a scene.
+/// Runs a scene and returns the JSON objects of its methods.
 #[track_caller]
 fn objects(dir: &TempDir, text: &str) -> Vec<Value> {
     let done = tissuebench(&["run", &write(dir, "scene.toml", text), "--once", "--format", "json"]);
@@ -55,8 +55,8 @@ fn a_reference_that_locks_is_seen_and_a_good_one_is_not_blamed() {
     let dir = tempfile::tempdir().unwrap();
     for element in ["tet4", "hex8"] {
         let bad = objects(&dir, &block(&LOCKING.replace("tet4", element)));
-        // Elements of second order are the nearest to the truth: the reference is off by about what they
-        // differ.
+        // Second-order elements are closest to the true solution: the error of the reference is about their
+        // difference.
         let far = error(&bad[2], "relative-rms");
         let known = own(&bad[2], "relative-rms");
         assert!(far > 0.5 && known > 0.8 * far && known < 2.0 * far, "{element}: {known} of {far}");
@@ -65,7 +65,7 @@ fn a_reference_that_locks_is_seen_and_a_good_one_is_not_blamed() {
     let good = objects(&dir, &block(GOOD));
     assert!(good.iter().all(|object| !warns(object, "reference-coarser")));
     let known = own(&good[0], "relative-rms");
-    // A finer one shows the true error.
+    // A finer reference shows the true error.
     let fine = block("method = \"hex20\", size = { cells = [12, 12, 6] }")
         .replace("cells = [6, 6, 3]", "cells = [8, 8, 4]");
     let far = error(&objects(&dir, &fine)[2], "relative-rms");
@@ -95,7 +95,7 @@ fn the_reference_is_named_with_its_error_and_records_have_it() {
 #[test]
 fn warnings_of_a_reference_are_shown_with_it() {
     let dir = tempfile::tempdir().unwrap();
-    // A linear law far beyond small strain.
+    // The linear law is used far beyond small strain.
     let text = block(GOOD).replace("200 Pa", "4 kPa");
     let done = tissuebench(&["run", &write(&dir, "scene.toml", &text), "--once", "--method", "tet4"]);
     assert_eq!(done.code, 0, "{}", done.stderr);
@@ -106,7 +106,7 @@ fn warnings_of_a_reference_are_shown_with_it() {
     );
 }
 
-/// A column of 20 x 20 mm, 20 mm high, of two cells in a file.
+/// A column of 20 x 20 x 20 mm, with two cells from a file.
 fn column(dir: &TempDir, reference: &str, check: &str) -> String {
     let corners = [[0, 0], [20, 0], [20, 20], [0, 20]];
     let nodes: String = (0..12)
@@ -132,12 +132,12 @@ method = [
     )
 }
 
-/// Cells of a file are not made coarser, but they take nodes on their edges.
+/// The cells of a file cannot be coarsened, but second-order elements can add nodes on their edges.
 #[test]
 fn a_reference_on_cells_of_a_file_is_held_against_second_order_on_them() {
     let dir = tempfile::tempdir().unwrap();
     let runs = objects(&dir, &column(&dir, "hex8", ""));
-    // The other method of the scene is what the reference is held against.
+    // The reference is compared with the same elements as the other method of the scene.
     assert_eq!(runs[0]["reference"]["by"][0], "hex20 with 32 nodes", "{}", runs[0]);
     assert!(
         (own(&runs[0], "relative-rms") / error(&runs[1], "relative-rms") - 1.0).abs() < 1e-9,

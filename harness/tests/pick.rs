@@ -1,4 +1,4 @@
-//! `tissuebench pick`: the cheapest method within an error, and no hit by chance.
+//! `tissuebench pick`: the cheapest method within an error, and no accidental hit.
 
 mod common;
 
@@ -8,7 +8,7 @@ use common::{BLOCK, assert_fails, inside, tissuebench, write};
 use serde_json::Value;
 use tempfile::TempDir;
 
-/// A block whose methods have one size each, against hex20 on a finer mesh.
+/// A block whose methods have one size each, compared with hex20 on a finer mesh.
 fn block() -> String {
     let methods = r#"method = [
     { id = "tet4", family = "fem", element = "tet4", size = { level = 1 } },
@@ -24,7 +24,7 @@ reference = { method = "hex20", size = { cells = [8, 8, 4] } }
         + methods
 }
 
-/// A block on its base under a plate.
+/// A block fixed at its base under a plate.
 const PLATE: &str = r#"title = "A block under a plate"
 body = { shape = "box", size = ["40 mm", "40 mm", "20 mm"] }
 material = { law = "neo-hookean", young = "20 kPa", poisson = 0.45 }
@@ -37,7 +37,7 @@ method = [
 ]
 "#;
 
-/// The answer of a search.
+/// Runs a search and parses its answer.
 #[track_caller]
 fn answer(dir: &TempDir, text: &str, args: &[&str], code: i32) -> Value {
     let scene = write(dir, "scene.toml", text);
@@ -66,7 +66,7 @@ fn the_cheapest_within_the_error_is_named_and_nothing_is_written() {
             .map(|run| run["nodes"].as_u64().unwrap())
             .collect();
         let reached = runs(&answer).into_iter().find(|run| run["method"] == method && run["within"] == true);
-        // What is right ends the sizes of its method.
+        // A method is not refined further once it is within the error.
         let finest = nodes.iter().max().unwrap();
         assert!(reached.is_none_or(|run| run["nodes"].as_u64() == Some(*finest)), "{answer}");
     }
@@ -111,10 +111,10 @@ fn a_right_force_alone_is_no_answer() {
     let text = format!("{plate}reference = {{ method = \"hex20\", size = {{ cells = [8, 8, 4] }} }}\n");
     let force = &["--error", "5%", "--quantity", "force", "--method", "tet10", "--at-most", "2 s"];
     let found = answer(&dir, &text, force, 0);
-    // Of a single number the displacement has to be right as well, to three times the error.
+    // If the quantity is a single number, the displacement must also be right, to three times the error.
     assert_eq!(found["also"], serde_json::json!([["displacement", 3.0 * 0.05]]));
     assert!(found["cheapest"]["error"].as_f64().unwrap() <= 0.05, "{found}");
-    // One size of each, none of which has the displacement.
+    // Each method has one size, and no size gives the displacement within the error.
     let text = text.replace("family", "series = \"all\", family");
     let asked = [
         "--error",
@@ -134,7 +134,7 @@ fn a_right_force_alone_is_no_answer() {
     assert!(sentence.contains("has force right") && sentence.contains("but not the rest"), "{sentence}");
 }
 
-/// Nearly incompressible, with tetrahedra of first order as reference: these lock.
+/// A nearly incompressible block whose reference has first-order tetrahedra, which lock.
 fn locking() -> String {
     block().replace("poisson = 0.3", "poisson = 0.495").replace(
         "{ method = \"hex20\", size = { cells = [8, 8, 4] } }",
@@ -176,7 +176,8 @@ reference = { exact = "affine" }
     let done = tissuebench(&["pick", &scene, "--error", "1%"]);
     assert_eq!(done.code, 0, "{}", done.stderr);
     assert!(done.stderr.contains("usual methods that fit: tet4, tet4-nodal, tet10, hex8-mean, hex20, efg"));
-    // The first size of a method is right to rounding: each is run once, unless a cheaper one was right before.
+    // The first size of each method is exact to rounding: each method runs once, unless a cheaper method was
+    // right before.
     assert!(done.stdout.lines().filter(|line| line.starts_with("tet4 ")).count() == 1, "{}", done.stdout);
 }
 

@@ -1,12 +1,12 @@
-//! What a person looks for besides an error: forces of supports, means over faces, frequencies, the largest value over time, and a
-//! word where a size or a law is not what was meant.
+//! Results other than errors: support forces, means over faces, frequencies, maxima over time, and warnings
+//! if a size or a law differs from the intention.
 
 mod common;
 
 use common::{BLOCK, assert_fails, objects, tissuebench, write};
 use serde_json::Value;
 
-/// The objects of a scene's runs.
+/// Runs a scene and returns its JSON objects.
 #[track_caller]
 fn run(text: &str) -> Vec<Value> {
     let dir = tempfile::tempdir().unwrap();
@@ -23,7 +23,7 @@ fn vector(value: &Value) -> [f64; 3] {
     [0, 1, 2].map(|axis| value[axis].as_f64().unwrap_or_else(|| panic!("no vector: {value}")))
 }
 
-/// The force of all supports on the body, N.
+/// Total force of the supports on the body, N.
 fn held(run: &Value) -> [f64; 3] {
     let all = run["supports"].as_array().unwrap_or_else(|| panic!("no supports in {run}")).iter();
     all.map(|support| vector(&support["force"])).fold([0.0; 3], |sum, f| [0, 1, 2].map(|a| sum[a] + f[a]))
@@ -38,7 +38,7 @@ fn near(found: f64, expected: f64, within: f64) {
     assert!((found - expected).abs() <= within, "{found}, not {expected}");
 }
 
-/// Every way to hold a body, by elements and by a cloud.
+/// All treatments of essential conditions, with elements and with a cloud.
 fn every_essential() -> String {
     let cloud = |essential: &str| {
         format!(
@@ -55,7 +55,7 @@ fn every_essential() -> String {
     )
 }
 
-/// A bar of 40 x 20 x 20 mm on rollers under 0.2 kPa: `u = (s / E) (x, -nu y, -nu z)`.
+/// A bar of 40 x 20 x 20 mm on rollers under 0.2 kPa, with the solution `u = (s / E) (x, -nu y, -nu z)`.
 const BAR: &str = r#"title = "A bar"
 body = { shape = "box", size = ["40 mm", "20 mm", "20 mm"] }
 material = { law = "linear", young = "20 kPa", poisson = 0.3 }
@@ -74,11 +74,12 @@ fn a_bar_is_held_by_its_load_and_its_faces_move_as_the_linear_field_does() {
         near(y, 0.0, 1e-8);
         near(z, 0.0, 1e-8);
         assert_eq!(metric(run, "reaction-x"), vector(&run["supports"][0]["force"])[0]);
-        // An axis that a support leaves free has no force of it.
+        // A support has no force along a free axis.
         assert!(run["metrics"]["reaction-y"].is_null() && run["metrics"]["reaction-y-2"].is_object());
-        // A support by penalty gives way by a factor of 1e-4 of the mesh's size and strain.
+        // A penalty support yields by 1e-4 of mesh size times strain.
         let gives = if run["method"] == "penalty" { 4e-8 } else { 1e-10 };
-        // Means of x / 100 over the end, and of the part of the top where x is at most 15 mm, which cuts cells.
+        // Means of x / 100 over the end face, and over the part of the top with x up to 15 mm, which cuts
+        // through cells.
         let expected = [[4e-4, -3e-5, -3e-5], [7.5e-5, -3e-5, -6e-5]];
         for (face, expected) in expected.iter().enumerate() {
             let found = vector(&run["means"][face]["u"]);
@@ -134,7 +135,7 @@ method = [
     }
 }
 
-/// A block loaded at once: it swings to twice its rest and back in a quarter of a second.
+/// A suddenly loaded block, which swings to twice its static displacement and back in a quarter of a second.
 fn swinging(procedure: &str) -> String {
     let text = BLOCK.replace("poisson = 0.3", "poisson = 0.0, density = \"1000 kg/m^3\"");
     let text = text.replace(
@@ -152,7 +153,7 @@ fn a_swing_has_its_largest_displacement_in_its_middle() {
             run(&swinging(&format!("kind = \"{kind}\", over = \"0 s\", duration = \"17 ms\", steps = 34")));
         let (largest, at, end) =
             (metric(&runs[0], "max-over-time"), metric(&runs[0], "time-of-max"), metric(&runs[0], "max"));
-        // Two elements along the bar overshoot the step of its wave.
+        // With two elements along the bar, the wave front overshoots.
         near(largest, 2e-3, 4e-4);
         assert!((0.006..0.012).contains(&at), "{kind}: {at}");
         assert!(end < 0.2 * largest, "{kind}: {end} of {largest}");
@@ -181,7 +182,7 @@ fn a_motion_that_has_come_to_rest_is_borne_by_its_support() {
             "kind = \"{kind}\", over = \"50 ms\", duration = \"0.4 s\", steps = 40, damping = \"200 /s\""
         );
         let runs = run(&swinging(&damped));
-        // 1 kPa on 40 x 40 mm.
+        // The load is 1 kPa on 40 x 40 mm.
         near(held(&runs[0])[2], 1.6, 2e-3);
         assert_eq!(runs[0]["steps"].as_array().unwrap().len(), 40);
     }

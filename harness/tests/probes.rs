@@ -1,12 +1,12 @@
-//! Values at probes follow from the method's own: of the law at the place, of its projection, and marked
-//! where no mesh is.
+//! Values at probes: they use the law of the region and the method's projection, and probes outside the mesh
+//! are marked.
 
 mod common;
 
 use common::{assert_fails, objects, tissuebench, write};
 use serde_json::Value;
 
-/// Mean stress (Pa) and distance from the mesh (m) of the first probe, and xx and zz.
+/// Mean stress (Pa), stress components xx and zz (Pa), and distance from the mesh (m) of the first probe.
 struct Probed {
     mean: f64,
     stress: [f64; 2],
@@ -31,7 +31,8 @@ fn run(text: &str) -> Vec<Value> {
     objects(&done.stdout)
 }
 
-/// A bar of two layers under 4 kPa: at nu = 0 the stress is the same in both, whatever their stiffness.
+/// In a bar of two layers under 4 kPa with nu = 0, the stress is the same in both layers, whatever their
+/// stiffness.
 #[test]
 fn stress_is_that_of_the_law_at_the_place() {
     let text = r#"title = "Two layers"
@@ -55,8 +56,9 @@ method = [
     }
 }
 
-/// Lame's thick sphere has the mean stress `p a^3 / (b^3 - a^3)` everywhere: 285.7 Pa. The displacement's own derivative is
-/// wrong by kilopascals at nu = 0.4999; what a projection makes of it is right to what these meshes allow.
+/// Lame's thick sphere has the mean stress `p a^3 / (b^3 - a^3)` = 285.7 Pa everywhere. At nu = 0.4999 the
+/// stress from the plain displacement gradient is wrong by kilopascals. With the projection it is as accurate
+/// as these meshes allow.
 #[test]
 fn stress_is_that_of_the_projection() {
     let text = r#"title = "Thick sphere"
@@ -80,9 +82,9 @@ method = [
     }
 }
 
-/// The trace of the stress of a thick sphere is `3 p a^3 / (b^3 - a^3)` everywhere, 428.6 Pa. Between the
-/// points of reduced integration, and of plain quadratic elements, the derivative of the displacement is off
-/// by up to three times that.
+/// The trace of the stress of a thick sphere is `3 p a^3 / (b^3 - a^3)` = 428.6 Pa everywhere. Away from the
+/// points of reduced integration, and of plain quadratic elements, the displacement gradient gives errors of
+/// up to three times that value.
 #[test]
 fn stress_at_a_probe_is_recovered_from_the_points_of_the_method() {
     let text = |poisson: f64| {
@@ -123,7 +125,7 @@ output = { probes = [["12 mm", "9 mm", "13.1 mm"]] }
 method = [{ id = "tet4", family = "fem", element = "tet4", size = { level = 3 } }]
 "#;
 
-/// A point of the sphere is outside of the flat facets, within h^2 / (8 R) = 0.6 mm for cells of 10 mm.
+/// A point of the sphere lies outside the flat facets by at most h^2 / (8 R) = 0.6 mm for cells of 10 mm.
 #[test]
 fn a_probe_outside_the_cells_says_how_far() {
     let outside = probed(&run(BALL)[0]).outside;

@@ -1,4 +1,4 @@
-//! A stage that a plan skips does nothing, one that it runs does something: told by counters of the work itself.
+//! Plans and counters agree: a skipped stage does nothing, and a stage that runs does something.
 
 mod common;
 
@@ -20,7 +20,7 @@ fn runs(scene: &Scene, repeats: usize) -> Vec<Outcome> {
     scene.methods.iter().map(|m| run(m).unwrap_or_else(|bad| panic!("{}", bad.failure))).collect()
 }
 
-/// Every stage against its counter; returns the (stage, ran) pairs met.
+/// Compares every stage with its counter; returns the pairs (stage, ran).
 fn check(outcome: &Outcome) -> BTreeSet<(&'static str, bool)> {
     let who = format!("{} {}", outcome.identity.case, outcome.identity.method);
     for stage in outcome.plan.stages() {
@@ -30,7 +30,8 @@ fn check(outcome: &Outcome) -> BTreeSet<(&'static str, bool)> {
     outcome.plan.stages().iter().map(|stage| (stage.stage.name(), stage.ran)).collect()
 }
 
-/// What no small committed scene has: two materials, multipliers, a method as reference, a transfer scheme.
+/// Scene with features that no small scene of the project has: two materials, multipliers, a method as
+/// reference, a transfer scheme.
 fn all_at_once() -> Scene {
     let parts = [
         BLOCK.trim_end_matches("]\n"),
@@ -80,7 +81,7 @@ fn what_a_plan_skips_is_not_done_and_what_it_runs_is() {
         let scene = scene::parse(text, "pressed.toml").unwrap();
         runs(&scene, 1).iter().for_each(|outcome| met.extend(check(outcome)));
     }
-    // Each stage with two faces was seen with both.
+    // Each stage that may run or be skipped occurred in both states.
     for stage in [
         "refinement",
         "supports",
@@ -126,7 +127,7 @@ fn a_run_factors_once_however_often_it_is_timed() {
         assert_eq!((once.counters.assemblies, once.counters.factorisations, once.counters.solves), (1, 1, 1));
         assert_eq!(once.counters, often.counters);
     }
-    // Loads ask for values alone; gradients are evaluated where a support is weak, and nowhere else.
+    // Loads need only values. Gradients are evaluated only on weakly imposed supports.
     let [elements, cloud] = [once[0].counters, once[1].counters];
     assert!(elements.surface_rows > 0 && elements.flux_rows == 0, "{elements:?}");
     assert!(cloud.surface_rows > 0 && cloud.flux_rows > 0 && cloud.multiplier_rows == 0, "{cloud:?}");
@@ -148,14 +149,14 @@ tool = [{{ name = "ball", shape = "sphere", radius = "5 mm", at = ["20 mm", "20 
             assert!(work.contact_evaluations >= tools * work.newton_iterations, "{work:?}");
             assert_eq!(work.contact_skips, if skips { work.contact_evaluations } else { 0 }, "{work:?}");
             assert!(work.friction_points == 0 && work.contact_points > 0, "{work:?}");
-            // An iteration solves once, with a tangent of its own or, a chord, with that of the one before.
+            // An iteration solves once, with its own tangent or with the previous tangent.
             assert!(work.newton_iterations > 0 && work.solves >= work.newton_iterations, "{work:?}");
             assert!(work.factorisations > 0 && work.factorisations >= work.assemblies, "{work:?}");
         }
     }
 }
 
-/// Work of a study of one run.
+/// Counters of a study of one run.
 fn work(study: &str, dir: &tempfile::TempDir, resume: bool) -> Counters {
     let plan = Plan::new(scene::load_study(Path::new(study)).unwrap()).unwrap();
     let out = inside(dir, "out").into();
@@ -171,8 +172,8 @@ fn stored_runs_do_nothing() {
     let reference = r#"reference = { method = "tet4", size = { cells = [4, 4, 2] } }"#;
     let scene = write(&dir, "block.toml", &format!("{BLOCK}\n{reference}\n"));
     let study = write(&dir, "study.toml", &format!("title = \"One\"\n[[run]]\nscene = '{scene}'\n"));
-    // The method and the reference it is compared with, which is held against a coarser mesh and elements of
-    // second order.
+    // Four solutions: the method, its reference, and for the reference's own error a coarser mesh and
+    // second-order elements.
     assert_eq!(work(&study, &dir, false).factorisations, 4);
     assert_eq!(work(&study, &dir, true), Counters::default());
     assert_eq!(work(&study, &dir, false).factorisations, 4);
@@ -190,10 +191,10 @@ fn stored_runs_are_kept_until_a_shared_method_of_their_scene_changes() {
     let study = write(&dir, "study.toml", &study);
     assert_eq!(work(&study, &dir, true).factorisations, 4);
     assert_eq!(work(&study, &dir, true), Counters::default());
-    // A method that the scene does not take.
+    // The scene does not use the changed method.
     write(&dir, "methods.toml", &format!("{shared}{other}"));
     assert_eq!(work(&study, &dir, true), Counters::default());
-    // The reference of the run.
+    // The scene uses the changed method as its reference.
     write(&dir, "methods.toml", &shared.replace("[4, 4, 2]", "[6, 6, 3]"));
     assert_eq!(work(&study, &dir, true).factorisations, 4);
 }

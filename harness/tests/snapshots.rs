@@ -1,6 +1,7 @@
-//! What users read, held against its stored form: lists, help, plans, the JSON of a run, messages.
+//! Snapshots of the texts that users read: lists, help, plans, the JSON of a run, messages.
 //!
-//! `INSTA_UPDATE=always cargo test -p tissuebench-harness --test snapshots` stores what is printed now; `git diff` shows it.
+//! `INSTA_UPDATE=always cargo test -p tissuebench-harness --test snapshots` stores the current output; `git
+//! diff` shows the changes.
 
 mod common;
 
@@ -11,7 +12,7 @@ use common::{BLOCK, PRESSED, moving};
 use serde_json::Value;
 use tempfile::TempDir;
 
-/// Everything that a command prints in a folder, and its exit code if it fails.
+/// Output of a command in a folder, and its exit code if it fails.
 fn printed(folder: &Path, args: &[&str]) -> String {
     let mut command = Command::new(env!("CARGO_BIN_EXE_tissuebench"));
     let output = command.args(args).current_dir(folder).env_remove("COLUMNS").output().unwrap();
@@ -23,7 +24,7 @@ fn printed(folder: &Path, args: &[&str]) -> String {
     text.lines().map(|line| format!("{}\n", line.trim_end())).collect()
 }
 
-/// A folder with files.
+/// Creates a temporary folder with files.
 fn folder(files: &[(&str, &str)]) -> TempDir {
     let dir = tempfile::tempdir().unwrap();
     files.iter().for_each(|(name, text)| std::fs::write(dir.path().join(name), text).unwrap());
@@ -107,9 +108,9 @@ fn a_run_prints_its_object() {
     let text = printed(dir.path(), &["run", "block.toml", "--format", "json"]);
     let mut object: Value = serde_json::from_str(&text).unwrap();
     object["metrics"]["memory"]["value"] = "[of the machine]".into();
-    // Known on Linux alone.
+    // The value is known only on Linux.
     object["metrics"].as_object_mut().unwrap().remove("memory-process");
-    // What is left by rounding is another on other processors.
+    // A residual at rounding level differs between processors.
     object["metrics"]["residual"]["value"] = "[rounding]".into();
     for phases in ["phases", "cpu_phases"] {
         object[phases]
@@ -122,7 +123,7 @@ fn a_run_prints_its_object() {
     insta::assert_snapshot!("run", serde_json::to_string_pretty(&object).unwrap());
 }
 
-/// Keeps four digits of every number, and none of what only rounding leaves.
+/// Rounds every number to four digits, and numbers at rounding level to zero.
 fn rounded(value: &mut Value) {
     match value {
         Value::Number(number) if number.is_f64() => {
@@ -135,7 +136,7 @@ fn rounded(value: &mut Value) {
     }
 }
 
-/// What is wrong with a scene, and how a sound one becomes it.
+/// Faults of a scene: a description, and the text that is replaced in a valid scene.
 const SCENES: [(&str, &str, &str); 24] = [
     ("a key that is not known", "poisson", "poison"),
     ("a key that is missing", "young = \"20 kPa\", ", ""),
@@ -183,7 +184,7 @@ fn mistakes_in_a_scene_are_explained() {
     insta::assert_snapshot!("bad-scenes", text);
 }
 
-/// A sound study of the block.
+/// A valid study of the block.
 const STUDY: &str = r#"title = "Blocks"
 [[run]]
 scene = "block.toml"

@@ -10,9 +10,9 @@ fn metric(object: &Value, name: &str) -> f64 {
     object["metrics"][name]["value"].as_f64().unwrap_or_else(|| panic!("{name}: {object}"))
 }
 
-/// Nominal stress (Pa) of a neo-Hookean bar of E = 20 kPa, nu = 0.45 at stretch `l`, its sides free: with
-/// `W = mu/2 (I1 - 3 - 2 ln J) + lambda/2 (ln J)^2` the side stretch `t` solves `mu (t - 1/t) + lambda ln(l t^2) / t = 0`, and
-/// `P = mu (l - 1/l) + lambda ln(l t^2) / l`.
+/// Nominal stress (Pa) of a neo-Hookean bar of E = 20 kPa, nu = 0.45 at stretch `l` with free sides. With `W
+/// = mu/2 (I1 - 3 - 2 ln J) + lambda/2 (ln J)^2` the side stretch `t` solves `mu (t - 1/t) + lambda ln(l t^2)
+/// / t = 0`, and `P = mu (l - 1/l) + lambda ln(l t^2) / l`.
 fn uniaxial(l: f64) -> f64 {
     let (mu, lambda) = (20e3 / 2.9, 20e3 * 0.45 / (1.45 * 0.1));
     let (mut low, mut high) = (0.5f64, 2.0f64);
@@ -42,26 +42,27 @@ fn plates_push_with_the_force_that_their_closure_takes() {
         let force = |k: usize| -> Vec<f64> {
             tools[k]["force"].as_array().unwrap().iter().map(|v| v.as_f64().unwrap()).collect()
         };
-        // The tissue pushes the upper plate up and the lower one down, by the same force.
+        // The tissue pushes the upper plate up and the lower plate down with the same force.
         let (up, down) = (force(0), force(1));
         assert!(up[2] > 0.0 && (up[2] + down[2]).abs() < 1e-7 * up[2], "{id}: {up:?} {down:?}");
         assert!(up[0].abs() + up[1].abs() < 1e-9 * up[2], "{id}: {up:?}");
-        // Both penalties give way by the same penetration.
+        // The penetration is the same at both plates.
         let height = 20e-3 - 3e-3 + 2.0 * metric(object, "penetration");
         let exact = -uniaxial(height / 20e-3) * 1.6e-3;
-        // The cloud's sides are held by penalty at 1e4 E / h.
+        // The cloud's sides are constrained by a penalty of 1e4 E / h.
         let tolerance = if id == "efg" { 1e-3 } else { 1e-7 };
         let found = metric(object, "tool-force");
         assert!((found / exact - 1.0).abs() < tolerance, "{id}: {found} {exact}");
         assert!((found - up[2]).abs() < 1e-12 * found, "{id}");
-        // Two steps, the first at half of the way.
+        // There are two steps; the first is at half of the load.
         let steps = object["steps"].as_array().unwrap();
         assert_eq!(steps.len(), 2, "{id}");
         assert!((steps[0]["load"].as_f64().unwrap() - 0.5).abs() < 1e-15, "{id}");
         assert!((steps[0]["tools"][0]["closure"].as_f64().unwrap() - 1e-3).abs() < 1e-15, "{id}");
         let probe = steps[1]["probes"][0][2].as_f64().unwrap();
         assert!((probe + 2e-3).abs() < 5e-6, "{id}: {probe}");
-        // Stress at the probe: true stress, the nominal one over the section's growth.
+        // The stress at the probe is the true stress: the nominal stress divided by the growth of the
+        // section.
         let stress = object["probes"][0]["stress"][2].as_f64().unwrap();
         let pushed = uniaxial(height / 20e-3);
         assert!(stress < 0.0 && stress > pushed, "{id}: {stress} {pushed}");
@@ -71,7 +72,8 @@ fn plates_push_with_the_force_that_their_closure_takes() {
 #[test]
 fn forces_and_pressures_drive_to_the_closure_that_carries_them() {
     let dir = tempfile::tempdir().unwrap();
-    // 4 N on the upper plate; and a box larger than the block whose face of 60 x 60 mm has 4 N at 1111 Pa.
+    // Either 4 N on the upper plate, or a box larger than the block, whose face of 60 x 60 mm gives 4 N at
+    // 1111 Pa.
     let force = PRESSED.replace("closure = \"2 mm\"", "force = \"4 N\"");
     let jaw = "shape = \"rounded-box\", half = [\"30 mm\", \"30 mm\", \"5 mm\"], radius = \"1 mm\", \
                at = [\"20 mm\", \"20 mm\", \"25 mm\"]";
@@ -94,8 +96,9 @@ fn forces_and_pressures_drive_to_the_closure_that_carries_them() {
 
 #[test]
 fn slender_columns_go_on_past_their_critical_load() {
-    // The elastica of a column held at its foot, 60 degrees at its end: P over the critical load pi^2 EI / (4
-    // L^2), and how far the end goes aside and down over L (Timoshenko and Gere 1961, table 2-4).
+    // Elastica of a column clamped at its foot with an end rotation of 60 degrees: P over the critical load
+    // pi^2 EI / (4 L^2), and the lateral and axial displacement of the end over L (Timoshenko and Gere 1961,
+    // table 2-4).
     let (load, aside, down) = (1.1517, 0.5932, 0.2590);
     for (length, cells) in [(0.4, 25), (0.6, 30)] {
         let critical = std::f64::consts::PI.powi(2) * 1e6 / (12.0 * 4.0 * length * length) * 1e-4;
@@ -122,7 +125,8 @@ method = [{{ id = "hex20", family = "fem", element = "hex20", size = {{ cells = 
     }
 }
 
-/// St. Venant-Kirchhoff never carries more than 0.19 E in compression: 0.3 E is out of its reach.
+/// The St. Venant-Kirchhoff law never carries more than 0.19 E in compression, so a load of 0.3 E cannot be
+/// reached.
 const BEYOND: &str = r#"title = "More than the law carries"
 body = { shape = "box", size = ["10 mm", "10 mm", "10 mm"] }
 material = { law = "saint-venant-kirchhoff", young = "20 kPa", poisson = 0.0 }
@@ -156,7 +160,7 @@ fn a_path_that_ends_early_keeps_what_it_carried_and_exits_with_3() {
     assert_eq!((of(6), of(7)), (1, 0));
     let report = std::fs::read_to_string(format!("{out}/report/report.html")).unwrap();
     assert!(report.contains("stalled: "), "the report says nothing of it");
-    // The other method's result stands beside it, and a study keeps both.
+    // The other method's result is kept, and a study keeps both.
     let done = tissuebench(&["run", &scene, "--format", "json"]);
     assert_eq!((done.code, objects(&done.stdout).len()), (3, 2));
 }
@@ -173,7 +177,7 @@ fn a_path_known_to_end_early_does_not_fail_its_study() {
         let study = write(&dir, "study.toml", &format!("title = \"Known\"\n[[run]]\nscene = '{scene}'\n"));
         let out = inside(&dir, "out");
         let done = tissuebench(&["verify", &study, "--out", &out]);
-        // A stall that is not known is 3 beside a check that fails.
+        // An unexpected stall gives exit code 3 even if a check fails.
         assert_eq!(done.code, code, "{}", done.stderr);
         let report = std::fs::read_to_string(format!("{out}/report/report.html")).unwrap();
         assert!(report.contains("stalled: "), "the report says nothing of it");
@@ -189,7 +193,7 @@ fn run_referenced(dir: &TempDir, text: &str) -> (common::Done, Vec<Value>) {
 #[test]
 fn errors_against_a_method_are_taken_at_equal_steps() {
     let dir = tempfile::tempdir().unwrap();
-    // A bonded base in place of the lower plate: no longer the same state everywhere, so that methods differ.
+    // A bonded base replaces the lower plate: the state is no longer uniform, so the methods differ.
     let slides = "{ where = \"y == 0 mm\", fix = \"y\" }";
     let bonded = PRESSED.replace(slides, "{ where = \"z == 0 mm\", fix = \"xyz\" }");
     let bonded: String =
@@ -198,7 +202,7 @@ fn errors_against_a_method_are_taken_at_equal_steps() {
         "{bonded}reference = {{ method = \"hex8\" }}\n[[check]]\nmetric = \"tool-force-error\"\nmethod = \"hex8\"\nat_most = 1e-15\n[[check]]\nmetric = \"tool-force\"\nmethod = \"hex8\"\nat_most = \"1 N\"\n"
     );
     let (done, objects) = run_referenced(&dir, &text);
-    // hex8 is its own reference; its force is above 1 N.
+    // hex8 is its own reference, and its force is above 1 N.
     assert_fails(&done, 1, "FAILED: referenced hex8 tool-force: at most 1e0");
     assert!(!done.stderr.contains("tool-force-error"), "{}", done.stderr);
     assert_eq!(
@@ -294,7 +298,7 @@ fn bad_static_scenes_name_file_line_and_key() {
         for command in ["run", "plan"] {
             let done = tissuebench(&[command, &path]);
             assert_fails(&done, code, says);
-            // Leaving out the line of the procedure moves those below it up.
+            // Without the procedure's line, the following lines move up.
             let line = if name == "tool-linear" { line - 1 } else { line };
             assert!(done.stderr.contains(&format!("{path}:{line}:")), "{name}: {}", done.stderr);
         }
@@ -306,7 +310,7 @@ fn where_newton_stalls_relaxation_comes_to_the_same_rest() {
     let dir = tempfile::tempdir().unwrap();
     let force = PRESSED.replace("closure = \"2 mm\"", "force = \"4 N\"");
     for (name, text) in [("led.toml", PRESSED), ("forced.toml", force.as_str())] {
-        // One iteration never shows that it has converged.
+        // A single iteration never confirms convergence.
         let stuck = text.replace("steps = 2 }", "steps = 2, iterations = 1, on-stall = \"relax\" }");
         let (free, stuck) = (write(&dir, name, text), write(&dir, &format!("stuck-{name}"), &stuck));
         for method in ["hex8", "tet4-nodal"] {
@@ -330,13 +334,14 @@ fn where_newton_stalls_relaxation_comes_to_the_same_rest() {
             };
             assert_eq!((stage(newton), stage(relaxed)), (false.into(), true.into()));
         }
-        // A cloud can't: its path ends where it stalls, and the plan says why.
+        // A cloud cannot relax: its load path ends when it stalls, and the plan says why.
         let plan = tissuebench(&["plan", &stuck, "--method", "efg"]);
         assert!(plan.stdout.contains("not for clouds, whose path ends where it stalls"), "{}", plan.stdout);
     }
 }
 
-/// Frictionless plates leave the body free to slide between them: where it went would be chance. Friction holds it.
+/// Frictionless plates leave the body free to slide between them, so its position would be arbitrary.
+/// Friction prevents this motion.
 #[test]
 fn a_motion_that_nothing_prevents_is_refused() {
     let dir = tempfile::tempdir().unwrap();
@@ -349,13 +354,13 @@ fn a_motion_that_nothing_prevents_is_refused() {
     let sticks = "penalty = \"5 MPa/mm\", friction = 0.5, stick = \"5 MPa/mm\"";
     let held = run(&free.replace("penalty = \"5 MPa/mm\"", sticks));
     assert_eq!(held.code, 0, "{}", held.stderr);
-    // Without tools before anything is solved.
+    // Without tools, the scene is refused before anything is solved.
     let tools = &free[free.find("tool = [").unwrap()..=free.find("\n]\n").unwrap() + 2];
     let alone = free.replace(tools, "load = [{ on = \"z-max\", pressure = \"1 kPa\" }]\n");
     assert_fails(&run(&alone), 3, "rotation about x");
 }
 
-/// A cantilever of one reduced element across: the hourglass motions of a row have no energy.
+/// A cantilever with one reduced element across: the hourglass modes of such a row have no energy.
 #[test]
 fn reduced_elements_in_a_row_say_why_they_end() {
     let dir = tempfile::tempdir().unwrap();
@@ -369,7 +374,7 @@ method = [{ id = "reduced", family = "fem", element = "hex20", reduced = true, s
 "#;
     let done = tissuebench(&["run", &write(&dir, "row.toml", text)]);
     assert_fails(&done, 3, "reduced integration leaves motions without energy");
-    // A wrong unit is the body's, not the method's size.
+    // A wrong unit is reported at the body, not at the method's size.
     let flat = BLOCK.replace("\"20 mm\"]", "\"20e-9 mm\"]").replace("cells = [2, 2, 1]", "level = 2");
     let done = tissuebench(&["run", &write(&dir, "flat.toml", &flat)]);
     assert_fails(&done, 2, "flat.toml:2: key 'body'");

@@ -7,7 +7,7 @@ use std::fmt::Write as _;
 use common::{assert_fails, inside, tissuebench, write};
 use serde_json::Value;
 
-/// An ellipsoid of 20 x 15 x 10 mm half axes in STL; without its last triangles if some are left out.
+/// An ellipsoid with half axes of 20 x 15 x 10 mm, as STL, without its last `left_out` triangles.
 fn ellipsoid(left_out: usize) -> String {
     let (along, around) = (24, 32);
     let at = |i: usize, j: usize| {
@@ -82,7 +82,7 @@ fn a_surface_is_filled_and_described() {
     assert!((one - 1.0).abs() < 0.1 && (eight - 1.0).abs() < 0.05, "{one} {eight}");
 }
 
-/// A plate of 60 x 60 x 3 mm, as OBJ with faces of four corners behind which the corners come.
+/// A plate of 60 x 60 x 3 mm, as OBJ with four-cornered faces, which precede their vertices.
 const PLATE: &str = "f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8
 v 0 0 0\nv 60 0 0\nv 60 60 0\nv 0 60 0\nv 0 0 3\nv 60 0 3\nv 60 60 3\nv 0 60 3\n";
 
@@ -134,7 +134,7 @@ fn options_that_make_no_mesh_are_refused() {
 const TET: &str = r#"{ id = "tet4", family = "fem", element = "tet4", size = { level = 2 } }"#;
 const REST: &str = r#"family = "efg", kernel = "cubic-spline", support_scale = 1.6, basis = "linear", essential = "nitsche", integration = "#;
 
-/// A patch test.
+/// Scene of a patch test on a body from a file.
 fn scene(path: &str, methods: &str) -> String {
     format!(
         r#"title = "A body from a file in an affine field"
@@ -147,7 +147,7 @@ method = [{methods}]
     )
 }
 
-/// Nodes and error of every method.
+/// Runs a scene; returns the number of nodes and the error of every method.
 fn run(scene: &str) -> Vec<(u64, f64)> {
     let done = tissuebench(&["run", scene, "--once", "--format", "json"]);
     assert_eq!(done.code, 0, "{}", done.stderr);
@@ -168,7 +168,7 @@ fn elements_and_clouds_of_any_size_pass_the_patch_test() {
     assert_eq!(found.len(), 4);
     assert!(found.iter().all(|(_, error)| *error < 1e-10), "{found:?}");
     assert!(found[2].0 == 150 && (1200.0 / found[1].0 as f64 - 1.0).abs() < 0.35, "{found:?}");
-    // The same on the body of a mesh made of the surface, through the cells of others.
+    // The same body, given by a volume mesh of the surface instead of the surface.
     let made = inside(&dir, "organ.msh");
     assert_eq!(
         tissuebench(&["mesh", "make", &inside(&dir, "organ.stl"), "--nodes", "800", "--out", &made]).code,
@@ -178,7 +178,7 @@ fn elements_and_clouds_of_any_size_pass_the_patch_test() {
     assert!(found.iter().all(|(_, error)| *error < 1e-10) && found[2].0 == 150, "{found:?}");
 }
 
-/// Regions and named surfaces of a mesh are those of meshes made inside its boundary.
+/// Regions and named surfaces of a mesh file also apply to meshes of other sizes made inside its boundary.
 #[test]
 fn names_of_a_mesh_file_are_kept_at_other_sizes() {
     let dir = tempfile::tempdir().unwrap();
@@ -199,12 +199,12 @@ method = [{{ id = "made", family = "fem", element = "tet4", size = {{ spacing = 
     let done = tissuebench(&["run", &write(&dir, "scene.toml", &text), "--once", "--format", "json"]);
     assert_eq!(done.code, 0, "{}", done.stderr);
     let object: Value = serde_json::from_str(done.stdout.lines().next().unwrap()).unwrap();
-    // Stretched by 0.05 over 1 cm and by 0.2 over the next, less where it is held.
+    // The strain is 0.05 over 1 cm and 0.2 over the next, and smaller near the support.
     let x = object["metrics"]["max-x"]["value"].as_f64().unwrap();
     assert!((2.0e-3..2.7e-3).contains(&x), "{object}");
 }
 
-/// Groups of an OBJ file are named surfaces of elements and of clouds on it.
+/// Groups of an OBJ file are named surfaces, for elements and for clouds.
 #[test]
 fn names_of_a_surface_file_are_held_and_loaded() {
     let dir = tempfile::tempdir().unwrap();

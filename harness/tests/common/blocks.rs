@@ -6,21 +6,21 @@ use std::fmt::Write;
 /// Grid lines along each axis, mm.
 pub type Lines<'a> = [&'a [f64]; 3];
 
-/// A surface: its name, and where its points are, mm.
+/// A named surface: its name and a predicate for its points, mm.
 pub type Named<'a> = (&'a str, &'a dyn Fn([f64; 3]) -> bool);
 
-/// Cells of a grid, kept by their middles, with the places of their corners: corners of several cells in one
-/// place are one node.
+/// Cells of a grid. A cell is kept if `keeps` accepts its centre, and `places` maps its corners. Corners of
+/// several cells at the same position are one node.
 pub struct Blocks<'a> {
     pub lines: Lines<'a>,
     pub keeps: &'a dyn Fn([f64; 3]) -> bool,
     pub places: &'a dyn Fn([f64; 3], [f64; 3]) -> [f64; 3],
-    /// Named surfaces: faces all of whose corners are where this holds.
+    /// Named surfaces: a face belongs to a surface if the predicate holds at all of its corners.
     pub surfaces: &'a [Named<'a>],
 }
 
-/// Steps from the first to the last corner of a block, by axis: six tetrahedra (Kuhn 1960), and whether they
-/// are turned round.
+/// Edge directions from the first to the last corner of a block for its six tetrahedra (Kuhn 1960), and
+/// whether the orientation must be reversed.
 const WAYS: [([usize; 3], bool); 6] = [
     ([0, 1, 2], false),
     ([0, 2, 1], true),
@@ -99,7 +99,7 @@ impl Blocks<'_> {
     }
 }
 
-/// `cells + 1` lines from 0 to `length`.
+/// Positions of `cells + 1` equally spaced grid lines from 0 to `length`.
 pub fn even(length: f64, cells: usize) -> Vec<f64> {
     (0..=cells).map(|k| length * k as f64 / cells as f64).collect()
 }

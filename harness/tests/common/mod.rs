@@ -1,4 +1,4 @@
-//! Runs the built program and keeps what it left.
+//! Helpers that run the built program and return its output.
 
 #![allow(dead_code)] // each test file uses its share
 
@@ -12,7 +12,7 @@ use base64::engine::general_purpose::STANDARD;
 use serde_json::Value;
 use tempfile::TempDir;
 
-/// A block on its base under pressure; the smallest scene that runs.
+/// A block fixed at its base under a pressure: the smallest scene that runs.
 pub const BLOCK: &str = r#"title = "A block"
 body = { shape = "box", size = ["40 mm", "40 mm", "20 mm"] }
 material = { law = "linear", young = "20 kPa", poisson = 0.3 }
@@ -21,7 +21,7 @@ load = [{ on = "z-max", pressure = "1 kPa" }]
 method = [{ id = "tet4", family = "fem", element = "tet4", size = { cells = [2, 2, 1] } }]
 "#;
 
-/// A block of 40 x 40 x 20 mm, free to slide, squeezed by 3 mm between two plates; the same state everywhere.
+/// A block of 40 x 40 x 20 mm, free to slide, compressed by 3 mm between two plates, in a uniform state.
 pub const PRESSED: &str = r#"title = "A block between two plates"
 body = { shape = "box", size = ["40 mm", "40 mm", "20 mm"] }
 material = { law = "neo-hookean", young = "20 kPa", poisson = 0.45 }
@@ -41,7 +41,7 @@ method = [
 output = { probes = [["20 mm", "20 mm", "20 mm"]] }
 "#;
 
-/// [`PRESSED`] in explicit dynamics: elements with a pressure field or a cloud are left out.
+/// Converts [`PRESSED`] to explicit dynamics, without elements with a pressure field and without clouds.
 pub fn moving(pressed: &str) -> String {
     let kept = pressed.lines().filter(|l| !l.contains("\"mixed\"") && !l.contains("\"efg\""));
     let text: String = kept.map(|l| format!("{l}\n")).collect();
@@ -49,8 +49,8 @@ pub fn moving(pressed: &str) -> String {
         .replace("kind = \"static\", steps = 2", "kind = \"explicit\", duration = \"20 ms\", steps = 4")
 }
 
-/// Reports that a test is left out for want of a tool; with `CI=true` it fails unless `.ci/skips` names the
-/// tool.
+/// Reports that a test is skipped because a tool is missing. With `CI=true` the test fails unless `.ci/skips`
+/// names the tool.
 pub fn skipped(tool: &str, why: &str) {
     eprintln!("skipped: {why}");
     let list = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../.ci/skips")).unwrap();
@@ -59,14 +59,14 @@ pub fn skipped(tool: &str, why: &str) {
     assert!(listed || !must, "CI=true, and .ci/skips has no line '{tool}: ...'; {why}");
 }
 
-/// What a finished process left.
+/// Exit code and output of a finished process.
 pub struct Done {
     pub code: i32,
     pub stdout: String,
     pub stderr: String,
 }
 
-/// Runs the program to its end.
+/// Runs the program and waits for its end.
 pub fn tissuebench(args: &[&str]) -> Done {
     let output = Command::new(env!("CARGO_BIN_EXE_tissuebench")).args(args).output().unwrap();
     let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
@@ -79,25 +79,25 @@ pub fn tissuebench(args: &[&str]) -> Done {
     done
 }
 
-/// The process ended with this code and said this on stderr.
+/// Asserts that the process ended with this code and that stderr contains `says`.
 #[track_caller]
 pub fn assert_fails(done: &Done, code: i32, says: &str) {
     assert_eq!(done.code, code, "{says}: {}", done.stderr);
     assert!(done.stderr.contains(says), "no '{says}' in: {}", done.stderr);
 }
 
-/// The objects of a run, one a line.
+/// Parses the JSON objects of a run, one per line.
 pub fn objects(stdout: &str) -> Vec<Value> {
     stdout.lines().map(|line| serde_json::from_str(line).unwrap()).collect()
 }
 
-/// Numbers in single precision, as they are packed for the view in three dimensions.
+/// Decodes numbers packed in single precision for the three-dimensional view.
 pub fn packed(text: &Value) -> Vec<f32> {
     let bytes = STANDARD.decode(text.as_str().unwrap()).unwrap();
     bytes.chunks_exact(4).map(|b| f32::from_le_bytes(b.try_into().unwrap())).collect()
 }
 
-/// A scene of the project by the name of its file, whichever folder it is in.
+/// Path of a scene of the project, by the name of its file in any folder.
 pub fn cases(name: &str) -> String {
     let scenes = Path::new(env!("CARGO_MANIFEST_DIR")).join("../cases/scenes");
     let folders = std::fs::read_dir(&scenes).unwrap().map(|entry| entry.unwrap().path());
@@ -105,7 +105,7 @@ pub fn cases(name: &str) -> String {
     utf8(&found.unwrap_or_else(|| panic!("no scene {name}")))
 }
 
-/// The text of a scene of the project with all its methods written out, to be changed and run from elsewhere.
+/// Text of a scene of the project with all methods written out, so that it can be changed and run elsewhere.
 pub fn written_out(name: &str) -> String {
     cases::scene::load(Path::new(&cases(name))).unwrap().text().to_string()
 }
@@ -117,7 +117,7 @@ pub fn write(dir: &TempDir, name: &str, text: &str) -> String {
     utf8(&path)
 }
 
-/// A path inside a folder of a test.
+/// Path of a file in a temporary folder.
 pub fn inside(dir: &TempDir, name: &str) -> String {
     utf8(&dir.path().join(name))
 }
@@ -126,7 +126,7 @@ fn utf8(path: &Path) -> String {
     path.to_str().unwrap().to_string()
 }
 
-/// A scene without one of its keys.
+/// Returns a scene without one of its keys.
 pub fn without(scene: &str, key: &str) -> String {
     scene.lines().filter(|line| !line.starts_with(key)).map(|line| format!("{line}\n")).collect()
 }
