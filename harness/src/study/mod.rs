@@ -58,8 +58,7 @@ pub use merge::MergeArgs;
 pub use summary::RunSummary;
 pub use task::{failed, stalled};
 
-/// Repeats of the timed part in a study: the median of five passes for short runs, a single pass for long
-/// runs.
+/// Repeats of the timed part in a study: the median of five short passes, or a single long pass.
 const REPEATS: Repeats = Repeats { most: 5, seconds: 0.4 };
 /// Repeats in the quick tier, whose purpose is the checks: the median of three passes for runs below 20 ms.
 const QUICK: Repeats = Repeats { most: 3, seconds: 0.05 };
@@ -96,10 +95,7 @@ pub struct Finished {
 }
 
 impl Plan {
-    /// Reads the scenes of a study and lists its runs.
-    ///
-    /// # Errors
-    /// Returns the errors of all scenes.
+    /// Reads the scenes of a study and lists its runs. The errors are those of all scenes.
     pub fn new(study: Study) -> Result<Plan, Vec<scene::SceneError>> {
         Plan::read(study, |_| true)
     }
@@ -180,8 +176,7 @@ impl Plan {
         Ok(self.scenes.len() - 1)
     }
 
-    /// Adds the scene at each value of an axis. A refused scene is a result, except at the base value, where
-    /// it is an error.
+    /// Adds the scene at each value of an axis. A refused scene is an error only at the base value.
     fn along(
         &mut self,
         index: usize,
@@ -330,8 +325,7 @@ impl Plan {
                 set.failures.push(failure.clone());
                 // A feature that a solver does not offer is a result, not a failure.
                 let offered = failure.status != ForeignStatus::NotOffered.name();
-                // If one of many clouds stalls, the number of stalled clouds is a result. A run without any
-                // metrics is not counted. A load path that is known to end early is no failure either.
+                // Stalls among many clouds are results if there are metrics. So is a known early end.
                 let counted = self.is_one_of_many(task) && !result.records.is_empty();
                 let known =
                     |v: &Verdict| v.metric == "load-carried" && v.status == reports::Status::KnownFailure;
@@ -363,8 +357,7 @@ impl Plan {
         Finished { set, failed, runs, ran: results.len(), stored: 0, counters }
     }
 
-    /// Checks of one run: those of the scene, which concern the scene's own cloud, and those of the study's
-    /// run table.
+    /// Checks of one run: those of the scene, for its own cloud, and those of the study's run table.
     fn verdicts(&self, task: &Task, result: &TaskResult) -> Vec<Verdict> {
         let scene = &self.scenes[task.scene].2;
         let label = label(task, &result.records, self.is_one_of_many(task));
@@ -384,14 +377,12 @@ impl Plan {
 
     fn checks<'a>(&'a self, task: &'a Task) -> impl Iterator<Item = &'a Check> {
         let scene = &self.scenes[task.scene].2;
-        // The checks of a scene concern the scene's own cloud.
         let own = if self.is_one_of_many(task) || self.is_driven(task) { &[] } else { &scene.checks[..] };
         let all = own.iter().chain(self.tables(task).flat_map(|run| &run.checks));
         all.filter(|c| c.methods.is_empty() || c.methods.contains(&task.method.id))
     }
 
-    /// Runs of each run table, grouped by method and Poisson's ratio, in the order of the first result of
-    /// each group.
+    /// Runs of each run table by method and Poisson's ratio, in the order of their first results.
     fn families<'a>(&'a self, results: &'a BTreeMap<usize, TaskResult>) -> Vec<Family<'a>> {
         let mut families: Vec<Family> = Vec::new();
         let same = |a: &Task, b: &Task| a.method.id == b.method.id && a.poisson == b.poisson;
@@ -407,8 +398,7 @@ impl Plan {
         families
     }
 
-    /// Checks of convergence orders and of the fraction of clouds that reach the load: one for each run
-    /// table, method and Poisson's ratio.
+    /// Checks of orders and of clouds: one for each method and Poisson's ratio of a run table.
     fn family_verdicts(&self, families: &[Family]) -> Vec<Verdict> {
         let mut verdicts = Vec::new();
         for Family { run, first, members } in families {
@@ -431,8 +421,7 @@ impl Plan {
         verdicts
     }
 
-    /// Exit codes of the groups of clouds in which no cloud reached the whole load. Some of many clouds may
-    /// stall.
+    /// Exit codes of the groups of clouds in which no cloud reached the whole load.
     fn without_any(&self, families: &[Family]) -> Vec<u8> {
         let seeded = families.iter().filter(|family| self.study.runs[family.run].seeds > 0);
         let none = seeded.filter(|f| !f.members.iter().any(|member| check::carried(&member.records)));
@@ -455,8 +444,7 @@ pub fn compared_with(set: &mut RunSet, reference: Option<&Reference>) {
     }
 }
 
-/// Rows of a scene's stored reference; empty if the scene has none or the file cannot be read. A file that
-/// cannot be read has already failed every method that needs it.
+/// Rows of a stored reference; none if the file cannot be read, which fails every method that needs it.
 pub fn reference_records(scene: &Scene) -> Vec<Record> {
     let Some(scene::Reference::Record(path)) = &scene.reference else { return Vec::new() };
     let case = Record {
@@ -469,14 +457,12 @@ pub fn reference_records(scene: &Scene) -> Vec<Record> {
     Stored::load(scene, path).map(|s| s.records(&case)).unwrap_or_default()
 }
 
-/// Removes files that killed processes left among the stored results. Call it only if no other process uses
-/// the folder.
+/// Removes leftovers of killed processes. Call it only if no other process uses the folder.
 pub(crate) fn clean(args: &VerifyArgs) {
     store::clean(&args.out);
 }
 
-/// Removes all results except finished ones of this program on this machine. Call it only in the first of the
-/// processes that join a study.
+/// Keeps only finished results of this program on this machine. Only the first joining process calls it.
 pub(crate) fn sweep(args: &VerifyArgs) {
     clean(args);
     store(args).sweep();
