@@ -1,4 +1,5 @@
-//! Explicit dynamics from scene files: recorded states and their energies, the static limit, and runs that end early.
+//! Explicit dynamics from scene files: recorded states and their energies, the static limit, and runs that
+//! end early.
 
 mod common;
 

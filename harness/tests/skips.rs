@@ -1,4 +1,4 @@
-//! Plans and counters agree: a skipped stage does nothing, and a stage that runs does something.
+//! Agreement of plans and counters: a skipped stage does nothing, and a stage that runs does something.
 
 mod common;
 

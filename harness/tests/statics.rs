@@ -1,4 +1,5 @@
-//! The static procedure from scene files: forces of tools, histories, paths that end early, references step by step.
+//! The static procedure from scene files: tool forces, load histories, paths that end early, and comparison
+//! with a reference at each step.
 
 mod common;
 
