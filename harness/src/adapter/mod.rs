@@ -22,8 +22,8 @@ pub(crate) use outside::{About, Outside, label};
 pub(crate) use run::{Answered, Question, ask, environment, ready, version};
 pub(crate) use work::{Folder, remove_all};
 
-/// Reads `adapter.toml`, `result.json` and `displacement.npy` in `folder` and returns the error of each
-/// reader. Fuzz targets use this function. `nodes` and `steps` are the expected counts of the displacement.
+/// Reads `adapter.toml`, `result.json` and `displacement.npy` in `folder`, for fuzz targets. Returns the
+/// result of each reader, in this order. `nodes` and `steps` are the expected counts of the displacement.
 pub fn try_readers(folder: &Path, nodes: usize, steps: usize) -> [Result<(), String>; 3] {
     let file = folder.join("adapter.toml");
     let text = disk::read_text(&file, disk::Kind::ADAPTER.at_most(1 << 20)).map_err(|bad| bad.to_string());

@@ -49,6 +49,10 @@ pub(crate) struct Answered {
 }
 
 /// Calls an adapter and reads its answer.
+///
+/// # Errors
+/// Returns an error if the adapter is not ready, exceeds a limit, crashes, or returns an invalid or failed
+/// answer. A stalled load path with a known load fraction is not an error.
 pub(crate) fn ask(question: &Question) -> Result<Answered, Foreign> {
     let failed = |reason: String| Foreign::new(ForeignStatus::Failed, reason);
     let command = command(question)?;

@@ -78,7 +78,7 @@ pub enum Command {
         #[command(flatten)]
         ci: CiArgs,
     },
-    /// Run one run of a study in its own process
+    /// Execute one run of a study in its own process
     #[command(hide = true)]
     Experiment(ExperimentArgs),
     /// Run another program with limits, and end it when its caller ends

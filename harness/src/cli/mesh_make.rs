@@ -8,7 +8,7 @@ use super::mesh_files::{input, row, spare};
 use crate::Failure;
 use crate::cli::text::digits;
 
-/// Relative difference of node counts above which it is printed.
+/// Relative difference between requested and actual node count above which the request is printed.
 const NEAR: f64 = 0.1;
 
 /// Fills a surface, writes the mesh and prints how closely it fits.

@@ -162,6 +162,10 @@ impl Discretisation {
 
     /// Finds the supports and fills the volume tables in the plan. `alike` is the material index of each
     /// region.
+    ///
+    /// # Errors
+    /// Returns an error if supports or shape functions cannot be built, if the gradients of a cloud fail
+    /// their check, or if the method lacks the required volumetric projection.
     pub(crate) fn volume(
         &self,
         alike: &[u16],

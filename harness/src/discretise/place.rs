@@ -94,6 +94,9 @@ pub fn empty(key: &str, place: &Place, mesh: &Mesh) -> Failure {
 
 /// Refuses interior faces for a support or load at `key` that acts along the outward normal: a wall inside
 /// the body has two sides.
+///
+/// # Errors
+/// Returns an error if any of the faces lies between two cells.
 pub fn outer(key: &str, place: &Place, mesh: &Mesh, faces: &[Facet]) -> Result<(), Failure> {
     let Place::On(names) = place else { return Ok(()) };
     let boundary = mesh.boundary();
@@ -141,6 +144,9 @@ pub fn facets(key: &str, place: &Place, mesh: &Mesh) -> Result<Vec<Facet>, Failu
 
 /// Returns the sorted indices of the nodes in the place: the nodes of its named facets, or all mesh nodes
 /// that satisfy its comparisons.
+///
+/// # Errors
+/// Returns an error if the mesh lacks a named surface.
 pub fn nodes(key: &str, place: &Place, mesh: &Mesh) -> Result<Vec<u32>, Failure> {
     if let Place::On(_) = place {
         return Ok(mesh.facet_group_nodes(&facets(key, place, mesh)?));
@@ -155,6 +161,9 @@ pub fn nodes(key: &str, place: &Place, mesh: &Mesh) -> Result<Vec<u32>, Failure>
 /// are in the region. A facet that the region cuts is clipped by the region's planes, so that the loaded area
 /// is that of the region and not of the facets near it. On a 1331-node kidney, facets are half as wide as the
 /// jaw.
+///
+/// # Errors
+/// Returns an error if the mesh lacks a named surface.
 pub fn patch(key: &str, place: &Place, mesh: &Mesh) -> Result<Patch, Failure> {
     let tolerance = tolerance(mesh);
     let mut patch = Patch { whole: Vec::new(), cut: Vec::new() };
@@ -175,6 +184,9 @@ pub fn patch(key: &str, place: &Place, mesh: &Mesh) -> Result<Patch, Failure> {
 
 /// Refuses a planar place that cuts facets, because finite elements constrain whole facets. A place with a
 /// volume constrains the vertices in it.
+///
+/// # Errors
+/// Returns an error if a planar place cuts facets, or if the mesh lacks a named surface.
 pub fn whole(key: &str, place: &Place, mesh: &Mesh) -> Result<(), Failure> {
     let Place::Where(region) = place else { return Ok(()) };
     if region.comparisons.iter().all(|c| c.relation != Relation::Equal) {

@@ -14,6 +14,9 @@ fn key(index: usize) -> String {
 }
 
 /// Refuses surfaces that the mesh does not have, before anything is solved.
+///
+/// # Errors
+/// Returns an error for the first surface that contains nothing of the body or has an unknown name.
 pub fn check_means(mesh: &Mesh, places: &[Place]) -> Result<(), Failure> {
     for (index, place) in places.iter().enumerate() {
         let patch = place::patch(&key(index), place, mesh)?;
@@ -28,6 +31,9 @@ impl Prepared {
     /// Returns, for each surface, the nodal weights of its area mean displacement: the integrals of the shape
     /// functions over the surface, divided by its area. A facet cut by a comparison counts with the part
     /// inside.
+    ///
+    /// # Errors
+    /// Returns an error if a surface has an unknown name or its shape functions cannot be evaluated.
     pub fn means(&self, places: &[Place]) -> Result<Vec<Vec<(u32, f64)>>, Failure> {
         let each = places.iter().enumerate().map(|(index, place)| {
             let patch = place::patch(&key(index), place, self.source.mesh())?;

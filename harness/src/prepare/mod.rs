@@ -79,6 +79,10 @@ pub struct Prepared {
 }
 
 /// Fills all tables in the plan.
+///
+/// # Errors
+/// Returns an error if a support or load touches nothing of the body or has a value that is not finite, if
+/// supports contradict each other, or if the method cannot enforce or integrate the conditions.
 pub fn prepare(
     method: &Discretisation,
     setup: &Setup,
@@ -200,6 +204,9 @@ impl Prepared {
     }
 
     /// Factors the assembled problem, with the constraints eliminated or as multipliers.
+    ///
+    /// # Errors
+    /// Returns an error if the matrix is singular or too large.
     pub fn factor<'a>(&self, assembled: Assembled<'a>) -> Result<Factored<'a>, SolveError> {
         if self.eliminates { assembled.factor_eliminated() } else { assembled.factor() }
     }
@@ -216,6 +223,9 @@ impl Prepared {
 
     /// Returns a finer quadrature than the method's own, for error norms and consistent masses, and the
     /// region of each point if there are several regions.
+    ///
+    /// # Errors
+    /// Returns an error if the shape functions cannot be evaluated at the finer points.
     pub fn fine_volume(&self) -> Result<(VolumeRows, Vec<u16>), Failure> {
         let regions = self.source.mesh().region_names().len() > 1;
         let region = if regions { self.source.fine_regions() } else { Vec::new() };

@@ -67,7 +67,7 @@ fn holds_inside(method: &Discretisation, support: &Support, patch: &Patch) -> bo
         return method.nodes().iter().any(inside);
     }
     let points = method.inner;
-    // A region that contains no cell centroid may still cut the boundary.
+    // With a grid, a region without cell centroids is recognised by the facets that it cuts.
     if (points.vertices && mesh.points().iter().any(inside)) || (points.grid && !patch.cut.is_empty()) {
         return true;
     }

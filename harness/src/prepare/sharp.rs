@@ -30,7 +30,8 @@ struct Face {
     normal: Vector3,
 }
 
-/// Marks the facets around corners and edges that the tool meets first. Only facets that it passes count.
+/// Marks the facets around corners and edges that the tool meets first, among the facets for which `passes`
+/// is true.
 pub(super) fn mark(
     mesh: &Mesh,
     facets: &[Facet],

@@ -20,8 +20,11 @@ use crate::error::Key;
 /// Most nodes of a mesh; a larger number in a scene for one machine is taken for a typing error.
 pub(super) const MOST_NODES: usize = 3_000_000;
 
-/// Meshes the body in cells of one kind and checks them for inversion. A mesh from a file must be of the same
-/// body.
+/// Meshes the body in cells of one kind and checks them for inversion.
+///
+/// # Errors
+/// Returns an error if the size or jitter does not apply to the body, if the mesh has too many nodes or
+/// inverted cells, or if a mesh file is of another body.
 pub fn mesh(body: &Body, kind: CellKind, size: &Size, jitter: Option<Jitter>) -> Result<Mesh, Failure> {
     let mesh = unchecked(body, kind, size, jitter)?;
     quality::check(&mesh).map_err(|bad| inverted(bad, size, jitter))?;

@@ -31,6 +31,9 @@ impl Read {
     }
 
     /// Refuses nodes outside the body. The body is its closed form, or else the background cells.
+    ///
+    /// # Errors
+    /// Returns an error with the number of nodes outside and the farthest of them.
     pub fn within(
         &self,
         shape: Option<&(dyn Shape + Send + Sync)>,
@@ -81,6 +84,10 @@ fn beyond(shape: &(dyn Shape + Send + Sync), p: &Point3) -> f64 {
 
 /// Reads the nodes of a mesh file, of a `.npy` array, or of text lines `x, y, z`. `nodes` is the count stated
 /// in the scene.
+///
+/// # Errors
+/// Returns an error if the file cannot be read, has another number of nodes than `nodes`, or has coincident
+/// nodes.
 pub fn read(file: &MeshFile, nodes: Option<usize>) -> Result<Read, Failure> {
     let (points, lines, mesh) = if files::is_mesh(&file.path) {
         let mesh = files::read(&file.path, file.unit)

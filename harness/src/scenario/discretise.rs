@@ -15,6 +15,10 @@ use crate::error::Key;
 
 impl Scenario<'_> {
     /// Discretises the scenario's method: its nodes, cells and rules.
+    ///
+    /// # Errors
+    /// Returns an error, located at its scene key, if the mesh or cloud cannot be made or the method does not
+    /// suit the body.
     pub fn discretise(&self) -> Result<Discretisation, Failure> {
         let found = match &self.method.family {
             Family::Fem(fem) => self.elements(fem),

@@ -48,6 +48,9 @@ type Known = (PathBuf, u64, bool, u64, Option<SystemTime>);
 static READ: LazyLock<Mutex<HashMap<Known, Arc<FileBody>>>> = LazyLock::new(Mutex::default);
 
 /// Reads the body of a file once.
+///
+/// # Errors
+/// Returns an error if the file cannot be read or has no closed surface.
 pub fn load(file: &MeshFile) -> Result<Arc<FileBody>, Failure> {
     let about = std::fs::metadata(&file.path).ok();
     let (length, modified) = about.map_or((0, None), |about| (about.len(), about.modified().ok()));
@@ -87,6 +90,9 @@ impl FileBody {
     }
 
     /// Fills the surface with tetrahedra of one size, with the regions and named surfaces of the file.
+    ///
+    /// # Errors
+    /// Returns an error if the surface cannot be filled at this size.
     pub fn mesh(&self, fill: Fill) -> Result<Mesh, Failure> {
         if let Some(mesh) = self.made.lock().unwrap_or_else(PoisonError::into_inner).get(&fill) {
             return Ok(mesh.clone());

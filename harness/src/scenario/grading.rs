@@ -11,6 +11,9 @@ use crate::error::Key;
 const RATIO: f64 = 2.5;
 
 /// Returns the ball around the part of the body's bounding box that satisfies the region's comparisons.
+///
+/// # Errors
+/// Returns an error if the region contains no part of the body's bounding box.
 pub fn refinement(shape: &(dyn Shape + Send + Sync), region: &Region) -> Result<Refinement, Failure> {
     let [low, high] = shape.bounds();
     let (mut from, mut to) = (low, high);

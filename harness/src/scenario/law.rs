@@ -8,6 +8,9 @@ use crate::error::Key;
 
 /// Returns the law of the material at `key` of the scene. A given Poisson's ratio replaces that of the law,
 /// if the law has one.
+///
+/// # Errors
+/// Returns an error if the law does not allow this Poisson's ratio.
 pub fn law(material: &Material, poisson: Option<f64>, key: &str) -> Result<Law, Failure> {
     let Some(poisson) = poisson else { return Ok(material.law().clone()) };
     material.at_poisson(poisson).map_err(|bad| {
@@ -18,6 +21,9 @@ pub fn law(material: &Material, poisson: Option<f64>, key: &str) -> Result<Law, 
 
 /// Returns the small-strain limit of the law: `E = mu (3 lambda + 2 mu) / (lambda + mu)`, `nu = lambda / (2
 /// (lambda + mu))`.
+///
+/// # Errors
+/// Returns an error if the limit is not a valid linear law.
 pub fn small_strain(law: &Law, key: &str) -> Result<LinearElastic, Failure> {
     if let Law::LinearElastic(linear) = law {
         return Ok(*linear);

@@ -66,6 +66,10 @@ impl Scenario<'_> {
     }
 
     /// Builds materials, supports, loads and the exact solution.
+    ///
+    /// # Errors
+    /// Returns an error, located at its scene key, for invalid material constants or tools, or for "exact"
+    /// values in a scene without an exact solution.
     pub fn setup(&self) -> Result<Setup, Failure> {
         self.acting().map_err(|failure| self.locate(failure))
     }

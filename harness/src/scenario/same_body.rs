@@ -41,6 +41,10 @@ impl Extent {
 }
 
 /// Refuses a mesh file of another body than the scene's, or of the same body in another unit of length.
+///
+/// # Errors
+/// Returns an error if extent or volume differ by more than the tolerances, or if the scene's body cannot be
+/// meshed.
 pub fn check(body: &Body, file: &MeshFile, mesh: &Mesh) -> Result<(), Failure> {
     let of_body = match body {
         Body::File(of_body) if (&of_body.path, of_body.unit) == (&file.path, file.unit) => return Ok(()),

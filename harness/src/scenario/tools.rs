@@ -23,6 +23,9 @@ pub struct PlacedTool {
 }
 
 /// Returns the scene's tools in order.
+///
+/// # Errors
+/// Returns an error for a tool with invalid parameters, or with a pressure but no face.
 pub fn tools(scene: &scene::Scene) -> Result<Vec<PlacedTool>, Failure> {
     scene.tools.iter().enumerate().map(|(i, tool)| placed(tool, i)).collect()
 }

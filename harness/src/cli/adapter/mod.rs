@@ -17,8 +17,8 @@ use crate::cli::fail;
 pub enum AdapterAction {
     /// List all adapters, their folders, and whether their requirements are installed
     List,
-    /// Check a solver against exact solutions and our own elements: rigid motion, linear patch, balance of
-    /// forces, agreement
+    /// Check a solver against exact solutions and this program's elements: rigid motion, linear patch,
+    /// balance of forces, agreement
     Check {
         /// Name of the adapter
         name: String,

@@ -1,4 +1,4 @@
-//! The usual methods: a scene receives those that suit its body, law, procedure and contact.
+//! The usual methods, of which a scene receives the suitable ones for its body, law, procedure and contact.
 
 use cases::scene::{self, Scene, SceneError};
 
