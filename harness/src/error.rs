@@ -44,7 +44,7 @@ pub enum ForeignStatus {
     Refused,
     /// The solver found no equilibrium.
     Stalled,
-    /// The solver crashed or returned an invalid answer.
+    /// The solver crashed, exceeded its memory limit, or returned an invalid answer.
     Failed,
     /// The solver exceeded its time limit.
     TimedOut,

@@ -11,8 +11,8 @@ use crate::run::{Group, Repeats, RunOptions};
 
 /// Bound of the relative error against an exact solution, for answers with all digits.
 const EXACT: f64 = 1e-8;
-/// Ratio of the residual forces at free nodes to all forces, per unit in the last digit of the answer.
-/// Elements are stiff, so that rounding of neighbouring displacements leaves large forces.
+/// Bound of the residual forces at free nodes over all forces, per unit in the last digit of the answer.
+/// Elements are stiff: rounding of neighbouring displacements leaves large forces.
 const BALANCE: f64 = 10.0;
 /// Bound of the relative difference from this program's element.
 const AGREEMENT: f64 = 1e-6;
