@@ -19,7 +19,7 @@ pub(super) const DISPLACEMENT: &str = "displacement.npy";
 /// Contents of `result.json`. Unknown keys are ignored.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Answer {
-    /// `ok`, `refused`, `stalled` or `failed`.
+    /// Status: `ok`, `refused`, `stalled` or `failed`.
     pub(crate) status: String,
     /// Reason if the status is not `ok`.
     #[serde(default)]

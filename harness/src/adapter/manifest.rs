@@ -37,7 +37,7 @@ pub(crate) struct Manifest {
     /// Significant digits of the solver's answer; text files have few.
     #[serde(default = "all_digits")]
     pub(crate) digits: u32,
-    /// How the number of threads is passed to the solver.
+    /// Mechanism that passes the number of threads to the solver.
     #[serde(default)]
     pub(crate) threads: Threads,
     /// Mesh files (mesh.inp, mesh.vtu) to be written for the adapter in addition to the arrays.
@@ -48,7 +48,7 @@ pub(crate) struct Manifest {
     pub(crate) install: Install,
 }
 
-/// How the number of threads is passed to a solver.
+/// Mechanism that passes the number of threads to a solver.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Threads {

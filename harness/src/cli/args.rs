@@ -26,7 +26,7 @@ pub struct Cli {
     /// Number of threads of the solvers (default: all cores)
     #[arg(long, global = true, value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
-    /// Colour the output: by default on a terminal, unless NO_COLOR is set
+    /// When to colour the output; auto: on a terminal, unless NO_COLOR is set
     #[arg(long, global = true, value_enum, default_value_t = ColorChoice::Auto)]
     pub color: ColorChoice,
     /// Folder with adapters of other solvers; searched before those next to the scene, in
@@ -393,7 +393,7 @@ pub struct MakeArgs {
     /// Length unit of the surface and of the written mesh
     #[arg(long, default_value = "mm", value_parser = length_unit)]
     pub unit: LengthUnit,
-    /// How often the cell size may double inside, away from the surface
+    /// Number of times that the cell size may double inside, away from the surface
     #[arg(long, value_name = "TIMES", default_value_t = 2, value_parser = clap::value_parser!(u32).range(0..=3))]
     pub coarser: u32,
     /// Cells of uniform size: --coarser 0

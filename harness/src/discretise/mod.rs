@@ -32,7 +32,7 @@ pub enum Dilation {
     Mixed,
 }
 
-/// How essential conditions are enforced.
+/// Method of enforcing essential conditions.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Essential {
     /// Exactly: the parameters at the mesh vertices are displacements.

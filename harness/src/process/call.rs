@@ -10,7 +10,7 @@ use super::group::{self, Started, last_words};
 /// Bounds of the pause between two measurements of the processes; the pause is a tenth of the elapsed time.
 const SHORTEST_PAUSE: Duration = Duration::from_millis(3);
 const LONGEST_PAUSE: Duration = Duration::from_millis(100);
-/// How long the program's last output is awaited: a process it has started may keep the pipe open.
+/// Longest wait for the program's last output, which a child process holding the pipe open may delay.
 const LAST_WORDS: Duration = Duration::from_secs(1);
 
 /// Bytes kept of the beginning of a program's output.

@@ -33,7 +33,7 @@ struct Placed {
     cells: Option<Mesh>,
 }
 
-/// How a method on a cloud enforces its supports.
+/// Enforcement of the supports of a method on a cloud.
 #[derive(Clone)]
 enum Supports {
     /// A method that does not depend on the cloud.

@@ -53,7 +53,7 @@ pub struct Load {
     pub along_normal: bool,
 }
 
-/// All of a problem that does not depend on the method.
+/// A problem without its method: materials, supports, loads, tools and known solutions.
 pub struct Setup {
     /// One law per region of the mesh.
     pub laws: Vec<Law>,
