@@ -1,4 +1,5 @@
-//! A scene driven along an axis: what becomes of each method, and that none is wrong without a word.
+//! A scene varied along an axis: the outcome of each method, and a check that no result is wrong without a
+//! warning.
 
 mod common;
 
@@ -21,7 +22,7 @@ method = [
 ]
 "#;
 
-/// A study of the scene along Poisson's ratio, what is wrong from `wrong` on.
+/// A study of the scene along Poisson's ratio. Errors from `wrong` on count as wrong.
 fn study(dir: &TempDir, wrong: &str, set: &str) -> String {
     write(dir, "bending.toml", SCENE);
     let text = format!(
@@ -37,7 +38,7 @@ const POISSON: &str = "{ \"material.poisson\" = \"{x}\" }";
 fn methods_along_an_axis_bend_break_and_are_refused() {
     let dir = tempfile::tempdir().unwrap();
     let out = inside(&dir, "out");
-    // The bound of the scene, which no method holds, is of the scene as it is.
+    // The scene's own bound, which no method satisfies, applies to the unvaried scene only.
     let done = tissuebench(&["verify", &study(&dir, "0.25", POISSON), "--out", &out]);
     assert_eq!(done.code, 0, "{}", done.stderr);
     let read = |name: &str| std::fs::read_to_string(dir.path().join("out").join(name)).unwrap();
@@ -46,7 +47,8 @@ fn methods_along_an_axis_bend_break_and_are_refused() {
         let all = axes[0]["trials"].as_array().unwrap();
         all.iter().find(|t| t["method"] == method && t["value"] == value).unwrap_or_else(|| panic!("{axes}"))
     };
-    // The locked mesh is 88 % off and says so; the projected one holds; no linear material has a ratio of 1/2.
+    // The locked mesh has an error of 88 % and a warning, and the projected mesh is accurate. No linear
+    // material has a ratio of 1/2.
     assert!(trial("tet4", 0.4999)["error"].as_f64().unwrap() > 0.8);
     assert_eq!(trial("tet4", 0.4999)["warnings"][0], "stress-jump");
     assert!(trial("hex8-mean", 0.4999)["error"].as_f64().unwrap() < 0.01);
@@ -56,7 +58,7 @@ fn methods_along_an_axis_bend_break_and_are_refused() {
     assert!(row("tet4").contains(",0.4999,"), "{table}");
     assert!(row("hex8-mean").ends_with(",0.5,0"), "{table}");
     assert!(read("report/report.html").contains(r#""maps":[{"case":""#));
-    // Along an axis runs are no runs of the case.
+    // Runs along an axis do not count as runs of the case.
     assert!(!dir.path().join("out/report/figures/convergence-l2.svg").exists());
 }
 

@@ -1,4 +1,5 @@
-//! What runs are compared with beside the reference: another method, or the same cloud integrated otherwise.
+//! Comparisons other than with the reference: with another method, or with the same cloud under another
+//! integration rule.
 
 mod common;
 
@@ -68,7 +69,8 @@ fn a_finer_reference_leaves_the_difference_to_the_other_method() {
         outcomes(r#"{ method = "tet4" }"#),
         outcomes(r#"{ method = "tet4", size = { cells = [6, 6, 4] } }"#),
     );
-    // Where the comparison is made differs with the reference's nodes; at its own nodes tet4 is still itself.
+    // The comparison points depend on the reference's nodes. At its own nodes tet4 is still compared with
+    // itself.
     let efg = |runs: &[Outcome]| runs.iter().find(|r| r.identity.method == "efg").unwrap().clone();
     let (one, two) = (efg(&one), efg(&two));
     assert_ne!(value(&one.metrics, "rms"), value(&two.metrics, "rms"));
@@ -95,7 +97,7 @@ fn four_points_are_nearer_to_fourteen_and_these_to_forty_six() {
         let efg = runs.iter().find(|r| r.identity.method == "efg").unwrap();
         let of = |name: &str| value(&efg.metrics, name);
         let (rms, left, rule) = (of("rms"), of("discretisation-rms"), of("integration-rms"));
-        // A triangle of three fields.
+        // The differences of three fields satisfy the triangle inequality.
         assert!(rms <= left + rule && left <= rms + rule && rule <= rms + left, "{rms} {left} {rule}");
         (rule, left)
     };

@@ -1,4 +1,5 @@
-//! Every word that a scene can name is in a run of the verification whose numbers are checked.
+//! Coverage of the catalogue: every word that a scene can name occurs in a run of the verification whose
+//! results are checked.
 
 mod common;
 
@@ -9,9 +10,9 @@ use cases::scene::{Check, Run, Scene, load_study};
 use common::tissuebench;
 use toml::{Table, Value};
 
-/// Parts of the list that a scene does not choose from, and those of other people's solvers.
+/// Parts of the list from which a scene does not choose, and those of third-party solvers.
 const NO_PARTS: [&str; 6] = ["units", "metrics", "warnings", "files", "purposes", "publications"];
-/// Words that stand for a key left out.
+/// Words that are the default of their key.
 const DEFAULTS: [(&str, &str); 4] = [
     ("method.neighbourhood", "ball"),
     ("method.dilation", "standard"),
@@ -22,7 +23,7 @@ const DEFAULTS: [(&str, &str); 4] = [
 const EXCUSED: [(&str, &str); 1] =
     [("external", "needs a solver outside the program: cases/studies/solvers.toml runs them")];
 
-/// Parts of the list: the key of each and its words.
+/// Parts of the list: the key of each part and its words.
 fn parts() -> Vec<(String, Vec<String>)> {
     let listed = tissuebench(&["list"]).stdout;
     let mut parts: Vec<(String, String, Vec<String>)> = Vec::new();
@@ -37,11 +38,11 @@ fn parts() -> Vec<(String, Vec<String>)> {
         }
     }
     parts.retain(|(name, ..)| !NO_PARTS.contains(&name.as_str()));
-    // A table has no word of its own.
+    // A table has no word.
     parts.into_iter().map(|(_, key, words)| (key, words.into_iter().filter(|w| w != "a").collect())).collect()
 }
 
-/// The words at a key of a table, given as `above.below`: plain, or those of a table by its first key.
+/// Words at a key of a table (`above.below`): plain words, or the first key of each table.
 fn words(at: &Table, key: &str) -> Vec<String> {
     let (first, rest) = key.split_once('.').map_or((key, None), |(first, rest)| (first, Some(rest)));
     let found = match at.get(first) {
@@ -58,7 +59,7 @@ fn words(at: &Table, key: &str) -> Vec<String> {
     found.into_iter().flat_map(word).collect()
 }
 
-/// The words at the key of a part that a run uses and checks.
+/// Words at a part's key that a run uses and checks.
 fn used(run: &Run, scene: &Scene, document: &Table, key: &str) -> Vec<String> {
     let checks: Vec<&Check> = scene.checks.iter().chain(&run.checks).collect();
     let is_checked =

@@ -1,4 +1,4 @@
-//! Published claims held against results.
+//! Published claims, checked against results.
 
 mod common;
 

@@ -43,10 +43,10 @@ fn run_prints_one_object_per_method_and_nothing_else() {
             assert!(metric.len() == 2 && metric["unit"].is_string(), "{name}");
             assert!(metric["value"].as_f64().unwrap().is_finite(), "{name}");
         }
-        // 1 kPa on 40 x 40 mm, pushing down.
+        // The load is 1 kPa on 40 x 40 mm, directed down.
         let load = &object["metrics"]["load-z"];
         assert!((load["value"].as_f64().unwrap() + 1.6).abs() < 1e-12 && load["unit"] == "N");
-        // A few thousand numbers; buffers that a library keeps for good are no method's.
+        // The run needs a few thousand numbers. Buffers that a library keeps for good are not counted.
         let memory = object["metrics"]["memory"]["value"].as_f64().unwrap();
         assert!(memory > 1e4 && memory < 2e8, "{memory} B");
         for phase in ["prepare", "assemble", "factor", "solve", "total"] {
@@ -60,7 +60,8 @@ fn run_prints_one_object_per_method_and_nothing_else() {
         assert_eq!(row("x"), [0.02, 0.02, 0.02]);
         let (u, stress) = (row("u"), row("stress"));
         assert_eq!((u.len(), stress.len()), (3, 6));
-        // About p h / E, less for the held base; the stress under the load is the load to a tenth on these sizes.
+        // The displacement is about p h / E, less because of the fixed base. The stress under the load agrees
+        // with the load to a tenth on these meshes.
         assert!(u[2] < -0.5e-3 && u[2] > -1e-3, "{u:?}");
         assert!((stress[2] + 1e3).abs() < 100.0, "{stress:?}");
         for stage in object["plan"].as_array().unwrap() {
@@ -80,7 +81,7 @@ fn a_run_that_fails_says_so_on_both_streams() {
     let object: Value = serde_json::from_str(&done.stdout).unwrap();
     assert_eq!(object["status"], "could-not-run");
     assert!(object["message"].as_str().unwrap().contains("rigid motion"));
-    // What solved is known of a run that solved.
+    // The linear solver is known only for a run that solved.
     assert!(KEYS.iter().all(|&key| (key == "linear_solver") != object.get(key).is_some()));
 }
 
@@ -148,7 +149,7 @@ fn sound_scenes_ahead_of_the_solvers_are_3() {
         let path = write(&dir, &format!("{name}.toml"), &text);
         assert_fails(&tissuebench(&["run", &path]), 3, says);
     }
-    // The block as it is runs: the refusals above are of what was changed.
+    // The unchanged block runs: the refusals above are due to the changes.
     assert_eq!(tissuebench(&["run", &write(&dir, "block.toml", BLOCK)]).code, 0);
 }
 
@@ -182,7 +183,8 @@ fn a_plan_says_what_is_skipped_and_why() {
         };
         assert!(method.lines().any(fits), "{word} {stage}: {why}\n{method}");
     }
-    // Two materials need a tensor each; near 1/2 the ratio is no reason to skip the projection.
+    // Two materials need a tensor each. At a Poisson's ratio near 1/2, the projection is not skipped because
+    // of the ratio.
     let dir = tempfile::tempdir().unwrap();
     let soft = r#"region = [{ name = "soft", where = "x <= 20 mm", material = { law = "linear", young = "5 kPa", poisson = 0.3 } }]"#;
     let two = write(&dir, "two.toml", &format!("{BLOCK}\n{soft}\n"));

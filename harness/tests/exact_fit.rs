@@ -1,4 +1,5 @@
-//! An exact solution has to be one of the scene: else its errors are distances between two problems.
+//! Exact solutions have to be solutions of the scene: otherwise the errors are distances between two
+//! problems.
 
 mod common;
 
@@ -6,7 +7,7 @@ use common::{objects, tissuebench, write};
 use serde_json::Value;
 use tempfile::TempDir;
 
-/// The warning of the one method of a scene, if it is given.
+/// Warning of a scene's only method that the exact solution does not fit, if any.
 #[track_caller]
 fn misfit(text: &str) -> Option<Value> {
     let dir = TempDir::new().unwrap();
@@ -43,17 +44,19 @@ fn loads_and_supports_that_are_not_those_of_the_solution_are_told() {
         let message = found["message"].as_str().unwrap();
         assert!(message.contains(surface) && message.contains(what), "{message}");
     };
-    // A load of another size, on another surface, and a support that holds more.
+    // The scene has a load of another magnitude, a load on another surface, or a support with more
+    // constraints.
     near(misfit(&patch(ROLLERS, &pressed("1.05 kPa"))), 0.05 / 1.05, "z-max", "traction");
     let beside = format!("{}, {{ on = \"y-max\", pressure = \"200 Pa\" }}", pressed("1 kPa"));
     near(misfit(&patch(ROLLERS, &beside)), 0.2, "y-max", "traction");
     let clamped = ROLLERS.replace("fix = \"z\"", "fix = \"xyz\"");
-    // 0.3 of 0.05 along x and y, over the largest of a face: on z-max, where 0.05 along z comes to that.
+    // The difference is 0.3 of 0.05 along x and y, relative to the largest displacement on a face: z-max,
+    // where 0.05 along z is added.
     let sideways = (0.06_f64 / 1.06).sqrt();
     near(misfit(&patch(&clamped, &pressed("1 kPa"))), sideways, "z-min", "displacement");
 }
 
-/// Flat facets in place of a sphere have other normals: that is the mesh, not the scene.
+/// Flat facets have other normals than the sphere. This is a property of the mesh, not of the scene.
 #[test]
 fn a_curved_surface_of_flat_facets_fits() {
     let sphere = |inside: &str, level: usize| {

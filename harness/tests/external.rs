@@ -1,4 +1,5 @@
-//! Solvers outside the program: every way to misbehave ends in its status, with the processes gone and the study whole.
+//! External solvers: every kind of misbehaviour ends in its status, with all processes ended and the study
+//! complete.
 
 mod common;
 
@@ -10,10 +11,10 @@ use common::{Done, PRESSED, assert_fails, inside, objects, without, write};
 use serde_json::Value;
 use tempfile::TempDir;
 
-/// How long a child of the dummy would stay; no other process has this number.
+/// Lifetime of a child of the dummy, s. The number identifies the process.
 const CHILD: &str = "86387";
 
-/// A block by our own elements and by others; the methods of others stand for OTHERS.
+/// A block by this program's own elements and by external solvers, whose methods replace OTHERS.
 const BLOCK: &str = r#"title = "A block"
 body = { shape = "box", size = ["40 mm", "40 mm", "20 mm"] }
 material = { law = "linear", young = "20 kPa", poisson = 0.3 }
@@ -35,7 +36,7 @@ fn dummy(mode: &str, more: &str) -> String {
     other(mode, "dummy", &format!(", settings = {{ mode = \"{mode}\" }}{more}"))
 }
 
-/// Runs the program in a folder, with data of its own.
+/// Runs the program in a folder with its own data folder.
 fn tissuebench(dir: &TempDir, args: &[&str]) -> Done {
     let mut command = Command::new(env!("CARGO_BIN_EXE_tissuebench"));
     command.args(args).current_dir(dir.path()).env("TISSUEBENCH_DATA", dir.path().join("data"));
@@ -47,7 +48,7 @@ fn tissuebench(dir: &TempDir, args: &[&str]) -> Done {
     Done { code: output.status.code().unwrap(), stdout, stderr }
 }
 
-/// Whether a child of a dummy of a test is left: the folder of answers that it works in is in that of the test.
+/// Whether a child of a test's dummy is still running. It works in an answer folder within the test's folder.
 #[cfg(target_os = "linux")]
 fn child_runs_in(dir: &TempDir) -> bool {
     let folder = dir.path().to_str().unwrap();
@@ -81,7 +82,7 @@ fn our_own_solution_comes_back_to_the_bit() {
     }
     assert_eq!(theirs["phases"]["solve"], theirs["phases"]["total"]);
     assert!(value(theirs, "memory") > 1e6);
-    // It was never held against anything, and says so.
+    // The adapter was never checked, and the run says so.
     assert_eq!(theirs["warnings"][0]["code"], "adapter-unchecked");
 }
 
@@ -134,7 +135,7 @@ fn every_misbehaviour_has_its_status() {
     }
 }
 
-/// An adapter that is a script in bash, run on the block.
+/// Runs the block with an adapter that is a bash script.
 #[cfg(target_os = "linux")]
 fn bash(dir: &TempDir, script: &str, more: &str) -> Done {
     let name = "adapters/bash";
@@ -151,7 +152,8 @@ fn bash(dir: &TempDir, script: &str, more: &str) -> Done {
     done
 }
 
-/// The limit is of all processes together: two with 100 MB each are above 150 MB, and one is not.
+/// The memory limit applies to all processes together: two processes with 100 MB each exceed 150 MB, one
+/// process does not.
 #[test]
 #[cfg(target_os = "linux")]
 fn memory_is_limited_for_all_processes_together() {
@@ -163,7 +165,7 @@ fn memory_is_limited_for_all_processes_together() {
     assert_fails(&done, 3, "ended without result.json");
 }
 
-/// Half a second of a processor that a child of a child had counts as the solver's.
+/// Half a second of CPU time of a grandchild process counts as the solver's.
 #[test]
 #[cfg(target_os = "linux")]
 fn the_time_of_children_counts() {
@@ -221,12 +223,12 @@ fn what_an_adapter_does_not_offer_is_named_and_no_failure_of_a_study() {
     );
     let records = std::fs::read_to_string(dir.path().join("results/records.csv")).unwrap();
     assert!(records.contains(",external,tet10,") && records.contains(",itself,"), "{}", &records[..500]);
-    // Alone it is no failure, but nobody could miss it.
+    // Alone, a solver that is not offered is no failure, but the study reports it.
     write(&dir, "study.toml", &format!("{study}methods = [\"ours\", \"python\"]\n"));
     let done = tissuebench(&dir, &["verify", "study.toml", "--quick", "--out", "results"]);
     assert_eq!(done.code, 0, "{}", done.stderr);
     assert!(done.stderr.contains("not-offered"));
-    // Tools are not offered either.
+    // Tools are not supported either.
     let tools = PRESSED.replace(
         "method = [\n",
         &format!("method = [\n{}", dummy("own", "").replace("[3, 3, 2]", "[2, 2, 1]")),
@@ -236,7 +238,7 @@ fn what_an_adapter_does_not_offer_is_named_and_no_failure_of_a_study() {
     assert_fails(&done, 3, "not-offered: dummy does not take rigid tools ([[tool]])");
 }
 
-/// A study that asks other solvers for the elements of a scene; BESIDE stands for more keys.
+/// A study that solves a scene's elements with other solvers too; BESIDE stands for more keys.
 const SIDE_BY_SIDE: &str = r#"title = "Solvers"
 [[run]]
 scene = "block.toml"
@@ -267,14 +269,14 @@ fn a_study_puts_other_solvers_beside_the_elements_of_a_scene() {
         std::fs::read_to_string(path).unwrap().lines().map(String::from).collect::<Vec<_>>()
     };
     assert_eq!(table("solvers"), ["case,tissuebench (own),dummy,tissuebench", "block,ok 3,ok 2,ok 2"]);
-    // A row for each of them, with the same error.
+    // Each solver has a row with the same error.
     let times = table("solver-times");
     assert_eq!(times.len(), 5, "{times:?}");
     let of_ours: Vec<&String> = times.iter().filter(|row| row.starts_with("block,0.3,tet10,245,")).collect();
     assert!(of_ours.len() == 2 && of_ours.iter().all(|row| row.ends_with(",1e0")), "{times:?}");
     let listed = run(&["--list"]);
     assert!(listed.stdout.contains("ours-tissuebench"), "{}", listed.stdout);
-    // Each in a process of its own, too.
+    // The same holds with each run in its own process.
     run(&["--isolate"]);
     for (from, to, says) in [
         ("\"dummy\"]", "\"a b\"]", "run[0].adapters[1]"),
@@ -284,7 +286,7 @@ fn a_study_puts_other_solvers_beside_the_elements_of_a_scene() {
         write(&dir, "study.toml", &SIDE_BY_SIDE.replace("BESIDE", "").replace(from, to));
         assert_fails(&tissuebench(&dir, &["verify", "study.toml", "--out", "results"]), 2, says);
     }
-    // What is wrong with one is wrong with the method that it is beside.
+    // A fault of an external solver is reported at the method that it solves.
     write(&dir, "study.toml", &SIDE_BY_SIDE.replace("BESIDE", "").replace("\"dummy\"", "\"none\""));
     let done = tissuebench(&dir, &["verify", "study.toml", "--out", "results"]);
     assert!(done.code != 0 && done.stderr.contains("block.toml:9: key 'method[0]"), "{}", done.stderr);
@@ -337,7 +339,7 @@ fn a_solver_ends_with_whoever_called_it() {
     run.kill().unwrap();
     run.wait().unwrap();
     wait("it is gone with a killed program", &|| !child_runs_in(&dir));
-    // And with one that was in a process of its own, which the study ended.
+    // The same holds for a run in its own process, which the study ended.
     write(
         &dir,
         "study.toml",
@@ -376,7 +378,7 @@ fn a_check_passes_what_is_right_and_notes_it_until_the_adapter_changes() {
     assert_eq!(codes(), 1, "another adapter than was checked");
     let done = tissuebench(&dir, &["adapter", "check", "mine"]);
     assert_fails(&done, 1, "");
-    // A motion that is too long by a thousandth is wrong by that everywhere.
+    // A displacement that is too large by a thousandth is wrong by this everywhere.
     assert!(
         done.stdout.contains("FAILED  tet4   rigid motion") && done.stdout.contains("mine: 0 of 18 passed"),
         "{}",
@@ -399,7 +401,7 @@ fn a_problem_is_written_for_others() {
     for name in ["nodes", "cells", "regions", "fixed", "force", "probes"] {
         assert!(read(&format!("{name}.npy")).starts_with(b"\x93NUMPY"), "{name}");
     }
-    // 7 x 7 x 5 nodes; 1 kPa on 16 cm^2 push down by 1.6 N.
+    // The mesh has 7 x 7 x 5 nodes; 1 kPa on 16 cm^2 gives 1.6 N downwards.
     let nodes = geometry::files::read(&problem.join("mesh.vtu"), 1.0).unwrap();
     assert_eq!(nodes, geometry::files::read(&problem.join("mesh.inp"), 1.0).unwrap());
     assert_eq!(nodes.points().len(), 245);
@@ -459,7 +461,7 @@ fn adapters_are_listed_and_a_broken_one_is_named() {
     assert_fails(&lost, 2, "did you mean 'calculix'?");
 }
 
-/// Solvers that are installed on this machine pass; of others it is said that they are not.
+/// Solvers that are installed on this machine pass their check; the others are reported as not installed.
 #[test]
 fn installed_solvers_pass_their_check() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap();

@@ -1,4 +1,4 @@
-//! The body at every recorded state as files that ParaView opens.
+//! Files of the body at every recorded state, which ParaView opens.
 
 mod common;
 
@@ -11,7 +11,7 @@ use std::process::Command;
 use common::{tissuebench, write};
 use tempfile::TempDir;
 
-/// A .vtu file of ours: numbers by the names of their arrays.
+/// Reads a `.vtu` file of this program: numbers by the names of their arrays.
 fn arrays(file: &Path) -> BTreeMap<String, Vec<f64>> {
     let bytes = fs::read(file).unwrap();
     let mark = b"<AppendedData encoding=\"raw\">\n_";
@@ -48,7 +48,7 @@ fn unpacked(bytes: &[u8]) -> Vec<u8> {
     out
 }
 
-/// The series of a method: time, part and file of each entry.
+/// Reads the series of a method: time, part and file of each entry.
 fn series(folder: &Path, method: &str) -> Vec<(f64, String, String)> {
     let text = fs::read_to_string(folder.join(format!("{method}.pvd"))).unwrap();
     let value = |line: &str, name: &str| {
@@ -65,7 +65,8 @@ fn fields(dir: &TempDir, text: &str) {
     assert_eq!(done.code, 0, "{}", done.stderr);
 }
 
-/// A bar under tension, free to contract: `u = (1 kPa / 20 kPa) (-nu x, -nu y, z)` and a single stress.
+/// A bar under tension, free to contract laterally: `u = (1 kPa / 20 kPa) (-nu x, -nu y, z)` and a uniaxial
+/// stress.
 const BAR: &str = r#"
 title = "A bar"
 body = { shape = "box", size = ["10 mm", "10 mm", "20 mm"] }
@@ -134,7 +135,7 @@ fn every_step_has_the_body_and_its_tools() {
         let moved = found["displacement"].chunks(3).map(|u| u[2]).fold(0.0, f64::min);
         if k % 2 == 0 {
             assert_eq!(part, "0");
-            // The surface follows the ball, between nodes not closely.
+            // The surface follows the ball, though not closely between nodes.
             assert!((0.8..=1.2).contains(&(-moved / (3e-3 * time))), "{moved} at {time}");
             assert!(found["pressure"].iter().fold(0.0f64, |m, p| m.max(*p)) > 100.0);
         } else {
@@ -146,7 +147,7 @@ fn every_step_has_the_body_and_its_tools() {
             assert!(far.map(f64::abs).fold(0.0, f64::max) < 1e-12);
         }
     }
-    // A series of fewer steps leaves none of the one before.
+    // A series with fewer steps removes the files of the longer one.
     fields(&dir, &UNDER_A_BALL.replace("steps = 3", "steps = 2"));
     assert_eq!(series(&out, "hex20").len(), 4);
     assert_eq!(fs::read_dir(out.join("hex20")).unwrap().count(), 4);
@@ -172,7 +173,8 @@ method = [{ id = "hex8", family = "fem", element = "hex8", size = { cells = [4, 
     assert!(!found.contains_key("stress") && found["displacement"].iter().any(|u| *u != 0.0));
 }
 
-/// Other programs read the same: where Python has vtk and meshio (`TISSUEBENCH_PYTHON` names another Python).
+/// Other programs read the same values. The test needs a Python with vtk and meshio (`TISSUEBENCH_PYTHON`
+/// names another Python).
 #[test]
 fn vtk_and_meshio_open_the_files() {
     let python = std::env::var("TISSUEBENCH_PYTHON").unwrap_or_else(|_| "python3".into());

@@ -62,7 +62,7 @@ fn a_baseline_that_is_not_there_is_bad_input() {
     assert_eq!(tissuebench(&["baseline", &out, "--file", &file, "--check"]).code, 0);
 }
 
-/// Two tetrahedra on a common face, millimetres; no named surface.
+/// Two tetrahedra with a common face, in millimetres, without a named surface.
 const MESH: &str = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n5\n1 0 0 0\n2 40 0 0\n3 0 40 0\n4 0 0 20\n\
     5 40 40 20\n$EndNodes\n$Elements\n2\n7 4 2 0 1 1 2 3 4\n8 4 2 0 1 2 3 4 5\n$EndElements\n";
 

@@ -1,4 +1,5 @@
-//! Clouds on bodies far flatter than their supports: a displacement right to rounding says nothing of the stress there.
+//! Clouds on bodies far thinner than their supports: a displacement that is exact to rounding does not imply
+//! a correct stress.
 
 mod common;
 
@@ -6,7 +7,7 @@ use common::{assert_fails, objects, tissuebench, write};
 use serde_json::Value;
 use tempfile::TempDir;
 
-/// An affine field on a plate of 50 x 50 mm and this thickness (mm), by maximum entropy on 5 x 5 x 5 cells.
+/// An affine field on a plate of 50 x 50 mm with this thickness (mm), by maximum entropy on 5 x 5 x 5 cells.
 fn plate(thickness: f64, poisson: f64, method: &str, more: &str) -> String {
     format!(
         r#"title = "Patch of a flat body"
@@ -32,7 +33,7 @@ fn metric(run: &Value, name: &str) -> f64 {
     run["metrics"][name]["value"].as_f64().unwrap_or_else(|| panic!("no {name} in {run}"))
 }
 
-/// The value of a warning, if it is given.
+/// Value of a warning, if the run gives the warning.
 fn warned(run: &Value, code: &str) -> Option<f64> {
     run["warnings"]
         .as_array()
@@ -45,9 +46,9 @@ fn warned(run: &Value, code: &str) -> Option<f64> {
 const GAUSS: &str = "integration = { rule = \"gauss\", points = 4 }";
 const SMOOTHED: &str = "integration = { rule = \"cell-smoothed\", order = 2, points = 6 }";
 
-/// On a face of cells of 10,000 : 1 maximum entropy has gradients without a right digit: a stress of 1e10 Pa
-/// for 1e3. At a probe the stress is recovered from the points of the cells, which have right ones; the
-/// traction of Nitsche's method is made of the others.
+/// On a face of cells of 10,000 : 1, gradients of maximum entropy have no correct digit: the stress is 1e10
+/// Pa instead of 1e3 Pa. At a probe the stress is recovered from the quadrature points of the cells, whose
+/// gradients are accurate. The traction of Nitsche's method uses the inaccurate gradients.
 #[test]
 fn a_stress_of_bad_gradients_is_recovered_or_refused() {
     let probe = "output = { probes = [[\"21 mm\", \"23 mm\", \"0 mm\"]] }";
@@ -55,11 +56,11 @@ fn a_stress_of_bad_gradients_is_recovered_or_refused() {
     for thickness in [0.05, 0.005] {
         let found = run(&plate(thickness, 0.3, &method, probe));
         assert!(metric(&found, "stress") < 0.03, "{found}");
-        // A fifth off in energy, as the patch test says, and so may be a stress of 25 Pa.
+        // The patch test gives an energy error of a fifth, so the stress may be wrong by 25 Pa.
         let stress = found["probes"][0]["stress"].as_array().unwrap();
         assert!(stress.iter().all(|s| s.as_f64().unwrap().abs() < 25.0), "{found}");
     }
-    // Cells that smooth have others.
+    // Smoothed cells have other gradients.
     let nitsche =
         |integration: &str| format!("{integration}, essential = {{ method = \"nitsche\", factor = 1e6 }}");
     let dir = TempDir::new().unwrap();
@@ -84,7 +85,7 @@ fn integration_that_fails_the_patch_test_is_told_with_its_error() {
     }
 }
 
-/// The gap is a millionth of the displacement and a fifth of the strain across the plate.
+/// The gap is a millionth of the displacement but a fifth of the strain through the thickness.
 #[test]
 fn a_penalty_that_is_soft_beside_a_flat_body_is_told() {
     for (poisson, thickness) in [(0.0, 0.005), (0.3, 0.005), (0.4, 0.01)] {

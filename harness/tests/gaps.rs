@@ -1,12 +1,12 @@
-//! Clouds on bodies with gaps: slits, narrow bridges, and thin parts that the cells leave out.
+//! Clouds on bodies with gaps: slits, narrow bridges, and thin parts that the cells omit.
 
 mod common;
 
 use common::blocks::{Blocks, Named, even};
 use common::{assert_fails, objects, tissuebench, write};
 
-/// A block of 30 x 8 x 16 mm that is pulled apart at its ends, cut in the middle from its top down to `tip`
-/// (mm), by `width`, along a curve that is `bend` away from the middle.
+/// A block of 30 x 8 x 16 mm pulled apart at its ends. It is cut in the middle from its top down to `tip`
+/// (mm) with this `width`, along a curve that deviates by `bend` from the middle plane.
 fn slit(cells: usize, tip: f64, width: f64, bend: f64) -> String {
     let curve = |z: f64| bend * (std::f64::consts::PI * z / 16.0).sin();
     let places = |[x, y, z]: [f64; 3], middle: [f64; 3]| {
@@ -22,7 +22,7 @@ fn slit(cells: usize, tip: f64, width: f64, bend: f64) -> String {
 
 const CLOUD: &str = r#"family = "efg", kernel = "cubic-spline""#;
 
-/// Clouds of each kind, and quadratic elements on the same cells first.
+/// Quadratic elements, followed by clouds of each kind on the same cells.
 fn methods(mesh: &str) -> String {
     let size = format!(r#"size = {{ file = "{mesh}" }}"#);
     let linear = |id: &str, scale: f64, rest: &str| {
@@ -76,7 +76,8 @@ fn clouds_open_slits_as_elements_do() {
         assert_eq!(all.len(), 8);
         for (method, energy) in &all[1..] {
             let off = energy / exact - 1.0;
-            // Glued they have 30 to 45 % of it. Node smoothing is soft, and 240 nodes of its own are few.
+            // If the faces of the slit stick together, the energy is 30 to 45 % of this. Nodal smoothing is
+            // soft, and the cloud `own` has only 240 nodes.
             let bound = if method == "nodal" || method == "own" { 0.3 } else { 0.15 };
             assert!(off.abs() < bound, "{tip} {width} {bend}, {method}: {off}");
         }

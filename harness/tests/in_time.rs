@@ -1,4 +1,4 @@
-//! Implicit dynamics and relaxation from scene files.
+//! Implicit dynamics and viscoelastic relaxation from scene files.
 
 mod common;
 
@@ -16,7 +16,8 @@ fn metric(object: &Value, name: &str) -> f64 {
     object["metrics"][name]["value"].as_f64().unwrap_or_else(|| panic!("{name}: {object}"))
 }
 
-/// A block squeezed by `e = e_T t / T` with its sides held: the shear response relaxes, the volume's does not, and
+/// A block compressed by the strain `e = e_T t / T` with its sides constrained. The shear response relaxes,
+/// the volumetric response does not:
 ///
 /// ```text
 /// s(t) = (e_T / T) (K t + 4/3 mu integral_0^t g),   W = V (e_T / T) integral_0^T s
@@ -59,12 +60,12 @@ output = { probes = [["20 mm", "20 mm", "10 mm"]] }
             let (t, found) = (of("time"), of("internal-work"));
             assert!(states[k]["strain_energy"].is_null());
             assert!((t - 0.02 * (k + 1) as f64).abs() < 1e-12);
-            // The work is summed by trapezoids, of which each has an error of its length squared.
+            // The work is summed by the trapezoidal rule, whose error is of second order in the step.
             assert!((found / work(t) - 1.0).abs() < 2e-3 / (k as f64), "{k}: {found:e} {:e}", work(t));
             assert!((of("work-on-body") / found - 1.0).abs() < 1e-6);
             assert_eq!(of("kinetic-energy"), 0.0);
         }
-        // No past is followed at a probe: its stress is not known, its displacement is.
+        // The strain history is not followed at a probe: its stress is unknown, its displacement is known.
         assert!(object["probes"][0]["stress"].is_null() && metric(object, "time-steps") == 100.0);
         assert!((object["probes"][0]["u"][2].as_f64().unwrap() + 0.5e-3).abs() < 1e-9);
     }
@@ -72,7 +73,7 @@ output = { probes = [["20 mm", "20 mm", "10 mm"]] }
 
 #[test]
 fn implicit_and_explicit_dynamics_agree() {
-    // Slow enough that lumped and consistent mass make no difference.
+    // The motion is so slow that lumped and consistent mass make no difference.
     let explicit = moving(PRESSED).replace("20 ms", "200 ms");
     let with = |procedure: &str| {
         explicit.replace("kind = \"explicit\", duration = \"200 ms\", steps = 4", procedure)
@@ -84,7 +85,7 @@ fn implicit_and_explicit_dynamics_agree() {
     assert_eq!(done.code, 0, "{}", done.stderr);
     for (a, b) in told.iter().zip(&fine) {
         assert_eq!((&a["status"], &a["method"]), (&"ok".into(), &b["method"]));
-        // Without damping explicit contact chatters, by a hundredth of the closure.
+        // Without damping, explicit contact oscillates by a hundredth of the closure.
         for (name, allowed) in [("max-z", 2e-2), ("strain-energy", 2e-2), ("closure", 1e-9)] {
             let (found, expected) = (metric(a, name), metric(b, name));
             assert!((found / expected - 1.0).abs() < allowed, "{name}: {found} {expected}");
@@ -100,7 +101,7 @@ fn implicit_and_explicit_dynamics_agree() {
         assert!(metric(a, "step-error") > 0.0 && metric(a, "time-steps") >= 400.0);
         assert!(a["work"]["mass_nodes"].as_f64().unwrap() > 0.0 && a["phases"]["element-step"].is_null());
     }
-    // A cloud, and elements with a pressure field, move too.
+    // A cloud and elements with a pressure field can be integrated too.
     let all = PRESSED.replace("poisson = 0.45", "poisson = 0.45, density = \"1000 kg/m^3\"").replace(
         "kind = \"static\", steps = 2",
         "kind = \"implicit-dynamic\", duration = \"20 ms\", steps = 20, damping = \"20 /s\"",
@@ -169,7 +170,7 @@ fn bad_scenes_in_time_name_the_key() {
         let path = write(&dir, "bad.toml", &good.replace(from, to));
         assert_fails(&tissuebench(&["run", &path]), code, says);
     }
-    // Where steps may be as short as they have to, only an accuracy below rounding is out of reach.
+    // If steps may be arbitrarily short, only an accuracy below rounding cannot be reached.
     let exact = good.replace("steps = 2", "steps = 2, accuracy = \"1e-30 mm\"");
     assert_fails(&tissuebench(&["run", &write(&dir, "exact.toml", &exact)]), 3, "key 'procedure.accuracy'");
     let close = |more: &str| {
@@ -178,7 +179,7 @@ fn bad_scenes_in_time_name_the_key() {
         metric(&run(&text).1[0], "time-steps")
     };
     assert!(close("") == 2.0 && close(", accuracy = \"1e-3 mm\"") > 20.0);
-    // Without inertia no density is asked for.
+    // Without inertia, no density is needed.
     let still =
         good.replace(", density = \"1000 kg/m^3\"", "").replace("steps = 2", "steps = 2, inertia = false");
     assert_eq!(run(&still).0.code, 0);

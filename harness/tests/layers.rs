@@ -1,4 +1,4 @@
-//! Layers of 1:1000 by the groups of a mesh file, and in explicit dynamics.
+//! Layers with a stiffness ratio of 1:1000, from the groups of a mesh file and in explicit dynamics.
 
 mod common;
 
@@ -6,7 +6,8 @@ use common::{objects, tissuebench, write};
 use serde_json::Value;
 use tempfile::TempDir;
 
-/// Three layers of 8 x 8 x 6 mm along z; hexahedra of 2 mm, or six tetrahedra of each, a group for each layer.
+/// Three layers of 8 x 8 x 6 mm along z, each a group, with hexahedra of 2 mm or six tetrahedra for each of
+/// them.
 fn mesh(tetrahedra: bool) -> String {
     const STEPS: [[usize; 3]; 6] = [[0, 1, 2], [0, 2, 1], [1, 0, 2], [1, 2, 0], [2, 0, 1], [2, 1, 0]];
     const HEX: [[usize; 3]; 8] =
@@ -35,7 +36,7 @@ fn mesh(tetrahedra: bool) -> String {
                 by[axis] += 1;
                 cell.push(corner(by));
             }
-            // Odd orders are mirrored.
+            // Odd permutations are mirrored.
             if (steps[1] + 3 - steps[0]) % 3 == 2 {
                 cell.swap(1, 2);
             }
@@ -56,7 +57,7 @@ fn mesh(tetrahedra: bool) -> String {
     )
 }
 
-/// Layers pressed between rollers: each has one strain, that of its own modulus.
+/// Layers compressed between rollers: the strain in each layer is uniform and follows from its modulus.
 fn scene(law: &str, procedure: &str, load: &str, methods: &[String]) -> String {
     format!(
         r#"title = "Three layers of a mesh file"
@@ -95,7 +96,7 @@ fn fem(element: &str, file: &str, dilation: &str) -> String {
     )
 }
 
-/// Shortening of layers of 6 mm under a pressure (Pa), m: by the modulus without sideways strain.
+/// Shortening of layers of 6 mm under a pressure (Pa), m, by the modulus without lateral strain.
 fn shortening(pressure: f64) -> f64 {
     let confined =
         |young: f64, poisson: f64| young * (1.0 - poisson) / (1.0 + poisson) / (1.0 - 2.0 * poisson);
@@ -121,7 +122,7 @@ fn no_mean_crosses_the_groups_of_a_file() {
     }
 }
 
-/// Slowly loaded layers in explicit dynamics come to the static answer.
+/// Slowly loaded layers in explicit dynamics reach the static solution.
 #[test]
 fn explicit_dynamics_of_layers_ends_at_the_static_answer() {
     let both = |dilation| [fem("tet4", "tets", dilation), fem("hex8", "hexes", dilation)];

@@ -1,11 +1,11 @@
-//! What solves a linear procedure: chosen, named in the plan, asked for, refused.
+//! Solvers of a linear procedure: their choice, their names in the plan, requests, and refusals.
 
 mod common;
 
 use common::{BLOCK, assert_fails, objects, tissuebench, write};
 use serde_json::Value;
 
-/// [`BLOCK`] in elements of each kind and a cloud, by this solver.
+/// [`BLOCK`] with elements of each kind and a cloud, by this solver.
 fn block(solver: &str) -> String {
     let methods = r#"method = [
     { id = "tet4", family = "fem", element = "tet4", size = { cells = [8, 8, 6] } },
@@ -46,7 +46,8 @@ fn iterations_that_are_asked_for_come_to_what_a_factor_gives() {
         assert_eq!(factorisation(a), "multigrid levels for conjugate gradients (asked for)");
         assert_eq!(factorisation(b), "one, for all load levels (asked for)");
         let count = metric(a, "linear-iterations").unwrap();
-        // Of a cloud the parameters are no displacements, and rough ones are nearly as soft as smooth ones.
+        // The parameters of a cloud are not displacements, and rough parameter fields are nearly as soft as
+        // smooth ones.
         let most = if a["method"] == "efg" { 250.0 } else { 25.0 };
         assert!((5.0..=most).contains(&count), "{count} iterations: {a}");
         assert!(metric(a, "operator-complexity").is_some_and(|c| c > 1.0 && c < 2.5), "{a}");
@@ -73,7 +74,7 @@ fn the_plan_says_which_and_why() {
     let said = "multigrid levels for conjugate gradients (36501 unknowns that factor like 25810 of a cube, from 20000 at \
                 lambda / mu = 1.500)";
     assert_eq!(factorisation(large), said);
-    // As much as a nearly incompressible body takes, a factor is faster.
+    // A nearly incompressible body takes so many iterations that a factor is faster.
     let stiff = block("auto").replace("[8, 8, 6]", "[18, 18, 18]").replace("poisson = 0.3", "poisson = 0.49");
     let plan = tissuebench(&["plan", &write(&dir, "stiff.toml", &stiff), "--method", "tet4"]).stdout;
     assert!(plan.contains("below 46667 at lambda / mu = 49.000"), "{plan}");
@@ -97,7 +98,7 @@ fn nearly_incompressible_elements_that_share_dilations_are_iterated_with_pressur
         assert!((a - b).abs() < 1e-7 * b, "{name}: {a} and {b}");
     }
     assert!(metric(&iterated, "residual").unwrap() <= 1e-8);
-    // Small ones are factored.
+    // Small systems are factored.
     assert_eq!(of("auto")["linear_solver"], "sparse-llt");
 }
 

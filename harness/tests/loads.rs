@@ -1,11 +1,12 @@
-//! Loads that are given as fields reach the body whole.
+//! Loads given as fields: their resultant is exact.
 
 mod common;
 
 use common::{cases, objects, tissuebench};
 
-/// Saint-Venant's shear traction on the end of a square bar comes to 1 N. Its derivatives have no bound at the corners. With one
-/// point on a face, as smoothing takes, clouds had 1.065 N; tet10 had 0.999993 N and was 3.4 % farther off than it need be.
+/// Saint-Venant's shear traction on the end of a square bar has a resultant of 1 N. Its derivatives are
+/// unbounded at the corners. With one point per face, as for smoothing, clouds had 1.065 N. Tet10 had
+/// 0.999993 N, and its error was 3.4 % larger than necessary.
 #[test]
 fn a_traction_that_is_no_polynomial_has_its_resultant() {
     let scene = cases("saint-venant.toml");

@@ -1,4 +1,4 @@
-//! Bodies of two materials: neither dilations nor stresses are averaged over their border.
+//! Bodies of two materials: neither dilations nor stresses are averaged across the interface.
 
 mod common;
 
@@ -6,7 +6,8 @@ use common::{objects, packed, tissuebench, write};
 use serde_json::Value;
 use tempfile::TempDir;
 
-/// A stack pressed between rollers that keep it from sliding sideways: each layer has one strain.
+/// A stack compressed between rollers, which prevent lateral displacement: the strain in each layer is
+/// uniform.
 fn layers(upper: &str, poisson: f64, procedure: &str, methods: &[&str]) -> String {
     let law = if procedure == "linear" { "linear" } else { "neo-hookean" };
     format!(
@@ -43,8 +44,8 @@ fn metric(run: &Value, name: &str) -> f64 {
     run["metrics"][name]["value"].as_f64().unwrap_or_else(|| panic!("no {name} in {run}"))
 }
 
-/// A plain hexahedron holds one strain a layer to rounding. Means over the border made the stack 5 to 40 %
-/// too stiff.
+/// Plain hexahedra represent one strain per layer to rounding. Averages across the interface made the stack 5
+/// to 40 % too stiff.
 #[test]
 fn no_mean_crosses_the_border_of_two_materials() {
     let near = CLOUD.replace("nodal-mean", "nodal-near").replace("\"cloud\"", "\"near\"");
@@ -56,7 +57,7 @@ fn no_mean_crosses_the_border_of_two_materials() {
                 methods.push(MIXED);
             }
             let text = layers(&upper, 0.4, procedure, &methods);
-            // The softest upper layer bears a thousandth of the pressure at such strains.
+            // The softest upper layer carries only a thousandth of the pressure at such strains.
             run(&if young == "20 Pa" { text.replace("1 kPa", "1 Pa") } else { text })
         };
         for procedure in ["linear", "static"] {
@@ -70,7 +71,8 @@ fn no_mean_crosses_the_border_of_two_materials() {
     }
 }
 
-/// A pressure that jumps with Poisson's ratio, half a millimetre from the border on both sides.
+/// The pressure jumps with Poisson's ratio; it is evaluated half a millimetre from the interface on both
+/// sides.
 #[test]
 fn stress_is_not_smoothed_over_the_border_of_two_materials() {
     let lower = 0.3;
@@ -119,7 +121,7 @@ fn a_picture_has_the_stress_of_each_material_at_their_border() {
     }
 }
 
-/// Regions that differ in name alone share dilations and pressures, as a body of one region does.
+/// Regions that differ only in name share dilations and pressures, like a body of one region.
 #[test]
 fn regions_of_one_material_are_one_material() {
     for (procedure, methods) in [("linear", vec![TET4, NEAR]), ("static", vec![TET4, NEAR, MIXED])] {

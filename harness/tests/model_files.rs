@@ -1,4 +1,4 @@
-//! Files that hold more than a mesh: what of them is left out, cells in several groups, and mirrored cells.
+//! Files that contain more than a mesh: ignored parts, cells in several groups, and mirrored cells.
 
 mod common;
 

@@ -1,4 +1,4 @@
-//! Free vibrations from a scene to its numbers.
+//! Free vibrations from scene files.
 
 mod common;
 
@@ -42,13 +42,14 @@ fn a_free_box_has_six_rigid_modes_and_its_mass() {
         assert!((metric(run, "mass") - 0.024).abs() < 1e-12 && metric(run, "residual") < 1e-9);
         assert!(run["metrics"]["slow-modes"].is_null(), "nothing exact to be slower than");
     }
-    // Parameters of elements are displacements.
+    // Nodal parameters of elements are displacements.
     assert_eq!(metric(&runs[1], "critical-step"), metric(&runs[2], "critical-step"));
     assert!(metric(&runs[0], "critical-step") < metric(&runs[1], "critical-step"));
 }
 
-/// Linear elements: consistent mass from above, lumped from below. On equal hexahedra the discrete modes are sines with either
-/// mass, so that the two frequencies differ by `sqrt(9 / ((2 + cos ah) (2 + cos bh)))`, a = pi / 4h, b = pi / 3h.
+/// Linear elements give frequencies above the exact ones with a consistent mass, and below with a lumped
+/// mass. On equal hexahedra the discrete modes are sines with either mass, so that the two frequencies differ
+/// by the factor `sqrt(9 / ((2 + cos ah) (2 + cos bh)))`, a = pi / 4h, b = pi / 3h.
 #[test]
 fn a_box_on_rollers_vibrates_as_known() {
     let runs = metrics(&format!("{BOX}{ROLLERS}"));
@@ -69,7 +70,7 @@ fn a_reference_that_knows_no_vibrations_is_refused_at_its_key() {
     assert_fails(&tissuebench(&["run", &scene]), 2, "'reference.exact': 'rigid' knows no vibrations");
 }
 
-/// Beyond the unknowns that a dense decomposition takes: the lowest by block Lanczos.
+/// With more unknowns than a dense decomposition takes, block Lanczos finds the lowest modes.
 #[test]
 fn the_lowest_modes_of_a_large_body_are_found_alone() {
     let large = |text: &str| {
@@ -85,7 +86,7 @@ fn the_lowest_modes_of_a_large_body_are_found_alone() {
     assert!(metric(&rollers, "mode-overlap") > 0.99 && metric(&rollers, "slow-modes") == 0.0);
     assert!(metric(&rollers, "frequency-ratio") > 1.0);
     assert_eq!(rollers["linear_solver"], "block-lanczos");
-    // What is known of all modes alone.
+    // These metrics need all modes.
     assert!(rollers["metrics"]["massless"].is_null() && rollers["metrics"]["critical-step"].is_null());
     assert_eq!(metric(&large(BOX), "rigid-modes"), 6.0);
 }

@@ -1,4 +1,4 @@
-//! `--set`, patterns of methods, quiet runs, runs that are stopped, and the schemas of what programs read.
+//! `--set`, patterns of methods, quiet runs, interrupted runs, and the schemas of files that programs read.
 
 mod common;
 
@@ -31,7 +31,7 @@ fn a_key_that_is_set_counts_as_that_of_the_file() {
     let provenance: Value = serde_json::from_str(&text).unwrap();
     assert_eq!(provenance["set"][0], "material.young=40 kPa");
     assert_eq!(provenance["format"], 1);
-    // A folder of a later format is not misread.
+    // A folder with a later format is refused.
     let later = text.replace("\"format\": 1", "\"format\": 1000");
     assert_ne!(later, text);
     std::fs::write(Path::new(&out).join("provenance.json"), later).unwrap();
@@ -85,7 +85,7 @@ fn a_run_that_is_stopped_keeps_the_methods_that_have_ended() {
         .stderr(Stdio::piped())
         .spawn()
         .unwrap();
-    // The first object says that the first method has ended.
+    // The first object shows that the first method has ended.
     let mut first = String::new();
     BufReader::new(run.stdout.as_mut().unwrap()).read_line(&mut first).unwrap();
     let pid = run.id().to_string();

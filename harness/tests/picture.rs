@@ -1,4 +1,4 @@
-//! What runs leave for the pictures: tools where they stand, and the pressure of a section as each method has it.
+//! Data for the pictures: tools at their positions, and each method's pressure in a section.
 
 mod common;
 
@@ -9,8 +9,9 @@ fn floats(value: &Value) -> Vec<f64> {
     value.as_array().unwrap().iter().map(|v| v.as_f64().unwrap()).collect()
 }
 
-/// A block between plates is stretched alike everywhere, its sides free: true stress `F l / (A J)` along z and none across, so
-/// that `p = F l / (3 A J)` in every cell of every method, whatever its dilation is.
+/// A block between plates with free sides has a uniform state: the true stress is `F l / (A J)` along z and
+/// zero laterally, so `p = F l / (3 A J)` in every cell of every method, whatever its treatment of the
+/// dilation.
 #[test]
 fn a_section_between_plates_has_the_pressure_of_the_force() {
     let dir = tempfile::tempdir().unwrap();
@@ -25,11 +26,11 @@ fn a_section_between_plates_has_the_pressure_of_the_force() {
         let text = std::fs::read_to_string(format!("{out}/fields/pressed--{id}.json")).unwrap();
         let field: Value = serde_json::from_str(&text).unwrap();
         let number = |name: &str| run["metrics"][name]["value"].as_f64().unwrap();
-        // The plates close by 2 and 1 mm, less what they sink in.
+        // The plates move by 2 and 1 mm, minus their penetration.
         let height = 20e-3 - 3e-3 + 2.0 * number("penetration");
-        // The force per undeformed area of 40 x 40 mm, times l / J.
+        // The expected pressure is the force per undeformed area of 40 x 40 mm, times l / J, over 3.
         let expected = number("tool-force") / 1.6e-3 * (height / 20e-3) / number("smallest-j") / 3.0;
-        // The cloud's sides are held by penalty at 1e4 E / h.
+        // The cloud's sides are constrained by a penalty of 1e4 E / h.
         let tolerance = if id == "efg" { 2e-3 } else { 1e-6 };
         let cells = field["section"]["cells"].as_array().unwrap();
         assert!(!cells.is_empty(), "{id}");
@@ -42,7 +43,7 @@ fn a_section_between_plates_has_the_pressure_of_the_force() {
                 span = (span.0.min(z), span.1.max(z));
             }
         }
-        // Contact points of both plates: each in its place, as deep as the plates sink in.
+        // The contact points of both plates have the right position and penetration.
         let end = field["body"]["states"].as_array().unwrap().last().unwrap();
         let touching = packed(&end["touching"]);
         assert!(touching.len() >= 8, "{id}");
@@ -51,13 +52,14 @@ fn a_section_between_plates_has_the_pressure_of_the_force() {
             assert!((depth / number("penetration") - 1.0).abs() < 1e-3, "{id}: {depth}");
         }
         assert!((end["deepest_node"].as_f64().unwrap() / number("penetration") - 1.0).abs() < 1e-3, "{id}");
-        // Every point of the surface is off from the reference, none by more than the largest error.
+        // Every surface point differs from the reference, by at most the largest error.
         let body = &field["body"];
         let off = packed(&body["off"]);
         assert_eq!(packed(&body["points"]).len(), 3 * off.len(), "{id}");
         let most = f64::from(off.iter().copied().fold(0.0, f32::max));
         assert!(most <= number("max-error") * (1.0 + 1e-6) + 1e-12, "{id}: {most}");
-        // The stress is uniform: recovered at every point of the surface and inside it is that of the cells.
+        // The stress is uniform: recovered values at all points on the surface and inside equal those of the
+        // cells.
         let inner = body["inside"]["states"].as_array().unwrap().last().unwrap();
         for at in [end, inner] {
             for p in packed(&at["values"][0]) {
@@ -65,12 +67,12 @@ fn a_section_between_plates_has_the_pressure_of_the_force() {
             }
         }
         assert_eq!(packed(&inner["values"][0]).len(), packed(&body["inside"]["points"]).len() / 3, "{id}");
-        // The nodes of the cloud, and of no other.
+        // Only the cloud has its nodes in the data.
         let nodes = if id == "efg" { run["nodes"].as_u64().unwrap() as usize } else { 0 };
         assert_eq!(packed(&field["body"]["cloud"]).len(), 3 * nodes, "{id}");
-        // The whole deformed height is cut.
+        // The section covers the whole deformed height.
         assert!((span.1 - span.0 - height).abs() < 1e-3 * height, "{id}: {span:?} {height}");
-        // The faces of both plates, where they stand at the end.
+        // The faces of both plates are at their final positions.
         let face = |k: usize, pick: fn(f64, f64) -> f64, start: f64| {
             let points = field["tools"][k]["points"].as_array().unwrap();
             points.iter().map(|p| floats(p)[2]).fold(start, pick)

@@ -1,4 +1,4 @@
-//! What a study leaves in its records: every number once, every repeat, and nothing that hangs on a name.
+//! Records of a study: every number once, every repeat, and nothing that depends on the name of a case.
 
 mod common;
 
@@ -22,7 +22,8 @@ fn a_run_of_several_tables_is_run_once_and_checked_by_each() {
     let block = BLOCK.replace("cells = [2, 2, 1]", "level = 1");
     let scene = write(&dir, "block.toml", &block);
     let bound = |most: f64| format!("[[run.check]]\nmetric = \"max-z\"\nat_most = \"{most} mm\"\n");
-    // Alone, as a level, and at the scene's own ratio by its number: the same run.
+    // The run is requested alone, as a level, and at the scene's own Poisson's ratio by number. All three are
+    // the same run.
     let text = format!(
         "title = 'Twice'\n[[run]]\nscene = '{scene}'\n{}[[run]]\nscene = '{scene}'\nlevels = [1, 2]\n{}\
          [[run]]\nscene = '{scene}'\npoisson = [0.3, 0.4]\n{}",
@@ -54,7 +55,7 @@ fn every_repeat_of_a_timing_is_kept_on_both_clocks() {
             set.records.iter().filter(fits).collect()
         };
         let repeats = of("time", "repeat");
-        // A study repeats what is short five times.
+        // A study repeats short runs five times.
         assert_eq!(
             repeats.iter().map(|r| r.repeat).collect::<Vec<_>>(),
             (1..=5).map(Some).collect::<Vec<_>>()
@@ -75,7 +76,8 @@ fn every_repeat_of_a_timing_is_kept_on_both_clocks() {
     assert_eq!(machine.load.is_some(), machine.quiet.is_some());
 }
 
-/// Names and contents of tables without times, the names of figures, and the headings of the findings.
+/// Names and contents of the report's tables without times, names of its figures, and headings of its
+/// findings.
 fn report(out: &str, name: &str) -> Vec<(String, String)> {
     let timed = ["timing", "repeated", "cost", "transfer", "within"];
     let mut all = Vec::new();
@@ -85,7 +87,7 @@ fn report(out: &str, name: &str) -> Vec<(String, String)> {
             let stem = path.file_stem().unwrap().to_string_lossy().into_owned();
             let read = folder == "tables" && !timed.contains(&stem.as_str());
             let content = if read { std::fs::read_to_string(&path).unwrap() } else { String::new() };
-            // A busy machine has a row of its own among the warnings.
+            // A busy machine adds a row to the warnings.
             let content: String =
                 content.split_inclusive('\n').filter(|l| !l.contains("machine-busy")).collect();
             let file = path.file_name().unwrap().to_string_lossy().replace(name, "NAME");
@@ -112,7 +114,7 @@ fn a_scene_under_another_name_is_the_same_scene() {
             format!("title = 'One'\n[[run]]\nscene = '{scene}'\n{methods}")
         };
         let (before, old) = verified(&dir, &study(case), &format!("{case}-before"));
-        // All that names once meant.
+        // The name contains all words that once had a meaning.
         let name = "rigid-kidney-paper-patch";
         let (after, new) = verified(&dir, &study(name), &format!("{case}-after"));
         let rows = |set: &RunSet| -> Vec<Record> {

@@ -1,4 +1,4 @@
-//! Clouds on a body of two materials: across the border, and with shape functions that end there.
+//! Clouds on a body of two materials, with shape functions that cross the interface or end at it.
 
 mod common;
 
@@ -43,7 +43,8 @@ fn run(text: &str) -> Vec<Value> {
     objects(&done.stdout)
 }
 
-/// How far a run's displacement is from that of the first, and whether it says that it blends.
+/// Relative error of a run's displacement against the first method, and whether the run warns of blended
+/// regions.
 fn judged(run: &Value) -> (f64, bool) {
     let error = run["metrics"]["relative-rms"]["value"].as_f64().unwrap_or_else(|| panic!("{run}"));
     (error, run["warnings"].as_array().unwrap().iter().any(|w| w["code"] == "regions-blended"))
@@ -59,7 +60,7 @@ fn a_cloud_whose_supports_end_at_a_border_follows_a_jump_of_stiffness() {
         assert!(across.0 > blended && across.1, "{}", runs[1]);
         assert!(ends.0 < separate && !ends.1, "{}", runs[2]);
     }
-    // Two cells in each layer: the nodes of a layer lie in one plane, between elements.
+    // With two cells in each layer, the nodes of a layer lie in one plane between elements.
     let runs = run(&layers(4, "[\"0 Pa\", \"0 Pa\", \"-100 Pa\"]", &[TET10, BLENDED, SEPARATE]));
     assert!(judged(&runs[1]).0 > 0.4 && judged(&runs[2]).0 < 0.08, "{} {}", runs[1], runs[2]);
 }

@@ -1,4 +1,5 @@
-//! The loop after the first solution: what it answers is what a solution gives, and only scenes at rest have one.
+//! The simulator's loop after the first solution: its answers agree with the solution, and only static scenes
+//! have a loop.
 
 mod common;
 

@@ -1,4 +1,5 @@
-//! The same body in other units, far from the origin, on hard clouds: the same answer or a clear refusal.
+//! The same body in other units, far from the origin, and on difficult clouds: the result is the same, or the
+//! scene is refused with a clear message.
 
 mod common;
 
@@ -14,7 +15,8 @@ const METHODS: &str = r#"method = [
 ]
 "#;
 
-/// A block of 2 x 2 x 1 lengths with a corner at `corner`, given in lengths, pressed by a twentieth of its modulus.
+/// A block of 2 x 2 x 1 lengths under a pressure of a twentieth of its modulus. `corner` is the position of a
+/// corner in lengths.
 fn block(length: f64, unit: &str, corner: f64) -> String {
     let at = |v: [f64; 3]| {
         let c = v.map(|v| format!("\"{:?} {unit}\"", (corner + v) * length));
@@ -29,7 +31,7 @@ fn block(length: f64, unit: &str, corner: f64) -> String {
     )
 }
 
-/// Largest displacement over the length, strain energy over its cube, fallbacks, by method.
+/// Largest displacement divided by the length, strain energy divided by its cube, and fallbacks, by method.
 fn answers(scene: &str, length: f64) -> Vec<(String, [f64; 3])> {
     let dir = tempfile::tempdir().unwrap();
     let done = tissuebench(&["run", &write(&dir, "block.toml", scene), "--format", "json"]);
@@ -50,7 +52,8 @@ fn answers(scene: &str, length: f64) -> Vec<(String, [f64; 3])> {
 fn units_and_origin_do_not_matter() {
     let known = answers(&block(20.0, "mm", 0.0), 0.02);
     assert_eq!(known.len(), 5);
-    // A cube of 1 um, one of 10 m, and the first 1000 lengths away, where coordinates have lost three digits.
+    // A cube of 1 um, a cube of 10 m, and the first cube at a distance of 1000 lengths, where coordinates
+    // have lost three digits.
     for (length, unit, corner, metres, tolerance) in [
         (1.0, "um", 0.0, 1e-6, 1e-9),
         (10.0, "m", 0.0, 10.0, 1e-9),
@@ -68,7 +71,7 @@ fn units_and_origin_do_not_matter() {
     }
 }
 
-/// A cube held to an affine field on its whole boundary, by a smoothed cloud of these nodes.
+/// A cube with an affine field prescribed on its whole boundary, by a smoothed cloud.
 fn patch(cloud: &str) -> String {
     format!(
         r#"title = "A cube in an affine field"
@@ -84,9 +87,9 @@ method = [{{ id = "cloud", family = "efg", kernel = "cubic-spline", basis = "lin
 #[test]
 fn hard_clouds_keep_the_affine_field_or_say_that_they_may_not() {
     let dir = tempfile::tempdir().unwrap();
-    // The affine field is within rounding on any cloud that has shape functions. Where all nodes of a support are nearly in a
-    // plane, gradients are as large as the inverse of its thickness: so is their rounding;
-    // ellipsoids that follow the cells are as good as balls over cubes.
+    // The affine field is exact to rounding on any cloud that has shape functions. If all nodes of a support
+    // are nearly coplanar, gradients and their rounding errors are as large as the inverse thickness.
+    // Ellipsoids that follow the cells are as accurate as balls over cubes.
     for (name, cloud, most) in [
         (
             "jitter",
@@ -124,14 +127,15 @@ fn hard_clouds_keep_the_affine_field_or_say_that_they_may_not() {
         let stress = object["metrics"]["stress"]["value"].as_f64().unwrap();
         assert!(!cloud.contains("adapted") || stress < 1e-12, "{name}: {stress:e}");
     }
-    // Too small a support is enlarged at every point, and counted; one that can reach no neighbour is refused.
+    // A support that is too small is enlarged at every point, and counted. A support that reaches no
+    // neighbour is refused.
     let tight = patch(r#"neighbours = 4, factor = 1.01, size = { cells = [5, 5, 5] }"#);
     let done = tissuebench(&["run", &write(&dir, "patch.toml", &tight), "--format", "json"]);
     assert_eq!(done.code, 0, "{}", done.stderr);
     let object: Value = serde_json::from_str(&done.stdout).unwrap();
     assert!(object["metrics"]["fallbacks-enlarged"]["value"].as_f64().unwrap() > 0.0, "{object}");
-    // Round supports over flat cells, of 50:1 and of 12:1, see their neighbours in planes: few digits are certain, which the run
-    // says, though all but the last are right.
+    // Spherical supports over flat cells of 50:1 and 12:1 have their neighbours in planes. The run warns of
+    // few reliable digits, although only the last digits are wrong.
     for thin in [
         r#"neighbours = 12, factor = 1.5, size = { cells = [10, 4, 4], grading = [100, 1, 1] }"#,
         r#"neighbours = 20, factor = 1.5, size = { cells = [24, 2, 2] }"#,
@@ -142,7 +146,7 @@ fn hard_clouds_keep_the_affine_field_or_say_that_they_may_not() {
         assert!(object["metrics"]["l2"]["value"].as_f64().unwrap() < 1e-11, "{object}");
         assert_eq!(object["warnings"][0]["code"], "few-digits", "{object}");
     }
-    // The nodes are those of a mesh, whose cells may turn inside out.
+    // The nodes are those of a mesh, whose cells may become inverted.
     let wild =
         patch(r#"support_scale = 1.6, size = { cells = [5, 5, 5] }, jitter = { fraction = 0.45, seed = 7 }"#);
     let done = tissuebench(&["run", &write(&dir, "patch.toml", &wild)]);

@@ -1,9 +1,9 @@
-//! The rooms of the harness stand in one order, and each uses only those to its right; files and functions stay small.
+//! Order of the harness's modules: each module uses only those to its right. Files and functions stay small.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-/// From left to right.
+/// Modules from left to right.
 const ROOMS: [&str; 12] = [
     "cli",
     "study",
@@ -23,7 +23,7 @@ fn source() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("src")
 }
 
-/// Every Rust file below a folder with its text.
+/// Rust files below a folder, with their texts.
 fn files(folder: &Path) -> Vec<(PathBuf, String)> {
     let mut found = Vec::new();
     for entry in std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()) {
@@ -37,14 +37,14 @@ fn files(folder: &Path) -> Vec<(PathBuf, String)> {
     found
 }
 
-/// The room of a file: the first part of its path below `src`.
+/// Index of a file's module: the first part of its path below `src`.
 fn room(path: &Path) -> Option<usize> {
     let below = path.strip_prefix(source()).unwrap().with_extension("");
     let first = below.components().next()?.as_os_str().to_str()?.to_string();
     ROOMS.iter().position(|room| *room == first)
 }
 
-/// Rooms that a text names after `crate::`, in a path or in a list.
+/// Modules that a text names after `crate::`, in a path or in a list.
 fn used(text: &str) -> BTreeSet<usize> {
     let known = |name: &str| ROOMS.iter().position(|room| *room == name);
     let word = |text: &str| {
@@ -86,7 +86,8 @@ fn an_arrow_back_would_be_seen() {
     assert_eq!(used("let x = crate::study::check(1);"), BTreeSet::from([1]));
 }
 
-/// Lines of the longest function of a text that rustfmt has laid out: from `fn` to the brace that closes it at its indent.
+/// Number of lines of the longest function in a text formatted by rustfmt: from `fn` to the closing brace at
+/// the same indentation.
 fn longest_function(text: &str) -> usize {
     let lines: Vec<&str> = text.lines().collect();
     let mut longest = 0;
@@ -137,7 +138,7 @@ fn no_meaning_is_read_out_of_names() {
         }
     }
     assert!(scenes.len() > 20, "{scenes:?}");
-    // "relaxation" and "cantilever" are words of the field, too.
+    // These words are also terms of the field.
     let words = ["relaxation", "first", "compression", "cantilever"];
     for folder in ["reports/src", "harness/src"] {
         for (path, text) in files(&root.join(folder)) {
@@ -156,8 +157,8 @@ fn no_meaning_is_read_out_of_names() {
     }
 }
 
-/// Readers take regular files up to a size, and no output replaces an input: this holds where one place opens
-/// them. The same of characters that a terminal obeys.
+/// Files are opened in one place only, which refuses large or special files and outputs that would replace an
+/// input. Text is printed in one place only, which handles control characters of terminals.
 #[test]
 fn files_are_opened_and_text_is_printed_in_one_place_each() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap().to_path_buf();

@@ -1,4 +1,4 @@
-//! A method's mesh file is of the scene's body: in its place, of its extent and its volume.
+//! Mesh files of methods must match the scene's body in position, extent and volume.
 
 mod common;
 
@@ -35,7 +35,7 @@ fn a_mesh_of_another_body_or_unit_is_refused() {
         assert_eq!(done.code, 0, "{}", done.stderr);
         assert_fails(&run(&body, &m), 2, "organ.toml:6: key 'method[0].size.file'");
     }
-    // The unit of the body does not pass to the method; what would is said.
+    // The unit of the body does not apply to the method, and the message says what to write.
     assert_fails(&run(&file("m"), &mm), 2, "write unit = \"m\" beside it");
     let cube = "shape = \"box\", size = [\"40 mm\", \"40 mm\", \"20 mm\"]";
     assert_fails(&run(cube, &mm), 2, "give a mesh of the same body");

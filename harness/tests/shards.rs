@@ -1,4 +1,4 @@
-//! Studies in shares: of equal cost, joined to the results of one run.
+//! Studies in shares: of equal cost, and merged to the results of a single run.
 
 mod common;
 
@@ -9,7 +9,7 @@ use common::{assert_fails, cases, inside, tissuebench, write};
 use reports::{Record, RunSet, read_run};
 use tempfile::TempDir;
 
-/// Levels whose orders are checked, clouds of many seeds, and runs that two tables ask for.
+/// A study with levels whose orders are checked, clouds of many seeds, and runs that two tables request.
 fn study(dir: &TempDir) -> String {
     let (bending, first) = (cases("pure-bending.toml"), cases("first.toml"));
     let text = format!(
@@ -43,7 +43,7 @@ scene = '{first}'
     write(dir, "study.toml", &text)
 }
 
-/// All that two runs of one study share to the bit.
+/// Results that are bitwise equal in two runs of one study.
 fn exact(set: &RunSet) -> impl PartialEq + use<> {
     let rows = set.records.iter().filter(|r| !r.is_measured());
     let rows: Vec<(Record, u64)> = rows.map(|r| (r.clone(), r.value.to_bits())).collect();
@@ -69,7 +69,7 @@ fn shares_are_joined_to_the_results_of_one_run() {
     let mut together = BTreeSet::new();
     for k in 1..=3 {
         let out = inside(&dir, &format!("share{k}"));
-        // The third on another machine, as far as its threads say.
+        // The third share appears to come from another machine, because it has other threads.
         let (shard, threads) = (format!("{k}/3"), if k == 3 { "2" } else { "1" });
         let done = tissuebench(&["verify", &study, "--shard", &shard, "--threads", threads, "--out", &out]);
         assert_eq!(done.code, 0, "{}", done.stderr);
@@ -82,7 +82,7 @@ fn shares_are_joined_to_the_results_of_one_run() {
     let out = inside(&dir, "merged");
     let merge = |shares: &[&str]| tissuebench(&[&["merge", &out], shares].concat());
     let [one, two, three] = [&shares[0][..], &shares[1], &shares[2]];
-    // Without one of them it is incomplete, and says what is missing.
+    // Without one of the shares, the result is incomplete and names the missing runs.
     let part = merge(&[one, three]);
     assert_fails(&part, 5, "runs are in no share");
     assert!(part.stderr.contains("missing: "), "{}", part.stderr);
@@ -91,13 +91,14 @@ fn shares_are_joined_to_the_results_of_one_run() {
     assert_eq!(done.code, 0, "{}", done.stderr);
     assert!(done.stderr.contains("times are of 2 kinds of machines"), "{}", done.stderr);
     assert!(exact(&results(&out)) == exact(&whole));
-    // Its runs are stored like those of one run.
+    // The merged runs are stored like those of a single run.
     assert_eq!(tissuebench(&["verify", &study, "--resume", "--out", &out]).code, 0);
     let (again, joined) = (results(&out), results(&out));
     assert!(again.records == joined.records);
 }
 
-/// The costliest run is dealt first: the others fill the other share, whatever their order in the study.
+/// The most expensive run is assigned first. The others fill the other share, whatever their order in the
+/// study.
 #[test]
 fn the_costliest_run_has_a_share_of_its_own() {
     let dir = tempfile::tempdir().unwrap();
@@ -135,7 +136,7 @@ fn what_is_no_share_is_not_joined() {
     assert!(!Path::new(&out).exists());
 }
 
-/// A script of the book by the name in its first line.
+/// A script of the book, by the name in its first line.
 #[cfg(unix)]
 fn script(name: &str) -> String {
     let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/src/guide/long-studies.md");
@@ -144,7 +145,7 @@ fn script(name: &str) -> String {
     text[from..].split("```").next().unwrap().into()
 }
 
-/// Two workers by `xargs -P 2`, as the book has it, against a single run.
+/// Two workers by `xargs -P 2`, as in the book, compared with a single run.
 #[cfg(unix)]
 #[test]
 fn the_scripts_of_the_book_give_the_results_of_one_run() {

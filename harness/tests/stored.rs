@@ -1,4 +1,4 @@
-//! References stored by one command and compared with by scenes.
+//! References that one command stores and scenes compare with.
 
 mod common;
 
@@ -6,7 +6,7 @@ use common::{Done, PRESSED, assert_fails, inside, tissuebench, write};
 use serde_json::Value;
 use tempfile::TempDir;
 
-/// One tetrahedron inside the block, in mm; its corners are where displacements are told.
+/// A tetrahedron inside the block (mm), at whose corners displacements are stored.
 fn points(dir: &TempDir, corners: [[f64; 3]; 4]) -> String {
     let mut text = String::from("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n4\n");
     for (n, [x, y, z]) in corners.iter().enumerate() {
@@ -31,7 +31,7 @@ fn bonded_without(words: &[&str]) -> String {
         .collect()
 }
 
-/// The reference of a scene.
+/// Makes the reference of a scene.
 fn made(dir: &TempDir, scene: &str, out: &str) -> Done {
     let corners = [[5.0, 5.0, 5.0], [30.0, 5.0, 5.0], [5.0, 30.0, 5.0], [5.0, 5.0, 15.0]];
     let scene = write(dir, "made.toml", scene);
@@ -43,7 +43,7 @@ fn made(dir: &TempDir, scene: &str, out: &str) -> Done {
 fn stored(dir: &TempDir) -> String {
     let out = inside(dir, "reference.json");
     let made = made(dir, &bonded(), &out);
-    // Two cells across are few, of which nothing else is to be said.
+    // The only warning is that two cells across are few.
     let mut said = made.stderr.lines().filter(|line| line.contains("warning"));
     assert!(said.all(|line| line.ends_with("(few-cells)")), "{}", made.stderr);
     assert_eq!(made.stdout.lines().count(), 2, "{}", made.stdout);
@@ -77,12 +77,12 @@ fn methods_are_compared_with_the_last_one_and_all_span_the_band() {
     }
     let [first, last] = [metric(0, "tool-force"), metric(1, "tool-force")];
     assert!((metric(0, "tool-force-error") - (first / last - 1.0).abs()).abs() < 1e-12);
-    // The record is known as well as its two solutions agree.
+    // The reference's own error is the difference of its two solutions.
     let own = |name: &str| objects[0]["reference"]["band"][name].as_f64().unwrap();
     for name in ["tool-force-error", "relative-rms"] {
         assert!((own(name) - metric(0, name)).abs() < 1e-12, "{name}: {}", objects[0]["reference"]);
     }
-    // The record: forces of both steps, the band from one method's to the other's.
+    // The record contains the forces of both steps, with a band from one method's force to the other's.
     let file: Value =
         serde_json::from_str(&std::fs::read_to_string(inside(&dir, "reference.json")).unwrap()).unwrap();
     let tool = &file["steps"][1]["tools"][0];
@@ -129,7 +129,7 @@ fn parts_made_one_by_one_join_to_the_same_reference() {
     assert!(alone.contains("\"beside\":[]") && alone.contains("\"displacement_band\":0.0"));
     assert_eq!(make(&["tet4-nodal", "hex20-mixed"], &joined, &[&part]).code, 0);
     assert_eq!(std::fs::read_to_string(&joined).unwrap(), whole);
-    // Or all made before.
+    // All solutions may also be made before.
     let (nodal, last) = (inside(&dir, "nodal.json"), inside(&dir, "last.json"));
     assert_eq!((make(&["tet4-nodal"], &nodal, &[]).code, make(&["hex20-mixed"], &last, &[]).code), (0, 0));
     let join = [
@@ -146,10 +146,10 @@ fn parts_made_one_by_one_join_to_the_same_reference() {
     ];
     assert_eq!(tissuebench(&[&join[..], &["--out", &joined]].concat()).code, 0);
     assert_eq!(std::fs::read_to_string(&joined).unwrap(), whole);
-    // A solution is no witness of itself.
+    // A solution cannot be compared with itself.
     assert_fails(&make(&["hex8"], &joined, &[&part]), 2, "part.json: 'hex8' is there already");
     assert_eq!(std::fs::read_to_string(&joined).unwrap(), whole);
-    // Refused before anything is solved, and nothing is written.
+    // The file is refused before anything is solved, and nothing is written.
     let refused = inside(&dir, "refused.json");
     let fails = |method: &str, says: &str| {
         assert_fails(&make(&[method], &refused, &[&part]), 2, says);
@@ -165,7 +165,7 @@ fn parts_made_one_by_one_join_to_the_same_reference() {
     fails("hex20-mixed", " nodes is of another scene, or another text of it");
     change("element = \"hex8\"", "element = \"hex8\", dilation = \"element-mean\"");
     fails("hex20-mixed", " nodes is not by the scene's 'hex8', but by\n");
-    // Words and other methods are not what was solved.
+    // Titles and other methods do not belong to the solved problem.
     write(
         &dir,
         "made.toml",

@@ -1,4 +1,5 @@
-//! Studies that are killed, interrupted, out of space, time or memory: what is finished stays, and the rest says so.
+//! Studies that are killed or interrupted, or that run out of space, time or memory. Finished results are
+//! kept, and the rest is reported.
 #![cfg(target_os = "linux")]
 
 mod common;
@@ -15,7 +16,7 @@ use tempfile::TempDir;
 
 const PROGRAM: &str = env!("CARGO_BIN_EXE_tissuebench");
 
-/// Scenes of one block each, with different stiffness, and the study of them all.
+/// Writes scenes of one block each with different stiffnesses, and the study of all of them.
 fn study(dir: &TempDir, scenes: usize) -> String {
     let mut text = String::from("title = \"Blocks\"\n");
     for index in 0..scenes {
@@ -29,7 +30,7 @@ fn study(dir: &TempDir, scenes: usize) -> String {
     write(dir, "study.toml", &text)
 }
 
-/// [`BLOCK`] in explicit dynamics for so long that it takes minutes: millions of steps of 1280 elements.
+/// [`BLOCK`] in explicit dynamics, which takes minutes: millions of steps of 1280 elements.
 fn endless() -> String {
     BLOCK
         .replace("poisson = 0.3 }", "poisson = 0.3, density = \"1000 kg/m^3\" }")
@@ -45,7 +46,7 @@ fn results(out: &str) -> RunSet {
     read_run(Path::new(out)).unwrap()
 }
 
-/// What two runs of one study share to the bit.
+/// Results that are bitwise equal in two runs of one study.
 fn exact(out: &str) -> (Vec<(Record, u64)>, Vec<reports::Check>, Vec<reports::PlanEntry>) {
     let set = results(out);
     let rows = set.records.iter().filter(|r| !r.is_measured());
@@ -57,7 +58,7 @@ fn start(args: &[&str]) -> Child {
     command.args(args).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap()
 }
 
-/// Waits until it is so, at most a minute.
+/// Waits until the condition holds, at most a minute.
 fn wait_until(so: impl Fn() -> bool) {
     let began = Instant::now();
     while !so() {
@@ -66,7 +67,7 @@ fn wait_until(so: impl Fn() -> bool) {
     }
 }
 
-/// The stored results of single runs, by their files.
+/// Stored results of single runs, by file.
 fn stored(out: &str) -> BTreeMap<PathBuf, Vec<u8>> {
     let Ok(entries) = std::fs::read_dir(Path::new(out).join("tasks")) else { return BTreeMap::new() };
     let paths = entries.map(|entry| entry.unwrap().path());
@@ -74,7 +75,7 @@ fn stored(out: &str) -> BTreeMap<PathBuf, Vec<u8>> {
     results.filter_map(|path| Some((path.clone(), std::fs::read(path).ok()?))).collect()
 }
 
-/// The end of a process, and what it said.
+/// Exit code of a process, and its stderr.
 fn end(child: Child) -> (Option<i32>, String) {
     let output = child.wait_with_output().unwrap();
     (output.status.code(), String::from_utf8(output.stderr).unwrap())
@@ -93,14 +94,14 @@ fn processes_of(dir: &TempDir) -> Vec<String> {
     lines.map(|line| String::from_utf8_lossy(&line).into_owned()).filter(|line| line.contains(name)).collect()
 }
 
-/// Numbers of the processes that a process has started.
+/// Ids of the processes that a process has started.
 fn experiments_of(parent: &Child) -> Vec<String> {
     let tasks = std::fs::read_dir(format!("/proc/{}/task", parent.id())).unwrap();
     let children = tasks.filter_map(|task| std::fs::read_to_string(task.ok()?.path().join("children")).ok());
     children.flat_map(|ids| ids.split_whitespace().map(String::from).collect::<Vec<_>>()).collect()
 }
 
-/// Numbers from 0 to below 1, the same in every run of the test.
+/// Reproducible pseudo-random numbers in [0, 1).
 struct Chance(u64);
 
 impl Chance {
@@ -110,8 +111,8 @@ impl Chance {
     }
 }
 
-/// Kills one of two workers on a folder again and again and starts it anew. In between nothing that is finished changes or goes,
-/// and at the end all is as in a study that nobody disturbed.
+/// Repeatedly kills and restarts one of two workers on a folder. Meanwhile finished results must neither
+/// change nor disappear, and at the end all results must equal those of an undisturbed study.
 fn survives(scenes: usize, kills: usize, options: &[&str]) {
     let dir = tempfile::tempdir().unwrap();
     let (study, out, calm) = (study(&dir, scenes), inside(&dir, "out"), inside(&dir, "calm"));
@@ -124,7 +125,7 @@ fn survives(scenes: usize, kills: usize, options: &[&str]) {
     let mut workers = [start(&args), start(&args)];
     let mut killed = 0;
     while killed < kills {
-        // A study that is done is begun anew but for half of its results: there have to be runs to be killed.
+        // A finished study is started again with half of its results, so that there are runs to be killed.
         if let [Some(_), Some(_)] = workers.each_mut().map(|worker| worker.try_wait().unwrap()) {
             for worker in workers {
                 assert_eq!(end(worker).0, Some(0));
@@ -145,7 +146,7 @@ fn survives(scenes: usize, kills: usize, options: &[&str]) {
         killed += 1;
         let now = stored(&out);
         for (path, bytes) in &known {
-            // A second run would have left other times.
+            // A second run would have other times.
             assert!(now.get(path) == Some(bytes), "{} after {killed} kills", path.display());
         }
         known = now;
@@ -162,7 +163,7 @@ fn survives(scenes: usize, kills: usize, options: &[&str]) {
     assert_eq!(processes_of(&dir), [""; 0]);
 }
 
-/// Of what two undisturbed workers made, each has taken from the store what the other one made.
+/// Two undisturbed workers: each takes from the store the results that the other made.
 #[test]
 fn two_workers_make_each_run_once() {
     let dir = tempfile::tempdir().unwrap();
@@ -183,7 +184,7 @@ fn two_workers_survive_being_killed() {
     survives(24, 6, &[]);
 }
 
-/// `cargo xtask survive`.
+/// The test of `cargo xtask survive`.
 #[test]
 #[ignore = "cargo xtask survive runs it"]
 fn two_workers_survive_a_hundred_kills() {
@@ -198,12 +199,12 @@ fn results_of_a_killed_study_are_incomplete() {
     let verify = ["verify", &study, "--out", &out];
     assert_eq!(tissuebench(&verify).code, 0);
     let before = exact(&out);
-    // The last scene never ends: the two others are finished before.
+    // The last scene never ends; the two others finish before.
     write(&dir, "b2.toml", &endless());
     let mut killed = start(&verify);
     let first = stored(&out);
     wait_until(|| stored(&out).iter().filter(|(path, bytes)| first.get(*path) != Some(bytes)).count() == 2);
-    // Nobody else may use the folder meanwhile.
+    // No other process may use the folder in the meantime.
     let (code, said) = end(start(&verify));
     assert_eq!(code, Some(2));
     assert!(said.contains(&format!("{out} is in use by process {};", killed.id())), "{said}");
@@ -251,7 +252,7 @@ fn stdout_that_takes_nothing_costs_no_results() {
         let (code, said) = ends(&[&args[..], &["--out", &full]].concat(), device.into());
         assert_eq!(code, Some(5), "{said}");
         assert!(said.contains("stdout can't be written: No space left on device"), "{said}");
-        // A reader that has gone has what it wants.
+        // A reader that has closed the pipe is not an error.
         let (reader, writer) = std::io::pipe().unwrap();
         drop(reader);
         let (code, said) = ends(&[&args[..], &["--out", &closed]].concat(), writer.into());
@@ -267,7 +268,7 @@ fn results_that_cannot_be_written_are_5_and_the_folder_opens_afterwards() {
     let (study, out) = (study(&dir, 2), inside(&dir, "out"));
     assert_eq!(tissuebench(&["verify", &study, "--out", &out]).code, 0);
     let before = exact(&out);
-    // A folder is in the way of what is written beside its place.
+    // A folder blocks the temporary file of the output.
     let partial = format!("{out}/records.csv.partial");
     std::fs::create_dir(&partial).unwrap();
     let done = tissuebench(&["verify", &study, "--out", &out]);
@@ -305,7 +306,7 @@ fn memory_and_time_cost_one_run_alone() {
     let whole = |case: &str| set.records.iter().any(|r| r.case == case && r.quantity == "max-z");
     assert!(whole("b0") && whole("b3") && !whole("b1") && !whole("b2"));
     assert_eq!(processes_of(&dir), [""; 0]);
-    // The same numbers as in one process.
+    // The results are the same as in one process.
     write(&dir, "b1.toml", BLOCK);
     write(&dir, "b2.toml", BLOCK);
     let (apart, together) = (inside(&dir, "apart"), inside(&dir, "together"));
@@ -320,7 +321,7 @@ fn a_crash_costs_one_run_alone() {
     let (study, out) = (study(&dir, 3), inside(&dir, "out"));
     write(&dir, "b1.toml", &endless());
     let child = start(&["verify", &study, "--out", &out, "--isolate"]);
-    // The first is done, the second never will be.
+    // The first run is finished; the second never ends.
     wait_until(|| stored(&out).len() == 1);
     wait_until(|| experiments_of(&child).len() == 1);
     std::thread::sleep(Duration::from_millis(200));
@@ -354,7 +355,7 @@ fn what_nobody_means_to_run_asks_for_force() {
         }
         assert!(!Path::new(&out).exists());
     }
-    // Forced, a plan of many steps is made, as it takes no longer than one of a few.
+    // With `--force`, the plan of many steps is made. It takes no longer than a plan of a few steps.
     let planned = tissuebench(&["plan", &inside(&dir, "b0.toml"), "--force"]);
     assert_eq!(planned.code, 0, "{}", planned.stderr);
 }

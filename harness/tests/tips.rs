@@ -1,4 +1,4 @@
-//! Tools that come down on tips and edges of the body.
+//! Tools that press on tips and edges of the body.
 
 mod common;
 
@@ -8,7 +8,7 @@ use common::blocks::{Blocks, even};
 use common::{objects, tissuebench, write};
 use serde_json::Value;
 
-/// A pyramid of 16 x 16 mm, 16 mm high: four tetrahedra, each divided in eight so many times.
+/// A pyramid of 16 x 16 mm, 16 mm high: four tetrahedra, each divided into eight, `times` times.
 fn pyramid(times: usize) -> String {
     let mut points: Vec<[f64; 3]> = vec![
         [-8.0, -8.0, 0.0],
@@ -58,7 +58,7 @@ fn pyramid(times: usize) -> String {
     )
 }
 
-/// The mesh without cells that have a node twice.
+/// Removes cells in which a node occurs twice.
 fn without_flat_cells(mesh: &str) -> String {
     let (head, elements) = mesh.split_once("$Elements\n").unwrap();
     let distinct = |line: &&str| {
@@ -70,7 +70,7 @@ fn without_flat_cells(mesh: &str) -> String {
     format!("{head}$Elements\n{}\n{}\n$EndElements\n", kept.len(), kept.join("\n"))
 }
 
-/// A roof: a block drawn together to a ridge.
+/// A roof: a block tapered to a ridge.
 fn roof(cells: usize) -> String {
     let even = even(1.0, cells);
     let places =
@@ -83,7 +83,8 @@ fn roof(cells: usize) -> String {
 const PLATE: &str = r#"shape = "plate""#;
 const BALL: &str = r#"shape = "sphere", radius = "8 mm""#;
 
-/// The objects of a run: a tool that closes downwards from the place `at` (mm) on a body with its base held.
+/// Runs a body that is fixed at its base under a tool, which moves down from the height `at` (mm); returns
+/// the JSON objects.
 fn run(
     mesh: &str,
     tool: &str,

@@ -1,4 +1,4 @@
-//! Every transfer scheme by its name in a scene, with its settings.
+//! Transfer schemes by name in a scene, with their settings.
 
 mod common;
 
@@ -9,7 +9,7 @@ use harness::run::Repeats;
 use harness::run::{Group, RunOptions};
 use interp::Scheme;
 
-/// A cloud on the nodes of a mesh, its displacement carried to the given targets by the given schemes.
+/// Transfers the displacement of a cloud on the nodes of a mesh to the given targets, by the given schemes.
 fn transfers(targets: &str, schemes: &[String]) -> Vec<Transfer> {
     let cloud = r#", { id = "efg", family = "efg", size = { cells = [4, 4, 2] }, kernel = "cubic-spline", support_scale = 1.6, basis = "linear", integration = { rule = "gauss", points = 4 }, essential = "penalty" }]"#;
     let list: Vec<String> =
@@ -40,7 +40,7 @@ fn every_scheme_runs_by_its_name() {
     for (transfer, scheme) in transfers.iter().zip(Scheme::all()) {
         assert_eq!(transfer.scheme, scheme.name());
         let linear = value(&transfer.metrics, "linear-rms");
-        // The field is of 1e-3 m; what is not exact is off by 1e-5 and more on this cloud.
+        // The field is about 1e-3 m. Schemes that are not exact have errors of at least 1e-5 m on this cloud.
         assert_eq!(linear < 1e-15, scheme.exact_degree() >= Some(1), "{scheme:?}: {linear:e} m");
         assert!(value(&transfer.metrics, "rms") > 0.0);
         assert_eq!(value(&transfer.metrics, "outside"), 0.0, "{scheme:?}");
@@ -74,7 +74,7 @@ fn settings_reach_the_schemes_and_the_records() {
     );
     let linear: Vec<bool> = transfers[..6].iter().map(|t| value(&t.metrics, "linear-rms") < 1e-15).collect();
     assert_eq!(linear, [true, true, false, true, false, true]);
-    // The second probe is 1 mm beyond the body.
+    // The second probe lies 1 mm outside the body.
     let outside: Vec<f64> = transfers[..6].iter().map(|t| value(&t.metrics, "outside")).collect();
     assert_eq!(outside, [0.0, 0.0, 0.0, 0.0, 0.0, 1.0]);
 }

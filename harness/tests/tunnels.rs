@@ -1,12 +1,12 @@
-//! Tools that would go through the body unseen: load steps longer than a tool is thick, faces larger than a tool, tools that start
-//! or end within the body.
+//! Tools that could pass through the body unnoticed: load steps longer than the thickness of a tool, faces
+//! larger than a tool, and tools that start or end within the body.
 
 mod common;
 
 use common::{Done, assert_fails, objects, tissuebench, write};
 use serde_json::Value;
 
-/// A clamped block of 40 x 40 x 20 mm under a tool that closes downwards, in cells of 10 mm.
+/// A clamped block of 40 x 40 x 20 mm in cells of 10 mm under a tool that moves down.
 fn scene(tool: &str, closure: &str, procedure: &str) -> String {
     format!(
         r#"title = "A block under a tool"
@@ -26,7 +26,7 @@ fn run(scene: &str) -> Done {
     tissuebench(&["run", &write(&dir, "tool.toml", scene), "--format", "json"])
 }
 
-/// Force of the tool at the end of a run that carried all of it, and the number of steps that it reports.
+/// Tool force at the end of a run that reached the whole load, and the number of reported steps.
 fn force(scene: &str) -> (f64, usize) {
     let done = run(scene);
     assert_eq!(done.code, 0, "{}", done.stderr);
@@ -53,7 +53,7 @@ fn ball(radius: &str, at: &str) -> String {
 fn one_step_gives_the_force_of_many() {
     let jaw = box_of("4 mm", "1 mm", "24.5 mm");
     let sheet = box_of("0.1 mm", "0.1 mm", "25 mm");
-    // A ball of 3 mm over a vertex, whose contact points are 3 mm away.
+    // A ball of 3 mm radius over a vertex, whose nearest contact points are 3 mm away.
     let small = ball("3 mm", r#""20 mm", "20 mm", "23 mm""#);
     for (tool, closure) in [(&jaw, "10 mm"), (&sheet, "8 mm"), (&small, "3 mm")] {
         let [one, five] = [1, 5].map(|steps| {
@@ -88,7 +88,7 @@ fn tools_that_meet_nothing_end_without_a_force() {
 
 #[test]
 fn a_tool_between_the_points_is_refused_with_its_depth() {
-    // A ball of 10 mm dips 0.2 mm into the top over a vertex, 3 mm from the nearest points.
+    // A ball of 10 mm radius penetrates the top by 0.2 mm over a vertex, 3 mm from the nearest points.
     let shallow = scene(&ball("10 mm", r#""20 mm", "20 mm", "30 mm""#), "0.2 mm", STATIC);
     let done = run(&shallow);
     assert_fails(&done, 3, "key 'tool[0]'");
@@ -100,7 +100,7 @@ fn a_tool_between_the_points_is_refused_with_its_depth() {
         3,
         "overlaps the body by 2.000e-4 m near (0.0200, 0.0200, 0.0200) m",
     );
-    // A plate comes to a corner of the block along its diagonal: corners count.
+    // A plate meets a corner of the block along its diagonal: corners count.
     let corner = r#"shape = "plate", at = ["40 mm", "40 mm", "20 mm"], along = [-0.57735027, -0.57735027, -0.57735027]"#;
     let [two, six] = ["2 mm", "6 mm"].map(|closure| force(&scene(corner, closure, STATIC)).0);
     assert!(0.0 < two && two < six, "{two} {six}");
@@ -118,7 +118,7 @@ fn tools_that_cannot_touch_are_refused_before_the_first_step() {
 
 #[test]
 fn explicit_tools_are_no_faster_than_their_thickness() {
-    // 20 mm in 50 us: beyond the block within two steps.
+    // At 20 mm in 50 us the tool is beyond the block within two steps.
     let fast = scene(&box_of("0.1 mm", "0.1 mm", "20.5 mm"), "20 mm", STATIC)
         .replace(r#"closure = "20 mm""#, r#"closure = "20 mm", over = "50 us""#)
         .replace(STATIC, r#"kind = "explicit", duration = "1 ms", steps = 2"#);

@@ -1,4 +1,4 @@
-//! Studies through the built program: exit codes, the same bits again, stored runs kept.
+//! Studies run by the built program: exit codes, bitwise reproducibility, and reuse of stored runs.
 
 mod common;
 
@@ -12,7 +12,8 @@ fn results(folder: &str) -> RunSet {
     read_run(Path::new(folder)).unwrap()
 }
 
-/// Rows that two runs of one input share to the bit; the value as bits, for -0 is not 0 and no NaN equals another.
+/// Rows that are bitwise equal in two runs with the same input. Values are compared as bits, because -0
+/// differs from 0 and NaN is not equal to NaN.
 fn exact(set: &RunSet) -> Vec<(Record, u64)> {
     let rows = set.records.iter().filter(|r| !r.is_measured());
     rows.map(|r| (r.clone(), r.value.to_bits())).collect()
@@ -94,7 +95,7 @@ seeds = 3
         .map(|r| (r.seed, r.value))
         .collect();
     found.sort_by_key(|f| f.0);
-    // The scene's own cloud, of seed 1, is not run twice.
+    // The scene's own cloud has seed 1 and is not run twice.
     assert_eq!(found.iter().map(|f| f.0).collect::<Vec<_>>(), [1, 2, 3]);
     assert!(found[0].1 != found[1].1 && found[1].1 != found[2].1);
     let table = |name: &str| std::fs::read_to_string(format!("{out}/report/tables/{name}.csv")).unwrap();
@@ -104,11 +105,12 @@ seeds = 3
     assert_eq!((cells[3], cells[5]), ("3", "3"), "{row}");
     let most = found.iter().fold(0.0f64, |m, f| m.max(f.1));
     assert!((cells[10].parse::<f64>().unwrap() - 1e3 * most).abs() < 1e-9, "{row}");
-    // Elsewhere the first cloud stands for all.
+    // In other tables, the first cloud represents all.
     assert_eq!(table("maxima").lines().filter(|l| l.contains("efg")).count(), 1);
 }
 
-/// Clouds of a block under twice its stiffness, with too few iterations: all get a part of the way. Pressed softly they get there.
+/// Clouds of a block under a pressure of twice its stiffness, with too few iterations: all reach only a part
+/// of the load. Under a small pressure they reach all of it.
 fn hopeless(dir: &TempDir, check: &str) -> String {
     let scene = r#"title = "Pressed too hard"
 body = { shape = "box", size = ["40 mm", "40 mm", "20 mm"] }
@@ -137,7 +139,7 @@ fn clouds_that_all_stall_are_no_success() {
     let done = tissuebench(&["verify", &hard, "--out", &out]);
     assert_eq!(done.code, 3, "{}", done.stderr);
     let set = results(&out);
-    // Each has numbers of a part of its load, and the report says so.
+    // Each run has results at a part of its load, and the report says so.
     assert_eq!(set.failures.len(), 3);
     assert!(set.failures.iter().all(|f| f.carried.is_some_and(|load| load > 0.1 && load < 0.9)));
     let page = std::fs::read_to_string(format!("{out}/report/report.html")).unwrap();
@@ -167,7 +169,7 @@ fn a_share_of_clouds_must_carry_the_load() {
 
 #[test]
 fn a_check_without_a_number_fails() {
-    // A block has no fallbacks of moving least squares: nothing is recorded that the check could bound.
+    // Elements have no fallbacks of moving least squares, so there is no record for the check to bound.
     let dir = tempfile::tempdir().unwrap();
     let (study, out) = (bounded(&dir, "metric = \"fallbacks-enlarged\"\nat_most = 0"), inside(&dir, "out"));
     assert_fails(&tissuebench(&["verify", &study, "--out", &out]), 1, "gives no such number");
@@ -198,7 +200,8 @@ fn a_cloud_is_held_in_every_way_that_is_named_and_elements_in_theirs() {
         ("coupling", true),
     ] {
         let found: Vec<_> = l2.iter().filter(|r| r.essential.as_deref() == Some(way)).collect();
-        // Smoothed cells pass the patch test however they are held, but for a penalty's own error of 4e-5.
+        // Smoothed cells pass the patch test with every treatment of essential conditions except penalty,
+        // whose error is 4e-5.
         assert!(found.len() == 1 && (found[0].value < 1e-12) == exact, "{way}: {found:?}");
     }
     let rule = |r: &&Record| r.quantity == "integration-rms";
@@ -209,7 +212,7 @@ fn first_difference<'a, T: PartialEq>(a: &'a [T], b: &'a [T]) -> Option<(&'a T, 
     a.iter().zip(b).find(|(a, b)| a != b)
 }
 
-/// A study of the block with one more bound on it.
+/// A study of the block with an additional check.
 fn bounded(dir: &TempDir, check: &str) -> String {
     let scene = write(dir, "block.toml", BLOCK);
     let text = format!("title = \"Bounds\"\n[[run]]\nscene = '{scene}'\n[[run.check]]\n{check}\n");
@@ -218,7 +221,7 @@ fn bounded(dir: &TempDir, check: &str) -> String {
 
 #[test]
 fn a_check_that_does_not_hold_is_1() {
-    // Of 1 kPa on 20 mm at 20 kPa: about 1 mm.
+    // The displacement is about 1 mm: 1 kPa on a height of 20 mm at 20 kPa.
     for (check, code, status) in [
         ("metric = \"max-z\"\nat_most = \"2 mm\"", 0, Status::Pass),
         ("metric = \"max-z\"\nat_most = \"1e-6 mm\"", 1, Status::Fail),
@@ -228,7 +231,7 @@ fn a_check_that_does_not_hold_is_1() {
             0,
             Status::KnownFailure,
         ),
-        // Better than known is a change too.
+        // A value that is better than the known band is a change too.
         ("metric = \"max-z\"\nknown_band = [\"2 mm\", \"3 mm\"]\nreason = \"soft\"", 1, Status::Fail),
     ] {
         let dir = tempfile::tempdir().unwrap();
@@ -256,7 +259,7 @@ fn a_filter_that_fits_nothing_is_4_and_leaves_nothing() {
     let done = tissuebench(&["verify", &study, "--filter", "no-such-thing", "--out", &out]);
     assert_fails(&done, 4, "nothing ran");
     assert!(!Path::new(&out).exists());
-    // Not one run of this study is of the quick tier, and the second share of one run is empty.
+    // No run of this study belongs to the quick tier, and the second share of a single run is empty.
     assert_fails(&tissuebench(&["verify", &study, "--quick", "--out", &out]), 4, "nothing ran");
     assert_fails(&tissuebench(&["verify", &study, "--shard", "2/2", "--out", &out]), 4, "nothing ran");
     assert_eq!(tissuebench(&["verify", &study, "--filter", "tet", "--out", &out]).code, 0);
@@ -285,22 +288,23 @@ fn stored_runs_are_kept_until_their_scene_changes() {
         results(&out)
     };
     let first = run(&[]);
-    // Times of a second run are never the same to the last digit: these are the stored ones.
+    // Times of a second run never agree to the last digit, so equal times are stored times.
     assert!(first.records.iter().any(Record::is_measured));
     assert_eq!(run(&["--resume"]).records, first.records);
-    // Times of another number of threads are not these.
+    // Times with another number of threads are not reused.
     assert!(run(&["--resume", "--threads", "1"]).records != run(&["--resume", "--threads", "2"]).records);
     let anew = run(&[]);
     assert!(anew.records != first.records, "without --resume all runs are done again");
     assert_eq!(exact(&anew), exact(&first));
-    // Twice as soft: solved again, and twice the displacement.
+    // At half the stiffness the scene is solved again, with twice the displacement.
     write(&dir, "block.toml", &BLOCK.replace("20 kPa", "10 kPa"));
     let softer = run(&["--resume"]);
     let largest = |set: &RunSet| set.records.iter().find(|r| r.quantity == "max-z").unwrap().value;
     assert!((largest(&softer) / largest(&first) - 2.0).abs() < 1e-9);
 }
 
-/// The second ratio finds the first one's results in the folder already, and has to be as it is alone.
+/// The results of the first ratio are already in the folder when the second ratio runs. The second ratio's
+/// results must not depend on them.
 #[test]
 fn results_of_each_poisson_ratio_are_stored_apart() {
     let dir = tempfile::tempdir().unwrap();

@@ -1,5 +1,5 @@
-//! Answers that are wrong by their model or their mesh say so with numbers; the same scene done right says
-//! nothing.
+//! Warnings with numbers for results that are wrong because of the model or the mesh. A correct version of
+//! the same scene gives no warning.
 
 mod common;
 
@@ -7,7 +7,7 @@ use common::{assert_fails, inside, objects, tissuebench, write};
 use serde_json::Value;
 use tempfile::TempDir;
 
-/// The objects of a scene's runs.
+/// Runs a scene and returns its JSON objects.
 #[track_caller]
 fn run(text: &str) -> Vec<Value> {
     run_in(&tempfile::tempdir().unwrap(), text)
@@ -20,7 +20,7 @@ fn run_in(dir: &TempDir, text: &str) -> Vec<Value> {
     objects(&done.stdout)
 }
 
-/// The value and the key of a warning of the first run.
+/// Value and scene key of a warning of the first run.
 fn warned(runs: &[Value], code: &str) -> Option<(f64, String)> {
     let all = runs[0]["warnings"].as_array().unwrap();
     let found = all.iter().find(|w| w["code"] == code)?;
@@ -36,7 +36,7 @@ procedure = { kind = "static", steps = 2 }
 method = [{ id = "hex8", family = "fem", element = "hex8", dilation = "element-mean", size = { cells = [3, 3, 3] } }]
 "#;
 
-/// The way that counts begins where the plate meets the block: 3 of 4 mm.
+/// The relevant travel starts where the plate meets the block: 3 of 4 mm.
 #[test]
 fn a_penalty_that_lets_a_tool_sink_in_is_told() {
     let soft = run(&UNDER_A_PLATE.replace("PENALTY", "0.002"));
@@ -53,7 +53,8 @@ fn a_penalty_that_lets_a_tool_sink_in_is_told() {
     assert!(warned(&moving("1"), "deep-penetration").is_none());
 }
 
-/// A body that lies on a tool by its weight is compared with its own size, not with the way of the tool.
+/// For a body that rests on a tool by its weight, the penetration is compared with the body's size, not with
+/// the travel of the tool.
 #[test]
 fn a_body_that_rests_on_a_floor_does_not_sink_into_it() {
     let floor = |penalty: &str| {
@@ -70,13 +71,13 @@ method = [{{ id = "hex8", family = "fem", element = "hex8", size = {{ cells = [3
     };
     let hard = floor("0.05");
     assert!(warned(&hard, "deep-penetration").is_none(), "{hard:?}");
-    // The jolt of the weight that acts at once is over long before the end.
+    // The oscillation after the sudden weight has decayed long before the end.
     assert!(warned(&hard, "step-error").is_none(), "{hard:?}");
     assert!(hard[0]["warnings"].as_array().unwrap().is_empty(), "{hard:?}");
     assert!(warned(&floor("0.00005"), "deep-penetration").is_some());
 }
 
-/// Strains of a body that only moves are rounding, and so are its forces.
+/// Strains and forces of a rigidly moved body are rounding.
 #[test]
 fn rounding_of_a_body_that_moves_as_a_whole_is_nothing() {
     let moved = |rest: &str| {
@@ -90,7 +91,7 @@ method = [{{ id = "hex8", family = "fem", element = "hex8", size = {{ cells = [4
 "#
         ))
     };
-    // The supports differ by rounding at their common edge.
+    // The supports differ at their common edge by rounding only.
     let meet = "support = [{ on = \"z-min\", move = [\"3.3 mm\", \"1.7 mm\", \"5.1 mm\"] }, { on = \"x-min\", move = [{ unit = \"mm\", of = \"3.3 + 1e-17 * y\" }, \"1.7 mm\", \"5.1 mm\"] }]";
     let shifted = moved(&format!("{meet}\nprocedure = {{ kind = \"static\", steps = 3 }}"));
     assert_eq!(shifted[0]["status"], "ok", "{shifted:?}");
@@ -103,7 +104,7 @@ method = [{{ id = "hex8", family = "fem", element = "hex8", size = {{ cells = [4
     }
 }
 
-/// Planes of symmetry hold exactly no displacement, of which the exact solution has 1e-17 m.
+/// Symmetry planes prescribe a displacement of exactly zero, where the exact solution has 1e-17 m.
 #[test]
 fn an_exact_solution_that_is_rounding_on_a_plane_is_no_other_problem() {
     let dir = tempfile::tempdir().unwrap();
@@ -127,7 +128,7 @@ method = [{{ id = "tet10", family = "fem", element = "tet10", size = {{ file = "
         1.0,
         geometry::generate::ShellExtent::Octant,
     );
-    // Coordinates on the planes are rounding away from zero, as mesh generators leave them.
+    // Coordinates on the planes differ from zero by rounding, as in files of mesh generators.
     let mesh = mesh.unwrap().moved(|x| x.map(|c| if c == 0.0 { 3e-18 } else { c })).unwrap();
     geometry::files::write(&mesh, dir.path().join("octant.msh").as_path(), 1e-3).unwrap();
     assert!(warned(&run_in(&dir, &scene("100")), "exact-misfit").is_none());
@@ -147,7 +148,7 @@ method = [{{ id = "hex20", family = "fem", element = "hex20", size = {{ level = 
     )
 }
 
-/// Stretched by `s` the area of the wall grows by `s^2`; a cantilever turns its faces and keeps their area.
+/// At a stretch `s` the area of the wall grows by `s^2`. A cantilever rotates its faces and keeps their area.
 #[test]
 fn a_dead_pressure_on_a_wall_that_stretches_or_turns_is_told() {
     let blown = run(&shell("neo-hookean", "3 kPa"));
@@ -172,7 +173,7 @@ method = [{{ id = "hex20", family = "fem", element = "hex20", size = {{ cells = 
 }
 
 /// A column 20 times as long as wide, clamped at both ends, buckles at a strain of `pi^2 / 3 (w / L)^2` = 0.8
-/// %; a block does not.
+/// %. A block does not buckle.
 #[test]
 fn a_straight_path_of_a_column_beyond_its_critical_load_is_told() {
     let pressed = |height: u32, closure: &str| {
@@ -207,7 +208,7 @@ method = [{{ id = "hex20", family = "fem", element = "hex20", size = {{ cells = 
     )
 }
 
-/// The slope at the end of a cantilever is `F L^2 / (2 E I)`: .96 rad for 2 Pa, at strains of 5 %.
+/// The slope at the end of a cantilever is `F L^2 / (2 E I)`: 0.96 rad for 2 Pa, at strains of 5 %.
 #[test]
 fn a_law_of_small_strain_that_turns_far_is_told() {
     let linear = "kind = \"linear\"";
@@ -220,8 +221,8 @@ fn a_law_of_small_strain_that_turns_far_is_told() {
     assert!(warned(&run(&cantilever("neo-hookean", steps, "2")), "large-rotation").is_none());
 }
 
-/// A bar of one reduced cell across has modes that its points do not see; full integration has none, and a
-/// free body six.
+/// A bar with one reduced cell across has modes without strain at its quadrature points. Full integration has
+/// none, and a free body has six.
 #[test]
 fn modes_without_energy_are_told() {
     let bar = |support: &str, method: &str| {
@@ -243,7 +244,7 @@ method = [{{ id = "bar", family = "fem", element = "hex20", {method} size = {{ c
     assert!(warned(&bar("", ""), "zero-energy-modes").is_none(), "rigid motions of a free bar");
 }
 
-/// Bent by its own weight, one cell high it is off by half; pulled it is right.
+/// In bending by its own weight, a beam of one cell over its height is wrong by half. In tension it is right.
 #[test]
 fn few_cells_across_what_bends_are_told() {
     let beam = |load: &str, method: &str| {
@@ -277,7 +278,8 @@ method = [{{ id = "beam", family = "fem", {method} }}]
     assert!(warned(&beam(pulled, method), "few-cells").is_none());
 }
 
-/// Two blocks of 10 mm along x that touch without a node in common, the middle wall named from the left.
+/// Two blocks of 10 mm along x that touch without a common node. The wall between them is named from the
+/// left.
 fn blocks(apart: bool) -> String {
     let mut nodes = String::new();
     let planes: &[usize] = if apart { &[0, 10, 10, 20] } else { &[0, 10, 20] };
@@ -288,7 +290,7 @@ fn blocks(apart: bool) -> String {
     }
     let plane = |k: usize| (1..=4).map(|c| (4 * k + c).to_string()).collect::<Vec<_>>().join(" ");
     let second = if apart { 2 } else { 1 };
-    // Each piece names the wall from its own side.
+    // Each piece names the wall on its own side.
     let walls: String = (1..=second).map(|k| format!("{k} 3 2 3 1 {}\n", plane(k))).collect();
     let count = 4 * planes.len();
     format!(
@@ -317,8 +319,8 @@ method = [{{ id = "hex8", family = "fem", element = "hex8", size = {{ file = "bl
 const SHEARED: &str =
     "load = [{ body = [\"0 N/m^3\", \"1000 N/m^3\", \"0 N/m^3\"] }]\nprocedure = { kind = \"linear\" }";
 
-/// Held at both ends, the middle of two blocks of stiffness `G A / L` each moves by `rho L^2 / (2 G)`: 10 um
-/// of 20 mm, which apart hang free.
+/// If both ends are fixed, the middle of two joined blocks of stiffness `G A / L` each moves by `rho L^2 / (2
+/// G)`, 10 um of 20 mm. Separate blocks are not supported by each other.
 #[test]
 fn touching_pieces_without_common_nodes_are_told_and_joined() {
     let dir = tempfile::tempdir().unwrap();
@@ -332,7 +334,7 @@ fn touching_pieces_without_common_nodes_are_told_and_joined() {
     assert!(warned(&modes, "pieces-apart").is_some(), "{modes:?}");
     let joined = run_in(&dir, &blocks_scene(", join = true", SHEARED));
     assert!(warned(&joined, "pieces-apart").is_none() && joined[0]["nodes"] == 12, "{joined:?}");
-    // The wall that both pieces name is one: u = 100 Pa L / (2 E).
+    // The wall that both pieces name is a single surface: u = 100 Pa L / (2 E).
     let pushed = "load = [{ on = \"wall\", traction = [\"100 Pa\", \"0 Pa\", \"0 Pa\"] }]";
     let pushed = run_in(&dir, &blocks_scene(", join = true", pushed));
     let moved = pushed[0]["metrics"]["max-x"]["value"].as_f64().unwrap();
@@ -355,8 +357,8 @@ fn touching_pieces_without_common_nodes_are_told_and_joined() {
     );
 }
 
-/// A wall between two cells has no outer side: what goes by the normal is refused, what has a direction of
-/// its own acts.
+/// A wall between two cells has no outer side. Loads along the normal are refused; a traction with its own
+/// direction acts.
 #[test]
 fn pressure_on_a_wall_inside_the_body_is_refused() {
     let dir = tempfile::tempdir().unwrap();
@@ -373,7 +375,7 @@ fn pressure_on_a_wall_inside_the_body_is_refused() {
         }
     }
     let pushed = run_in(&dir, &scene("on = \"wall\", traction = [\"100 Pa\", \"0 Pa\", \"0 Pa\"]"));
-    // Two springs of E A / L side by side: u = 100 Pa L / (2 E).
+    // Two springs of E A / L in parallel: u = 100 Pa L / (2 E).
     let moved = pushed[0]["metrics"]["max-x"]["value"].as_f64().unwrap();
     assert!((moved - 100.0 * 10e-3 / 40e3).abs() < 1e-9, "{moved}");
 }

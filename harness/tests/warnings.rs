@@ -1,4 +1,4 @@
-//! Numbers that are to be read with care say so: in the object of the run, in its table and in its folder.
+//! Warnings about results appear in the object of the run, in its table and in its folder.
 
 mod common;
 
@@ -6,7 +6,7 @@ use common::{BLOCK, assert_fails, inside, objects, tissuebench, without, write, 
 use serde_json::Value;
 use tempfile::TempDir;
 
-/// The objects of a scene's runs.
+/// Runs a scene and returns its JSON objects.
 #[track_caller]
 fn run(dir: &TempDir, text: &str) -> Vec<Value> {
     let done = tissuebench(&["run", &write(dir, "scene.toml", text), "--format", "json"]);
@@ -40,7 +40,8 @@ method = [
 fn a_cut_region_and_a_blended_jump_are_told_with_their_numbers() {
     let dir = tempfile::tempdir().unwrap();
     let runs = run(&dir, TWO_LAYERS);
-    // The border at 11 mm runs through the third of four layers of cells, and between the cells of twenty.
+    // The interface at 11 mm cuts the third of four layers of cells, and lies between cells if there are
+    // twenty layers.
     let cut = &runs[0]["warnings"][0];
     assert_eq!((cut["code"].as_str(), cut["value"].as_f64()), (Some("region-cut"), Some(0.25)));
     assert_eq!(cut["where"], "region[0].where");
@@ -103,7 +104,7 @@ fn a_check_can_forbid_warnings_and_a_folder_keeps_them() {
     );
 }
 
-/// A bar of one period of 1.39 s swings at 3.8 s in five steps: energy is kept all the same.
+/// A bar with a period of 1.39 s oscillates for 3.8 s in five steps; its energy is conserved nevertheless.
 #[test]
 fn time_steps_that_are_too_long_are_told() {
     let dir = tempfile::tempdir().unwrap();
@@ -121,7 +122,8 @@ fn time_steps_that_are_too_long_are_told() {
     assert!(metric(&long, "energy-drift") < 1e-2);
 }
 
-/// What penalty lets pass of a nearly incompressible solid spoils its pressure, not its displacement.
+/// The leakage through a penalty support of a nearly incompressible solid spoils its pressure, not its
+/// displacement.
 #[test]
 fn a_support_that_gives_way_or_leaks_is_told() {
     let dir = tempfile::tempdir().unwrap();
@@ -138,7 +140,7 @@ method = [{{ id = "efg", family = "efg", basis = "linear", kernel = "cubic-splin
         run(&dir, &text).remove(0)
     };
     let found = patch("0.4999", "\"penalty\"");
-    // The stress is off by a fifth, and the warning says about as much.
+    // The stress is wrong by a fifth, and the warning gives about this value.
     assert!((metric(&found, "stress") - 0.19).abs() < 0.02, "{found}");
     assert_eq!(codes(&found), ["support-leaks"]);
     assert!((found["warnings"][0]["value"].as_f64().unwrap() - 0.21).abs() < 0.05, "{found}");
@@ -147,7 +149,7 @@ method = [{{ id = "efg", family = "efg", basis = "linear", kernel = "cubic-splin
     assert!(codes(&patch("0.3", "{ method = \"penalty\", factor = 1 }")).contains(&"support-gives"));
 }
 
-/// Reduced elements fold between their points: the force falls as the plate goes on.
+/// Reduced elements fold between their quadrature points: the force falls as the plate advances.
 #[test]
 fn elements_that_fold_between_their_points_are_told() {
     let dir = tempfile::tempdir().unwrap();
@@ -167,7 +169,7 @@ method = [
     assert!(codes(&reduced).contains(&"folded") && !codes(&full).contains(&"folded"), "{full}");
 }
 
-/// A cloud folded between its points has a stress at them, which is of no use: two warnings, and an error
+/// A cloud folded between its quadrature points has a meaningless stress at them: two warnings, and an error
 /// beyond 100 %.
 #[test]
 fn a_folded_cloud_is_told() {
@@ -190,7 +192,7 @@ method = [{{ id = "efg", family = "efg", basis = "linear", kernel = "cubic-splin
     assert!(metric(&run(&dir, &text(0.3)).remove(0), "stress") < 1.0);
 }
 
-/// A small ball on a coarse block stands on one point.
+/// A small ball on a coarse block is in contact at one point.
 #[test]
 fn a_tool_that_stands_on_a_point_or_two_is_told() {
     let dir = tempfile::tempdir().unwrap();
@@ -213,8 +215,8 @@ method = [{{ id = "hex8", family = "fem", element = "hex8", size = {{ cells = {c
     assert!(!codes(&fine).contains(&"few-contact-points"), "{fine}");
 }
 
-/// Gauss points with a dilation of each node need a factor near 86 at a Poisson's ratio of 0.4999: below it there is no Cholesky
-/// factor, a little above it there is one, and pressures are 200 times wrong.
+/// Gauss points with a dilation for each node need a factor near 86 at a Poisson's ratio of 0.4999. Below it
+/// there is no Cholesky factor; slightly above it there is one, and pressures are wrong by a factor of 200.
 #[test]
 fn a_factor_of_nitsche_s_method_near_the_one_needed_is_told() {
     let dir = tempfile::tempdir().unwrap();
@@ -238,7 +240,7 @@ method = [{{ id = "efg", family = "efg", basis = "linear", kernel = "cubic-splin
     assert_fails(&below, 3, "not positive definite");
 }
 
-/// A thin part is lost between coarse cells, and a plate that does not get to a body presses nothing.
+/// A thin part is lost between coarse cells, and a plate that does not reach the body exerts no pressure.
 #[test]
 fn lost_volume_and_a_tool_beside_the_body_are_told() {
     let dir = tempfile::tempdir().unwrap();
@@ -273,7 +275,7 @@ method = [{{ id = "tet4", family = "fem", element = "tet4", size = {{ spacing = 
     assert!(!codes.contains(&"volume-differs") && !codes.contains(&"tool-untouched"), "{codes:?}");
 }
 
-/// A plate may lie anywhere: no place of it is inside or outside.
+/// A plate may have any position: it has no inside or outside.
 #[test]
 fn a_plate_that_starts_in_the_body_is_told() {
     let dir = tempfile::tempdir().unwrap();
@@ -301,13 +303,14 @@ method = [{{ id = "hex8", family = "fem", element = "hex8", size = {{ cells = [3
     }
 }
 
-/// A tool that presses one block onto another goes through the gap between: blocks without a node in common do not touch.
+/// A tool that presses a block onto another block closes the gap without contact: blocks without common nodes
+/// do not touch.
 #[test]
 fn pieces_that_do_not_feel_each_other_are_told() {
     let dir = tempfile::tempdir().unwrap();
     let run_with = |lift: usize| {
         let levels = [0, 10, 10 + lift, 20 + lift];
-        // Lifted by nothing, the upper block has the nodes of the lower one's top.
+        // With a lift of zero, the upper block has the top nodes of the lower block.
         let upper = if lift > 0 { 8 } else { 4 };
         let node = |k: usize| {
             let (level, corner) = (k / 4, k % 4);

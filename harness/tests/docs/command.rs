@@ -1,4 +1,4 @@
-//! The commands of a page, run in a folder that has its scenes.
+//! Execution of a page's commands in a folder with the page's scenes.
 
 use std::path::Path;
 use std::process::Command;
@@ -6,13 +6,13 @@ use std::process::Command;
 use crate::markdown::{Block, Page};
 use crate::root;
 
-/// What a page says to type, and what it says comes out.
+/// A command of a page with the output that the page shows.
 struct Step {
     command: String,
     prints: Vec<String>,
 }
 
-/// Runs all commands of a page in turn and says what is not as the page has it.
+/// Runs all commands of a page in sequence, and returns the deviations from the page.
 pub fn failures(page: &Page) -> Vec<String> {
     let dir = tempfile::tempdir().expect("a folder");
     copy(&root().join("cases"), &dir.path().join("cases"));
@@ -43,7 +43,7 @@ fn run(block: &Block, dir: &Path) -> Vec<String> {
     results.filter_map(Result::err).collect()
 }
 
-/// Commands with the lines that follow them; of a `sh` block every line is a command.
+/// Commands with the lines that follow them. In a `sh` block every line is a command.
 fn steps(block: &Block) -> Vec<Step> {
     let mut steps: Vec<Step> = Vec::new();
     for line in block.text.lines().map(str::trim).filter(|line| !line.is_empty() && !line.starts_with('#')) {
@@ -84,7 +84,7 @@ fn one(step: &Step, dir: &Path, not_run: bool, exits: i32) -> Result<(), String>
     }
 }
 
-/// `cargo xtask TASK`: the task is one of those that xtask parses.
+/// Checks that xtask has the task of `cargo xtask TASK`.
 fn known_task(task: &str) -> Result<(), String> {
     let source = std::fs::read_to_string(root().join("xtask/src/main.rs")).map_err(|bad| bad.to_string())?;
     let (first, rest) = task.split_at(1);
@@ -117,8 +117,8 @@ fn tissuebench(args: &[&str], step: &Step, dir: &Path, not_run: bool, exits: i32
     }
 }
 
-/// A line with every number replaced, as machines and times differ, and single spaces. On a busy machine
-/// times are of the processors.
+/// Replaces every number of a line, because machines and times differ, and normalises spaces. On a busy
+/// machine, CPU times are shown.
 fn numberless(line: &str) -> String {
     let line = line.replace("[CPU ms]", "[ms]");
     let is_number = |word: &str| {
@@ -129,7 +129,7 @@ fn numberless(line: &str) -> String {
     words.collect::<Vec<_>>().join(" ")
 }
 
-/// Copies the scenes and meshes below a folder.
+/// Copies the scenes and meshes in a folder and its subfolders.
 fn copy(from: &Path, to: &Path) {
     std::fs::create_dir_all(to).expect("a folder");
     for entry in std::fs::read_dir(from).expect("readable") {

@@ -1,9 +1,10 @@
-//! The documentation, held against the program: commands run, links lead somewhere, reference pages are fresh.
+//! Tests of the documentation: commands run, links are valid, and reference pages are up to date.
 //!
-//! Pages are README.md and the Markdown files below docs/src. In a fenced `sh` or `console` block every command is run in
-//! a folder of its own that has a copy of `cases/` and the scenes of the page: a `toml` block that opens with the comment
-//! `# NAME.toml` is the file of that name. Lines of a `console` block that follow a command are what it prints; numbers in
-//! them are not compared. A comment before a block changes what is asked of it:
+//! Pages are README.md and the Markdown files below docs/src. Every command in a fenced `sh` or `console`
+//! block runs in a separate folder with a copy of `cases/` and the scenes of the page: a `toml` block that
+//! opens with the comment `# NAME.toml` is the file of that name. Lines of a `console` block that follow a
+//! command are its output; numbers in them are not compared. A comment before a block changes the test of the
+//! block:
 //!
 //! ```text
 //! <!-- not run: takes 4 minutes -->   the arguments are parsed, nothing is solved
@@ -18,7 +19,7 @@ use std::path::{Path, PathBuf};
 
 use markdown::Page;
 
-/// The root of the workspace.
+/// Root of the workspace.
 fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("harness lies in the workspace")
 }
@@ -50,7 +51,7 @@ fn commands_do_what_the_pages_say() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n\n"));
 }
 
-/// What the README says to change for large strain.
+/// The README's changes for large strain.
 #[test]
 fn the_first_scene_of_the_readme_runs_at_large_strain() {
     let readme = Page::read(root().join("README.md"));

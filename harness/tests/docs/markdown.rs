@@ -1,4 +1,4 @@
-//! A page: its fenced blocks with the comments before them, and the files that it refers to.
+//! A page of Markdown: its fenced blocks with the comments before them, and the files that it refers to.
 
 use std::path::PathBuf;
 
@@ -13,12 +13,12 @@ pub struct Page {
 
 /// A fenced block.
 pub struct Block {
-    /// Line of its first fence, from 1.
+    /// Line of the opening fence, from 1.
     pub line: usize,
     /// First word after the fence.
     pub language: String,
     pub text: String,
-    /// What the HTML comment on the line before says, if there is one.
+    /// Text of the HTML comment on the line before, if there is one.
     pub comment: Option<String>,
 }
 
@@ -38,7 +38,7 @@ impl Page {
         self.blocks.iter().any(Block::is_commands)
     }
 
-    /// Relative files that links, pictures and includes outside of fenced blocks name; includes within blocks too.
+    /// Relative paths in links, pictures and includes outside fenced blocks, and in includes within blocks.
     pub fn targets(&self) -> Vec<String> {
         let mut found = Vec::new();
         let mut fenced = false;
@@ -65,7 +65,7 @@ impl Block {
         matches!(self.language.as_str(), "sh" | "console")
     }
 
-    /// The name that a scene's first line gives it: `# block.toml`.
+    /// File name in the first line of a scene, such as `# block.toml`.
     pub fn file(&self) -> Option<&str> {
         let name = self.text.lines().next()?.strip_prefix("# ")?;
         (self.language == "toml" && name.ends_with(".toml") && !name.contains(' ')).then_some(name)

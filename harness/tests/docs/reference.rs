@@ -1,6 +1,7 @@
-//! The book's reference pages: written from the schemas and from what the program prints about itself.
+//! The book's reference pages, generated from the schemas and the program's output.
 //!
-//! `cargo xtask book` sets `TISSUEBENCH_BOOK=write`; without it the committed pages have to be what would be written.
+//! `cargo xtask book` sets `TISSUEBENCH_BOOK=write`. Without this variable, the committed pages must equal
+//! the generated ones.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -55,14 +56,14 @@ fn pages() -> [(&'static str, String); 4] {
     [("scene.md", scene), ("study.md", study), ("names.md", names), ("commands.md", commands)]
 }
 
-/// The verbs that the program's help lists.
+/// Commands that the program's help lists.
 fn verbs(help: &str) -> Vec<&str> {
     let listed =
         help.lines().skip_while(|line| *line != "Commands:").skip(1).take_while(|line| !line.is_empty());
     listed.filter_map(|line| line.split_whitespace().next()).filter(|verb| *verb != "help").collect()
 }
 
-/// What the program prints, run in an empty folder, without spaces at the ends of lines.
+/// Output of the program in an empty folder, without spaces at line ends.
 fn printed(args: &[&str]) -> String {
     let dir = tempfile::tempdir().expect("a folder");
     let output = Command::new(env!("CARGO_BIN_EXE_tissuebench")).args(args).current_dir(dir.path()).output();
@@ -70,18 +71,18 @@ fn printed(args: &[&str]) -> String {
     text.lines().map(|line| format!("{}\n", line.trim_end())).collect()
 }
 
-/// A line of a table of keys.
+/// Row of a table of keys.
 #[derive(PartialEq)]
 struct Row {
     key: String,
     value: String,
     required: bool,
-    /// Which kinds of the table above have the key.
+    /// Kinds of the enclosing table that have the key.
     kinds: Vec<String>,
     meaning: String,
 }
 
-/// A page with a table for every key at the top of a file.
+/// Generates a page with a table for every top-level key of a file.
 fn keys(title: &str, opening: &str, schema: &Value) -> String {
     let mut page = format!("# {title}\n\n{opening} *Needed* marks keys without a default.\n");
     let plain = "| key | value | needed | with | meaning |\n| --- | --- | --- | --- | --- |\n";
@@ -101,7 +102,8 @@ fn keys(title: &str, opening: &str, schema: &Value) -> String {
     page
 }
 
-/// A key and all below it. `top` are the keys at the top: a table that repeats one of them is not written out again.
+/// Adds the rows of a key and of all keys below it. `top` are the top-level keys: a table that repeats one of
+/// them is not expanded again.
 fn walk(
     key: &str,
     schema: &Value,
@@ -132,7 +134,7 @@ fn walk(
     }
 }
 
-/// The keys of a table, of the tables of a list, or of one kind of table.
+/// Adds the keys of a table, of the tables of a list, or of one kind of table.
 fn below(
     key: &str,
     schema: &Value,
@@ -168,7 +170,7 @@ fn below(
     }
 }
 
-/// Rows of one key with one value and meaning become one; choices of a kind become one list.
+/// Merges rows with the same key, value and meaning, and merges the choices of a kind into a list.
 fn merged(rows: Vec<Row>) -> Vec<Row> {
     let mut kept: Vec<Row> = Vec::new();
     for row in rows {
@@ -187,7 +189,7 @@ fn merged(rows: Vec<Row>) -> Vec<Row> {
             None => kept.push(row),
         }
     }
-    // Every kind of a table that all its kinds have is no condition.
+    // A key of all kinds of a table needs no condition.
     let mut all: BTreeMap<String, usize> = BTreeMap::new();
     for row in kept.iter().filter(|row| row.value.starts_with("`\"") && row.required) {
         let table = row.key.rsplit_once('.').map_or("", |(table, _)| table);
@@ -202,7 +204,7 @@ fn merged(rows: Vec<Row>) -> Vec<Row> {
     kept
 }
 
-/// What a value may be, without "nothing".
+/// Alternatives of a value, without null.
 fn alternatives(schema: &Value) -> Vec<&Value> {
     for word in ["anyOf", "oneOf"] {
         if let Some(list) = schema[word].as_array() {
@@ -212,7 +214,7 @@ fn alternatives(schema: &Value) -> Vec<&Value> {
     vec![schema]
 }
 
-/// The type of a value in words.
+/// Type of a value in words.
 fn kind(schema: &Value) -> String {
     let word = |name: &str| match &schema["type"] {
         Value::String(t) => t == name,
@@ -256,7 +258,7 @@ fn is_required(schema: &Value, name: &str) -> bool {
     schema["required"].as_array().is_some_and(|list| list.iter().any(|n| n == name))
 }
 
-/// A schema without what is said of it.
+/// Schema without its description.
 fn bare(schema: &Value) -> Value {
     let mut schema = schema.clone();
     if let Some(object) = schema.as_object_mut() {

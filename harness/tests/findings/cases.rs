@@ -1,4 +1,4 @@
-//! A sound scene, and what makes it unsound.
+//! A valid scene, and edits that make it invalid.
 
 pub const SCENE: &str = r#"title = "A block"
 
@@ -36,7 +36,7 @@ integration = { rule = "gauss", points = 4 }
 essential = "nitsche"
 "#;
 
-/// Two tetrahedra on a common face, a named roof; millimetres.
+/// Two tetrahedra with a common face and a named surface `roof`, in millimetres.
 pub const MESH: &str = r#"$MeshFormat
 2.2 0 8
 $EndMeshFormat
@@ -81,19 +81,19 @@ const OCTANT: &[(&str, &str)] = &[
     ("on = \"z-max\"", "on = \"outer\""),
 ];
 
-/// A sound scene made unsound.
+/// An edit that makes the valid scene invalid, and the expected error.
 pub struct Case {
     pub name: &'static str,
-    /// Done first, to get at what is to be spoilt.
+    /// Replacements made before `edit`, which leave the scene valid.
     pub base: &'static [(&'static str, &'static str)],
-    /// Replaced in the scene; the line to be blamed ends in `#<`.
+    /// Replacement in the scene; the line that the error must name ends in `#<`.
     pub edit: (&'static str, &'static str),
-    /// Replaced in the mesh file.
+    /// Replacement in the mesh file.
     pub mesh: (&'static str, &'static str),
     pub code: i32,
     pub key: &'static str,
     pub says: &'static [&'static str],
-    /// Methods that can't run; the others must.
+    /// Methods that cannot run; the others must run.
     pub stops: &'static [&'static str],
 }
 
@@ -194,7 +194,7 @@ pub const CASES: &[Case] = &[
     },
     Case {
         name: "supports of a cloud too narrow",
-        // Nodes on two faces 40 mm apart, 5 mm from each other.
+        // The nodes lie on two faces 40 mm apart, at distances of 5 mm.
         base: &[("nodes = 60", "size = { cells = [1, 8, 8] }")],
         edit: ("support_scale = 1.6", "support_scale = 1.2 #<"),
         code: 3,

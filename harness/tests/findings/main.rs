@@ -1,4 +1,5 @@
-//! What only a run can find: every finding names file, line, key and what would be right, and costs no other method.
+//! Errors that only a run can find. Every error names the file, line and key and a correction, and does not
+//! affect other methods.
 
 mod cases;
 #[path = "../common/mod.rs"]
@@ -15,7 +16,7 @@ fn replaced(text: &str, (from, to): (&str, &str), name: &str) -> String {
     new
 }
 
-/// Writes the case; the scene's path and the line to be blamed.
+/// Writes the case; returns the scene's path and the line that the error must name.
 fn written(case: &Case, dir: &TempDir) -> (String, usize) {
     let base = case.base.iter().fold(SCENE.to_string(), |text, edit| replaced(&text, *edit, case.name));
     let text = replaced(&base, case.edit, case.name);
@@ -42,7 +43,7 @@ fn a_finding_names_file_line_and_key_and_stops_only_its_method() {
         for text in case.says {
             assert!(blamed[0].contains(text), "{name}: no '{text}' in {}", blamed[0]);
         }
-        // What was found before anything could be planned leaves no objects.
+        // An error that is found before a plan exists leaves no objects.
         for object in json(&done) {
             let method = object["method"].as_str().unwrap();
             if case.stops.contains(&method) {
@@ -81,14 +82,16 @@ const STABILISED: &str =
 
 #[test]
 fn a_plan_holds_a_cloud_wherever_a_run_holds_it() {
-    // No facet lies in a slab inside the body: points of the volume do, or nodes where multipliers hold those.
+    // No facet lies in a slab inside the body. Points of the volume lie in it, or nodes if multipliers
+    // constrain them.
     for (essential, integration, place, code) in [
         ("nitsche", "{ rule = \"gauss\", points = 4 }", "z >= 5 mm and z <= 12 mm", 0),
         ("penalty", "{ rule = \"cell-smoothed\", points = 1 }", "z >= 5 mm and z <= 12 mm", 0),
         ("penalty", "{ rule = \"grid\", points = 8 }", "z >= 5 mm and z <= 12 mm", 0),
-        // One of a cell's four points, but not its centroid.
+        // The slab contains one of a cell's four points, but not its centroid.
         ("penalty", SECOND_ORDER, "z >= 2.75 mm and z <= 3 mm", 0),
-        // Vertices at z = 0, 5, .. 20 mm; points of the cells between only where those have a share.
+        // Vertices are at z = 0, 5, .. 20 mm. Points of the cells between them count only if their part
+        // belongs to the vertex.
         ("penalty", NODAL, "z >= 9.5 mm and z <= 10.5 mm", 0),
         ("penalty", NODAL, "z >= 1 mm and z <= 4 mm", 2),
         ("penalty", STABILISED, "z >= 1 mm and z <= 4 mm", 0),
@@ -113,7 +116,7 @@ fn a_failed_run_still_says_what_it_would_have_done() {
     let dir = tempfile::tempdir().unwrap();
     let path = write(&dir, "free.toml", &SCENE.replace("\"xyz\"", "\"z\""));
     let objects = json(&tissuebench(&["run", &path, "--format", "json"]));
-    // 3 x 3 x 3 nodes and 2 x 2 x 2 boxes of six.
+    // The mesh has 3 x 3 x 3 nodes and 2 x 2 x 2 boxes of six tetrahedra.
     assert_eq!((&objects[0]["nodes"], &objects[0]["elements"]), (&27.into(), &48.into()));
     assert_eq!(objects[1]["nodes"], 60);
     for object in &objects {

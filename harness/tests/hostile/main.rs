@@ -1,5 +1,5 @@
-//! Files from others, and files of the user in the way of outputs: nothing hangs, takes all memory, or
-//! destroys an input.
+//! Untrusted input files, and input files at the paths of outputs: the program does not hang, exhaust memory,
+//! or destroy an input.
 
 #![cfg(unix)]
 

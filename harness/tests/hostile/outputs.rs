@@ -1,10 +1,10 @@
-//! Outputs that are inputs, by their name, by a link, or by another name of the same file.
+//! Outputs whose path is that of an input: by the same name, by a link, or by another name of the file.
 
 use std::fs;
 
 use crate::world::{World, fifo};
 
-/// The input, the command with OUT in the place of the output, and the ending that the output needs.
+/// Input file, command with OUT in place of the output, and file extension that the output needs.
 const OVERWRITES: [(&str, &str, &str); 12] = [
     ("organ.obj", "mesh make organ.obj --nodes 100 --out OUT", ".msh"),
     ("body.msh", "mesh convert body.msh OUT", ".msh"),
@@ -57,7 +57,7 @@ fn no_output_replaces_an_input() {
     }
 }
 
-/// Folders of outputs in which an input lies where an output goes.
+/// An input lies in an output folder at the path of an output.
 #[test]
 fn no_folder_of_outputs_costs_an_input() {
     let world = World::new();
@@ -88,7 +88,7 @@ fn no_folder_of_outputs_costs_an_input() {
     }
 }
 
-/// A link in a folder of results leads nowhere that is written to.
+/// The program does not write through a link in a folder of results.
 #[test]
 fn links_in_a_folder_of_results_are_not_followed() {
     let world = World::new();

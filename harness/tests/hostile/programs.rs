@@ -1,4 +1,4 @@
-//! Programs of others, and texts of others on their way to a terminal.
+//! Third-party programs, and third-party texts that are printed to a terminal.
 
 use std::fs;
 use std::os::unix::fs::PermissionsExt;
@@ -25,7 +25,7 @@ fn manifest(name: &str, run: &str, more: &str) -> String {
     )
 }
 
-/// The folders for temporary files of ours.
+/// Temporary folders of the program.
 fn work(world: &World) -> Vec<std::path::PathBuf> {
     let entries = fs::read_dir(world.path("tmp")).into_iter().flatten().flatten();
     entries.map(|entry| entry.path()).filter(|path| path.to_string_lossy().contains("tissuebench-")).collect()

@@ -1,10 +1,10 @@
-//! A pipe, an endless device or a huge file in the place of each file that a command reads.
+//! A pipe, an endless device or a huge file in place of each file that a command reads.
 
 use std::fs;
 
 use crate::world::{World, fifo};
 
-/// Whether the command may also do without the file, or write a new one in its place.
+/// Whether the command must refuse the file, or may also run without it or replace it.
 #[derive(PartialEq)]
 enum Then {
     Refused,
@@ -12,7 +12,7 @@ enum Then {
 }
 use Then::{Any, Refused};
 
-/// The file that is replaced, and the command that reads it.
+/// Files to replace, each with the command that reads it.
 fn places(world: &World) -> Vec<(String, Vec<&'static str>, Then)> {
     let task = world.only("kept/tasks", ".json");
     let history = world.only("history", ".toml");

@@ -1,4 +1,4 @@
-//! Results that are changed, half written, empty or not to be written, and decks that lead elsewhere.
+//! Results that are changed, incomplete, empty or not writable, and decks that refer to files elsewhere.
 
 use std::fs;
 
@@ -45,7 +45,7 @@ fn a_changed_result_is_not_believed() {
         assert_eq!(numbers("kept"), right, "{option}");
     }
     world.runs(&["merge", "merged", "kept"], 0);
-    // A result of another run is none of this one.
+    // A result of another run is not accepted for this run.
     let other = task.replace("tasks/", "tasks/0");
     fs::rename(world.path(&task), world.path(&other)).unwrap();
     world.runs(&["merge", "merged", "kept"], 5);
@@ -94,7 +94,7 @@ fn decks_include_files_of_their_folder_and_not_too_many() {
     link("elsewhere.inp", "decks/part.inp");
     let done = world.runs(&["mesh", "info", "decks/whole.inp"], 2);
     assert!(done.stderr.contains("lie in the folder of the deck"), "{}", done.stderr);
-    // A link within the folder, and a deck behind a link, are read.
+    // A link within the folder, and a deck behind a link, can be read.
     fs::remove_file(world.path("decks/part.inp")).unwrap();
     fs::rename(world.path("elsewhere.inp"), world.path("decks/real.inp")).unwrap();
     link("decks/real.inp", "decks/part.inp");

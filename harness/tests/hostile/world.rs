@@ -1,4 +1,4 @@
-//! A folder with one sound file of each kind, and the program in it, limited as a careful user would.
+//! A folder with one valid file of each kind, in which the program runs under limits of time and memory.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -6,9 +6,9 @@ use std::time::{Duration, Instant};
 
 use tempfile::TempDir;
 
-/// Longer hangs.
+/// Time after which a command counts as hanging.
 const LIMIT: Duration = Duration::from_secs(10);
-/// KiB that the program may allocate: 1 GiB.
+/// Memory that the program may allocate, KiB: 1 GiB.
 const MEMORY: &str = "1048576";
 
 const SCENE: &str = r#"title = "A block"
@@ -83,7 +83,7 @@ impl World {
         std::fs::write(path, text).unwrap();
     }
 
-    /// The one file in a folder.
+    /// Path of the only file with this extension in a folder.
     pub fn only(&self, folder: &str, ending: &str) -> String {
         let names = std::fs::read_dir(self.path(folder)).unwrap().map(|e| e.unwrap().file_name());
         let found = names.map(|name| name.into_string().unwrap()).find(|name| name.ends_with(ending));
@@ -96,7 +96,7 @@ impl World {
         done
     }
 
-    /// Runs the program in the folder; it ends by itself, within the limits.
+    /// Runs the program in the folder. It must end by itself within the limits.
     pub fn tissuebench(&self, args: &[&str]) -> Done {
         let mut command = Command::new("sh");
         command.args([
