@@ -9,7 +9,8 @@ use geometry::{Facet, Mesh, Point3, Vector3, closest_on_triangle};
 use shape::SurfaceRows;
 use statics::ConstraintRow;
 
-/// Smallest product of unit normals on the same side of an edge: 37 degrees. Each side has its own traction.
+/// Smallest scalar product of unit normals on the same side of an edge: 37 degrees. Each side has its own
+/// traction.
 const SAME_SIDE: f64 = 0.8;
 
 /// The surface points assigned to one node, on one side of every edge.

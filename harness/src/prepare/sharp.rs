@@ -11,7 +11,7 @@ use geometry::{Facet, Mesh, Point3, Vector3};
 
 use crate::discretise::place;
 
-/// Product of two unit normals above which the faces count as flat.
+/// Scalar product of two unit normals above which the faces count as flat.
 const FLAT: f64 = 0.8;
 /// Slope, relative to the tool's direction, above which a face falls away from a corner or an edge.
 const SLOPE: f64 = 0.35;

@@ -84,7 +84,7 @@ impl Touch {
 }
 
 /// Fraction of the solid angle `4 pi` above which a point counts as inside a surface. The exact fraction is 1
-/// inside and 0 outside; close to a surface with sparse points it is 1/2 on both sides.
+/// inside and 0 outside. Close to a surface with sparse points the sum is near 1/2 on both sides.
 const WITHIN: f64 = 0.75;
 
 /// Refuses a tool that starts inside the body, because it would never meet the surface from outside. The test

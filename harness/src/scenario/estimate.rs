@@ -128,7 +128,8 @@ pub fn estimate(scene: &Scene, family: &Family) -> Estimate {
     let (bytes, seconds) = match &scene.procedure {
         Procedure::Prepare => (1e3 * nodes, 1e-5 * nodes),
         Procedure::Explicit(_) => (1e3 * nodes, EXPLICIT * nodes * steps),
-        // Multigrid is used above some ten thousand unknowns; its memory is proportional to their number.
+        // Multigrid is used above a few tens of thousands of unknowns; its memory is proportional to their
+        // number.
         Procedure::Linear { .. } => (factor(unknowns).min(4e3 * unknowns), solve),
         Procedure::Modes { .. } => (factor(unknowns), 10.0 * solve),
         Procedure::Static(_) | Procedure::ImplicitDynamic(_) => {
