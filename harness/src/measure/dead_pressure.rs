@@ -1,5 +1,5 @@
-//! Faces under pressure that turn or stretch: the pressure keeps the direction and the area of the undeformed
-//! ones.
+//! Faces under a dead pressure that rotate or stretch: the pressure keeps the direction and the area of the
+//! undeformed faces.
 
 use catalogue::warning;
 use geometry::{Point3, Vector3};
@@ -10,24 +10,24 @@ use crate::discretise::place::{self, Patch};
 use crate::outcome::Warning;
 use crate::scenario::setup::{Applied, Load, ScalarField};
 
-/// Angle (degrees) of a face and relative change of its area from which on pressure on the deformed wall is
-/// another load.
+/// Rotation of a face (degrees) and relative change of its area above which a pressure on the deformed
+/// surface is a different load.
 const TURN: f64 = 10.0;
 const STRETCH: f64 = 0.1;
 
-/// How far the faces of a load move.
+/// Rotation and stretch of the faces of a load.
 #[derive(Default)]
 struct Dead {
-    /// Largest angle of a face to its undeformed one, degrees.
+    /// Largest angle between a face and its undeformed state, degrees.
     turn: f64,
-    /// Largest relative change of the area of a face, with its sign.
+    /// Largest relative change of the area of a face, signed.
     stretch: f64,
-    /// Largest change of a directed area over the area.
+    /// Largest change of a directed area relative to the area.
     change: f64,
 }
 
-/// Warns of pressures whose faces turn or stretch beyond the limits in any recorded state. An exact solution
-/// states which load it is of.
+/// Warns of pressures whose faces rotate or stretch beyond the limits in any recorded state. With an exact
+/// solution there is no warning, because the solution states its load.
 pub(super) fn warnings(run: &Solved) -> Result<Vec<Warning>, Failure> {
     let mut found = Vec::new();
     for load in run.setup.loads.iter().filter(|_| run.setup.exact.is_none()) {
@@ -80,7 +80,7 @@ impl Dead {
     }
 }
 
-/// Area (m^2) times normal of a face, as triangles from its first corner.
+/// Area (m^2) times normal of a face, summed over triangles from its first corner.
 fn directed_area(corners: &[Point3]) -> Vector3 {
     corners[1..].windows(2).map(|pair| (pair[0] - corners[0]).cross(&(pair[1] - corners[0])) / 2.0).sum()
 }

@@ -1,4 +1,4 @@
-//! The displacement field where runs are compared.
+//! The displacement field at the points where runs are compared.
 
 use std::time::Instant;
 
@@ -6,8 +6,8 @@ use super::{Field, Request, Solved};
 use crate::Failure;
 use crate::outcome::{Meters, Plan, StageName};
 
-/// Displacement (m) at the targets, or at the method's own nodes without targets. Where the plan has no transfer, the
-/// parameters of the nodes are displacements already, and nothing is evaluated.
+/// Displacement (m) at the targets; without targets, at the method's own nodes. If the plan has no transfer,
+/// nodal parameters are displacements and nothing is evaluated.
 pub(crate) fn displacement(
     run: &Solved,
     plan: &Plan,

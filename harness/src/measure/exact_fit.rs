@@ -1,7 +1,8 @@
-//! Whether an exact solution is one of the scene: its displacement where supports hold the body, its traction everywhere else.
+//! Check that an exact solution solves the scene: its displacement on the supports, and its traction on the
+//! rest of the surface.
 //!
-//! The equations inside are the solution's own business; what a scene can get wrong are a load left out, a support too many and
-//! numbers that differ. Errors would then be distances between two problems.
+//! The equations inside the body are the responsibility of the solution. A scene can omit a load, have an
+//! additional support, or use other numbers. Errors would then be distances between two problems.
 
 use std::collections::{HashMap, HashSet};
 
@@ -16,38 +17,40 @@ use crate::Failure;
 use crate::discretise::place::{self, Patch, Place};
 use crate::scenario::setup::{Applied, Setup};
 
-/// Where a scene and its exact solution differ most.
+/// Surface on which a scene and its exact solution differ most.
 pub(super) struct Misfit {
-    /// Root mean square difference on the surface over the largest root mean square value on any.
+    /// Root-mean-square difference on the surface, relative to the largest root-mean-square value on any
+    /// surface.
     pub relative: f64,
-    /// What of it flat facets in place of a curved surface may make: their turn from one to the next.
+    /// Part of the difference that flat facets of a curved surface may cause: the angle from facet to facet,
+    /// rad.
     pub turn: f64,
-    /// The surface.
+    /// Name of the surface.
     pub surface: String,
-    /// What differs there.
+    /// Quantity that differs: displacement or traction.
     pub what: &'static str,
-    /// Root mean square values on the surface: the scene's and the exact solution's, m or Pa.
+    /// Root-mean-square values of the scene and of the exact solution on the surface, m or Pa.
     pub sizes: [f64; 2],
 }
 
-/// What a support or a load covers: facets as a whole, and whether it cuts others.
+/// Part of the surface covered by a support or a load: whole facets, and whether other facets are cut.
 struct Covered {
     whole: HashSet<Facet>,
     cuts: bool,
 }
 
-/// Sums of squares over a surface: of the scene, of the exact solution, of the difference.
+/// Sums of squares over a surface: scene, exact solution, difference.
 #[derive(Clone, Copy, Default)]
 struct Sums([f64; 3]);
 
-/// Part of the stress, as a displacement across the body, and of the displacement, as a stress, that is
-/// rounding of the other.
+/// Relative rounding of the displacement compared with the stress as a displacement across the body, and of
+/// the stress compared with the displacement as a stress.
 const ROUNDING: f64 = 1e-12;
 
-/// What is known of one surface.
+/// Sums over a surface of the mesh.
 struct OnSurface {
     name: String,
-    /// m^2.
+    /// Area, m^2.
     area: f64,
     turn: f64,
     displacement: Sums,
@@ -64,7 +67,7 @@ impl Sums {
     }
 }
 
-/// The worst misfit of a linear scene; `None` without an exact solution, or where a place cuts facets.
+/// Largest misfit of a linear scene; `None` without an exact solution, or if a region cuts facets.
 pub(super) fn worst(run: &Solved) -> Result<Option<Misfit>, Failure> {
     let Solved { method, setup, .. } = *run;
     let fits = matches!(setup.procedure, Procedure::Linear { .. }) && !setup.relaxes();
@@ -86,8 +89,8 @@ pub(super) fn worst(run: &Solved) -> Result<Option<Misfit>, Failure> {
     let each = surfaces(mesh).into_iter();
     let each = each.map(|(name, facets)| OnSurface::new(name, run, exact, &facets, [&held, &loaded]));
     let each: Vec<OnSurface> = each.collect::<Result<_, _>>()?;
-    // Values compared with zero are relative to the largest of the body: a support that holds one axis of a
-    // plane has exactly none.
+    // Values that should be zero are relative to the largest on the body: a support along the normal of a
+    // plane has a displacement of exactly zero.
     let largest = |k: usize| each.iter().map(|s| (s.all[k] / s.area).sqrt()).fold(0.0, f64::max);
     let (low, high) = place::bounds(mesh);
     let stiffness = setup.materials.iter().map(|m| m.young()).fold(0.0, f64::max) / (high - low).norm();
@@ -99,7 +102,7 @@ pub(super) fn worst(run: &Solved) -> Result<Option<Misfit>, Failure> {
     Ok(of_kind.into_iter().flatten().max_by(|a, b| a.relative.total_cmp(&b.relative)))
 }
 
-/// The worst of one kind, `None` where all of it is zero.
+/// Largest misfit of a quantity; `None` if the quantity vanishes everywhere.
 fn misfit(
     each: &[OnSurface],
     what: &'static str,
@@ -114,7 +117,7 @@ fn misfit(
     (scale > 0.0).then(|| Misfit { relative: off / scale, turn, surface, what, sizes: [scene, exact] })
 }
 
-/// The named surfaces of a mesh, and the rest of its boundary; no walls inside.
+/// Named surfaces of a mesh, and the rest of its boundary, without walls inside the body.
 fn surfaces(mesh: &Mesh) -> Vec<(String, Vec<Facet>)> {
     let outer: HashSet<Facet> = mesh.boundary().into_iter().collect();
     let mut rest = outer.clone();
@@ -133,7 +136,7 @@ fn surfaces(mesh: &Mesh) -> Vec<(String, Vec<Facet>)> {
 }
 
 impl OnSurface {
-    /// Displacements along held axes and tractions along the others.
+    /// Sums displacements along constrained axes and tractions along the others.
     fn new(
         name: String,
         run: &Solved,
@@ -168,7 +171,8 @@ impl OnSurface {
     }
 }
 
-/// Root mean square angle (rad) between the normal of a facet and the mean normal of those around its corners: 0 of a plane.
+/// Root-mean-square angle (rad) between the normal of a facet and the mean normals at its corners; 0 for a
+/// plane.
 fn turn(mesh: &Mesh, facets: &[Facet], surface: &SurfaceRows) -> f64 {
     let each = surface.weights().len() / facets.len();
     let of_facet =
@@ -188,7 +192,7 @@ fn turn(mesh: &Mesh, facets: &[Facet], surface: &SurfaceRows) -> f64 {
     (sum / area).sqrt()
 }
 
-/// All loads at a point of a facet, Pa.
+/// Sum of all loads at a point of a facet, Pa.
 fn applied(
     setup: &Setup,
     loaded: &[Covered],

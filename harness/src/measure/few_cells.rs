@@ -1,4 +1,4 @@
-//! Bodies with fewer than three cells across what bends or is pressed.
+//! Bodies with fewer than three cells across a section that bends or is compressed.
 
 use catalogue::{metric, warning};
 use geometry::{CellKind, Facet, Matrix3, Point3, Vector3};
@@ -8,31 +8,32 @@ use crate::Failure;
 use crate::discretise::place::{self, Patch};
 use crate::outcome::{Metric, Warning};
 
-/// Cells across below which the warning is given: three, with a margin because cells that lie askew look
+/// Number of cells across below which the warning is given: three, with a margin because oblique cells look
 /// wider.
 const FEW: f64 = 2.5;
-/// Jump of the stress below which few cells are enough: the stress is even, or linear as in a beam of
-/// quadratic cells. Few cells see less of their own error than many, so this is below the limit of
+/// Stress jump below which few cells suffice, because the stress is uniform, or linear as in a beam of
+/// quadratic cells. With few cells the jump underestimates the error, so this limit is below that of
 /// `stress-jump`.
 const EVEN: f64 = 0.15;
-/// Places that are looked at.
+/// Number of points that are examined.
 const PLACES: usize = 64;
-/// Cosine of the angle between a face's normal and an axis from which on a support along the axis makes it a
-/// plane of symmetry.
+/// Smallest cosine of the angle between a face's normal and an axis for which a support along the axis makes
+/// the face a symmetry plane.
 const ALONG: f64 = 0.999;
 
-/// A flat piece of the surface.
+/// Triangle of the body's surface.
 struct Triangle {
     corners: [Point3; 3],
     /// Unit normal.
     normal: Vector3,
-    /// Whether the body goes on beyond it as its mirror image.
+    /// Whether the triangle lies on a symmetry plane.
     mirror: bool,
 }
 
-/// Warns if half of the strain energy is where the body has fewer than three cells between its two sides.
-/// They are counted along the displacement, which is across a body that bends or is pressed, and along one
-/// that is stretched or sheared. Errors against an exact solution need no such guess.
+/// Warns if half of the strain energy lies where the body has fewer than three cells between its two sides.
+/// The cells are counted along the displacement, which is transverse in a body that bends or is compressed,
+/// and longitudinal in a body that is stretched or sheared. With an exact solution, the errors are known and
+/// there is no warning.
 pub(super) fn warning(run: &Solved, metrics: &[Metric]) -> Result<Option<Warning>, Failure> {
     let jump = metrics.iter().find(|m| *m.entry == metric::STRESS_JUMP).map(|m| m.value);
     if run.setup.exact.is_some() || run.setup.contact.is_some() || !jump.is_some_and(|jump| jump > EVEN) {
@@ -57,7 +58,7 @@ pub(super) fn warning(run: &Solved, metrics: &[Metric]) -> Result<Option<Warning
     }))
 }
 
-/// Integration points that stand for equal shares of the strain energy.
+/// Integration points that represent equal parts of the strain energy.
 fn by_energy(run: &Solved, gradients: &[Matrix3]) -> Vec<usize> {
     let volume = &run.prepared.volume;
     let energy = gradients.iter().enumerate().map(|(q, h)| {
@@ -79,8 +80,8 @@ fn by_energy(run: &Solved, gradients: &[Matrix3]) -> Vec<usize> {
     (0..PLACES).map(|k| sums.partition_point(|&sum| sum < at(k)).min(sums.len() - 1)).collect()
 }
 
-/// Cells between the two sides of the body along the displacement of an integration point; infinite where it
-/// does not move, or between two planes of symmetry.
+/// Number of cells between the two sides of the body along the displacement of an integration point; infinite
+/// if the point does not move or lies between two symmetry planes.
 fn cells_across(run: &Solved, surface: &[Triangle], q: usize) -> f64 {
     let rows = &run.prepared.volume.rows;
     let (nodes, values) = rows.rows().row(q);
@@ -105,8 +106,8 @@ fn cells_across(run: &Solved, surface: &[Triangle], q: usize) -> f64 {
         .fold(f64::INFINITY, f64::min)
 }
 
-/// Extent (m) along a direction of the cell of these nodes, half of it where it is quadratic; the spacing of
-/// the nodes of a cloud.
+/// Extent of the cell of these nodes along a direction, m; half of it for a quadratic cell, and the node
+/// spacing for a cloud.
 fn size(run: &Solved, nodes: &[u32], along: &Vector3) -> f64 {
     if !run.method.interpolates {
         return run.prepared.spacing;
@@ -116,26 +117,27 @@ fn size(run: &Solved, nodes: &[u32], along: &Vector3) -> f64 {
     if matches!(run.method.mesh().kind(0), CellKind::Tet10 | CellKind::Hex20) { extent / 2.0 } else { extent }
 }
 
-/// The nearest triangle from a point inside along a direction, and how far it is, m.
+/// Nearest triangle from a point inside along a direction, with its distance, m.
 fn hit<'a>(surface: &'a [Triangle], x: &Point3, along: Vector3) -> Option<(f64, &'a Triangle)> {
     let met = surface.iter().filter_map(|triangle| Some((triangle.distance(x, &along)?, triangle)));
     met.min_by(|a, b| a.0.total_cmp(&b.0))
 }
 
 impl Triangle {
-    /// Distance along a direction (Moeller & Trumbore 1997); `None` beside it or behind.
+    /// Distance along a direction (Moeller & Trumbore 1997); `None` if the line misses the triangle or the
+    /// triangle lies behind.
     fn distance(&self, x: &Point3, along: &Vector3) -> Option<f64> {
         let [a, b, c] = &self.corners;
         let (e, f, s) = (b - a, c - a, x - a);
         let (p, r) = (along.cross(&f), s.cross(&e));
         let det = e.dot(&p);
         let (v, w, t) = (s.dot(&p) / det, along.dot(&r) / det, f.dot(&r) / det);
-        // A NaN, of a triangle along the direction, is beside it.
+        // A triangle parallel to the direction gives NaN and is missed.
         (v >= 0.0 && w >= 0.0 && v + w <= 1.0 && t >= 0.0).then_some(t)
     }
 }
 
-/// The surface of the body in triangles.
+/// Triangulates the surface of the body.
 fn surface(run: &Solved) -> Result<Vec<Triangle>, Failure> {
     let mesh = run.method.mesh();
     let mut mirrors: Vec<(Facet, usize)> = Vec::new();

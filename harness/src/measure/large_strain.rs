@@ -1,33 +1,34 @@
-//! Strains and rotations beyond what a law of small strain is for.
+//! Strains and rotations beyond the validity of a small-strain law.
 
 use geometry::{Matrix3, Point3, Vector3};
 use material::Material as _;
 
 use super::Solved;
 
-/// Principal strain from which on it is: the stretches of linear and true strain then differ by a twentieth of the strain.
+/// Principal strain above which a small-strain law is not valid. Engineering and true strain then differ by a
+/// twentieth of the strain.
 pub(super) const LARGE: f64 = 0.1;
-/// Rotation (rad) from which on it is: a turn of a rigid body by `w` is a false strain of `w^2 / 2`, here 2
-/// %.
+/// Rotation above which a small-strain law is not valid, rad. A rigid rotation by `w` gives a false strain of
+/// `w^2 / 2`, here 2 %.
 pub(super) const TURNED: f64 = 0.2;
 
-/// Of an eigenvalue and of the norm.
+/// Relative rounding of an eigenvalue and of the norm.
 const ROUNDING: f64 = 1e-12;
 
-/// The largest of one kind in the body.
+/// Largest strain or rotation in the body.
 #[derive(Default)]
 pub(super) struct Largest {
-    /// A number above 0: a principal strain in stretch or compression, or an angle in rad.
+    /// Positive value: a principal strain in tension or compression, or an angle in rad.
     pub value: f64,
-    /// The integration point, m.
+    /// Position of the integration point, m.
     pub at: Point3,
-    /// Share of the volume where it is above its limit.
+    /// Fraction of the volume in which the value exceeds its limit.
     pub share: f64,
 }
 
-/// The largest principal strain and the largest rotation of laws of small strain, over all integration
-/// points; `None` where no law is one. An exact solution of the linear equations states the small strain
-/// itself: against that the numbers are right at any strain.
+/// Largest principal strain and largest rotation over all integration points with a small-strain law; `None`
+/// without such a law. An exact solution of the linear equations assumes small strain itself, so results
+/// compared with it are valid at any strain: `None` too.
 pub(super) fn largest(run: &Solved) -> Option<[Largest; 2]> {
     let Solved { setup, prepared, solution, .. } = *run;
     let small = |q: usize| {
@@ -46,7 +47,8 @@ pub(super) fn largest(run: &Solved) -> Option<[Largest; 2]> {
         let (at, weight) = (&rows.points()[q], rows.weights()[q]);
         turn.add(rotation(h), TURNED, at, weight);
         let tensor = (h + h.transpose()) * 0.5;
-        // No principal strain is larger than the norm, which is a tenth of the work: few points need more.
+        // No principal strain exceeds the norm, which costs a tenth of the eigenvalues. Few points need
+        // eigenvalues.
         if tensor.norm() * (1.0 + ROUNDING) >= strain.value.min(LARGE) {
             strain.add(tensor.symmetric_eigenvalues().amax(), LARGE, at, weight);
         }
@@ -56,7 +58,7 @@ pub(super) fn largest(run: &Solved) -> Option<[Largest; 2]> {
     met.then_some([strain, turn])
 }
 
-/// The small rotation of a displacement gradient, half its curl, rad.
+/// Small rotation of a displacement gradient, half its curl, rad.
 fn rotation(h: &Matrix3) -> f64 {
     0.5 * Vector3::new(h.m32 - h.m23, h.m13 - h.m31, h.m21 - h.m12).norm()
 }

@@ -1,5 +1,6 @@
-//! Mean pressure `p = -tr(sigma) / 3` (Pa) as the method itself has it: of the law, of the projected dilation, or of a
-//! pressure field of its own. A plain derivative of the displacement would show a pressure the projected methods never used.
+//! Mean pressure `p = -tr(sigma) / 3` (Pa) of the method itself: from the law, from the projected dilation,
+//! or from the method's own pressure field. A plain displacement gradient would give a pressure that
+//! projected methods never use.
 
 use material::{Law, Material as _, volume_change};
 use shape::DilationGroups;
@@ -17,8 +18,9 @@ pub fn cauchy(law: &Law, h: &Matrix3) -> Matrix3 {
     p * f.transpose() / f.determinant()
 }
 
-/// At every quadrature point of a volume, Pa, positive in compression. `gradients` (3, 3) are those of the displacement there,
-/// `parameters` (Pa, tension positive) those of the method's pressure field, where it has one.
+/// Mean pressure at every quadrature point of a volume, Pa, positive in compression. `gradients` are the
+/// displacement gradients (3, 3) at the points. `parameters` (Pa, tension positive) are those of the method's
+/// pressure field, if it has one.
 pub fn at_points(laws: &[Law], volume: &Volume, gradients: &[Matrix3], parameters: &[f64]) -> Vec<f64> {
     let law = |q: usize| &laws[volume.region.get(q).map_or(0, |&r| r as usize)];
     if let Some(rows) = &volume.pressure {
@@ -34,7 +36,8 @@ pub fn at_points(laws: &[Law], volume: &Volume, gradients: &[Matrix3], parameter
     }
 }
 
-/// `p_q = sum_a share_aq p_a`, `p_a` the mean over group a of the law's pressure at the group's dilation.
+/// Projected pressure `p_q = sum_a share_aq p_a`. `p_a` is the mean over group a of the law's pressure at the
+/// group's dilation.
 fn projected<'l>(
     groups: &DilationGroups,
     law: impl Fn(usize) -> &'l Law,
@@ -54,19 +57,20 @@ fn projected<'l>(
     pressure
 }
 
-/// Mean over a group of points, by volume and share.
+/// Mean over a group of points, weighted by volume and share.
 pub(super) fn mean(points: &[u32], shares: &[f64], weights: &[f64], value: &dyn Fn(usize) -> f64) -> f64 {
     let each = points.iter().zip(shares).map(|(&q, s)| (q as usize, s * weights[q as usize]));
     let (sum, measure) = each.fold((0.0, 0.0), |(s, m), (q, dv)| (s + dv * value(q), m + dv));
     sum / measure
 }
 
-/// `J - 1`; `tr H` at small strain.
+/// Dilation `J - 1`; `tr H` at small strain.
 pub(super) fn dilation(law: &Law, h: &Matrix3) -> f64 {
     if law.is_small_strain() { h.trace() } else { volume_change(h) }
 }
 
-/// The displacement gradient of `F_bar = ((1 + theta) / J)^(1/3) F`; of the strain with the trace `theta` at small strain.
+/// Displacement gradient of `F_bar = ((1 + theta) / J)^(1/3) F`; at small strain, of the strain with the
+/// trace `theta`.
 pub(super) fn dilated(law: &Law, h: &Matrix3, theta: f64) -> Matrix3 {
     let j = dilation(law, h);
     if law.is_small_strain() {

@@ -1,4 +1,4 @@
-//! Modes of free vibration, and how they compare with exact ones.
+//! Modes of free vibration, and their comparison with exact modes.
 
 use cases::exact::Vibrations;
 use catalogue::{metric, warning};
@@ -9,19 +9,20 @@ use crate::Failure;
 use crate::outcome::{Metric, Warning, push};
 use crate::procedure::Vibration;
 
-/// Part of the lowest exact frequency below which a mode is a spurious slow one.
+/// Fraction of the lowest exact frequency below which a mode is spurious.
 const SLOW: f64 = 0.9;
-/// Part of the frequency of a shear wave across the body below which a mode is rigid: rounding leaves 1e-6.
+/// Fraction of the frequency of a shear wave across the body below which a mode is rigid. Rounding leaves
+/// 1e-6.
 const RIGID: f64 = 1e-3;
-/// Part of the square of that frequency below which a mode has no energy. Rounding leaves 1e-10; a cantilever
-/// 1000 times as long as thick has 1e-8.
+/// Fraction of the square of that frequency below which a mode has no energy. Rounding leaves 1e-10; a
+/// cantilever 1000 times as long as thick has 1e-8.
 const NO_ENERGY: f64 = 1e-9;
-/// Multiple of the exact frequency up to which its mode is looked for.
+/// Multiple of the exact frequency up to which its mode is searched.
 const FAST: f64 = 1.5;
-/// Share of its displacement that a mode must have in the exact ones to be taken for one of them.
+/// Smallest overlap with the span of the exact modes for a mode to count as one of them.
 const ALIKE: f64 = 0.5;
 
-/// What is known of the vibrations of a body.
+/// Metrics, modes and warnings of a modal analysis.
 pub(crate) struct Modes {
     pub(crate) metrics: Vec<Metric>,
     pub(crate) dofs: usize,
@@ -29,7 +30,7 @@ pub(crate) struct Modes {
     pub(crate) warnings: Vec<Warning>,
 }
 
-/// Counts, and comparisons with the exact vibrations if the scene names some.
+/// Reports counts, and comparisons with exact vibrations if the scene names them.
 pub(crate) fn report(run: &Solved, vibration: &Vibration) -> Result<Modes, Failure> {
     let Vibration { modes, count, mass } = vibration;
     let setup = run.setup;
@@ -54,13 +55,13 @@ pub(crate) fn report(run: &Solved, vibration: &Vibration) -> Result<Modes, Failu
         push(&mut metrics, &metric::SPECTRUM_ERROR, errors.fold(0.0, f64::max));
     }
     if let Some(exact) = exact {
-        // Slow ones may be many, and come first.
+        // There may be many slow modes, which come first.
         let near = omega.iter().take_while(|&&w| w < FAST * exact.omega()).count();
         let (shares, dimension) = shares(run, &modes.shapes[..near], exact)?;
         let mut nearest: Vec<usize> = (0..near).collect();
         nearest.sort_by(|&a, &b| shares[b].total_cmp(&shares[a]));
         nearest.truncate(dimension);
-        // What is one frequency of several modes may part into several: the worst is reported of them.
+        // A multiple exact frequency may split into several; the worst of them is reported.
         let least = nearest.iter().map(|&n| shares[n]).fold(f64::INFINITY, f64::min);
         let ratios = nearest.iter().map(|&n| omega[n] / exact.omega());
         if let Some(worst) = ratios.max_by(|a, b| (a - 1.0).abs().total_cmp(&(b - 1.0).abs())) {
@@ -85,7 +86,7 @@ pub(crate) fn report(run: &Solved, vibration: &Vibration) -> Result<Modes, Failu
     Ok(Modes { modes: each.collect(), metrics, dofs: modes.dofs, warnings })
 }
 
-/// Modes of frequency zero that are no rigid motions of the body.
+/// Warning of modes with zero frequency that are not rigid motions of the body.
 fn without_energy(modes: &statics::Modes) -> Option<Warning> {
     let still = modes.squared.iter().filter(|&&square| square < NO_ENERGY * modes.scale).count();
     let excess = still.saturating_sub(modes.rigid);
@@ -100,8 +101,8 @@ fn without_energy(modes: &statics::Modes) -> Option<Warning> {
     })
 }
 
-/// Of each mode the share in the span of the exact ones of one frequency, the squared cosine in L2 over the body; and how many
-/// these are.
+/// Overlap of each mode with the span of the exact modes of one frequency (the squared cosine in L2 over the
+/// body), and the number of these exact modes.
 fn shares(
     run: &Solved,
     shapes: &[Vec<Vector3>],

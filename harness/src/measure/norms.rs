@@ -7,14 +7,15 @@ use shape::{Matrix3, Point3, Vector3, VolumeRows};
 use super::Solved;
 use super::stress::{Recovered, own_stress};
 
-/// Relative errors over the body. A norm whose exact value vanishes (the pressure of a traceless stress, the energy
-/// of a rigid motion) is absent rather than divided by zero.
+/// Relative errors over the body. If the exact value of a norm vanishes (the pressure of a traceless stress,
+/// the energy of a rigid motion), the norm is absent instead of divided by zero.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Norms {
     /// `|u_h - u| / |u|` in L2.
     pub l2: Option<f64>,
-    /// `sqrt(int ds : C^-1 : ds / int s : C^-1 : s)`, `ds` the stress error: for a plain displacement method the
-    /// energy norm of the strain error, with a volumetric projection the same with the projected pressure.
+    /// `sqrt(int ds : C^-1 : ds / int s : C^-1 : s)` with the stress error `ds`. For a plain displacement
+    /// method this is the energy norm of the strain error; with a volumetric projection it includes the
+    /// projected pressure.
     pub energy: Option<f64>,
     /// `|p_h - p| / |p|` in L2, p the mean of the recovered stress.
     pub pressure: Option<f64>,
@@ -22,7 +23,7 @@ pub struct Norms {
     pub stress: Option<f64>,
 }
 
-/// Sums of squares of an error and of what it is relative to.
+/// Sums of squares of an error and of the exact field.
 #[derive(Default)]
 struct Ratio {
     error: f64,
@@ -35,14 +36,15 @@ impl Ratio {
         self.exact += weight * exact;
     }
 
-    /// Absent where the exact norm is rounding against `scale`, a sum of squares of the same unit.
+    /// Relative error; `None` if the exact norm is rounding compared with `scale`, a sum of squares of the
+    /// same unit.
     fn root(&self, scale: f64) -> Option<f64> {
         (self.exact > 1e-20 * scale && self.exact > 0.0).then(|| (self.error / self.exact).sqrt())
     }
 }
 
-/// Errors of a run, over `fine`, a quadrature of higher order than the solver's own, with the region of each
-/// point. Solutions at large strain state their own Cauchy stress, over the undeformed body, and no energy.
+/// Errors of a run over `fine`, a quadrature of higher order than the solver's own, with the region of each
+/// point. Solutions at large strain give their own Cauchy stress over the undeformed body, and no energy.
 pub(super) fn norms(
     run: &Solved,
     recovered: Option<&Recovered>,
@@ -83,8 +85,9 @@ pub(super) fn norms(
     }
 }
 
-/// The energy of the stress error: of the law at the displacement's gradient, over `fine`; of the method's
-/// own stress, at its own points, where that is another, or much of the strain between them has no energy.
+/// Energy norm of the stress error. For plain methods the stress follows from the law at the displacement
+/// gradient over `fine`. Other methods use their own stress at their own points, between which much of the
+/// strain would have no energy.
 fn energy(run: &Solved, fine: &VolumeRows, fine_region: &[u16], exact: &dyn Exact) -> Option<f64> {
     let Solved { method, setup, prepared, solution } = *run;
     let volume = &prepared.volume;
@@ -145,20 +148,20 @@ pub fn difference(a: &[Vector3], b: &[Vector3]) -> Difference {
     }
 }
 
-/// Errors of a field over the size of the one it is compared with, dimensionless.
+/// Errors of a field relative to the size of the reference field, dimensionless.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Relative {
-    /// RMS of the difference's magnitude over that of the reference.
+    /// RMS of the difference's magnitude over the RMS magnitude of the reference.
     pub rms: f64,
     /// Largest difference over the reference's largest magnitude.
     pub max: f64,
-    /// Error of the largest magnitude, wherever each field has its own.
+    /// Error of the largest magnitude, wherever in each field it occurs.
     pub peak: f64,
 }
 
-/// Compares two fields at the same points; nothing where the reference vanishes.
+/// Compares two fields at the same points; `None` if the reference vanishes.
 pub fn relative(a: &[Vector3], reference: &[Vector3]) -> Option<Relative> {
-    // A field's difference from nothing is its own size.
+    // A field's difference from zero is its own size.
     let size = |field: &[Vector3]| difference(field, &vec![Vector3::zeros(); field.len()]);
     let (apart, own) = (difference(a, reference), size(reference));
     (own.max > 0.0).then(|| Relative {
@@ -168,7 +171,7 @@ pub fn relative(a: &[Vector3], reference: &[Vector3]) -> Option<Relative> {
     })
 }
 
-/// The exact displacement at points.
+/// Exact displacement (m) at points (m).
 pub fn exact_at(exact: &dyn Exact, points: &[Point3]) -> Vec<Vector3> {
     points.iter().map(|x| exact.displacement(x)).collect()
 }
@@ -191,7 +194,7 @@ mod tests {
         let a = [Vector3::new(3.0, 0.0, 0.0), Vector3::new(0.0, 2.0, 0.0)];
         let reference = [Vector3::new(0.0, 0.0, 0.0), Vector3::new(0.0, 0.0, 4.0)];
         let r = relative(&a, &reference).unwrap();
-        // Differences of 3 and sqrt(20) beside magnitudes of 0 and 4; the largest magnitude is 3 instead of 4.
+        // Differences of 3 and sqrt(20) for magnitudes of 0 and 4; the largest magnitude is 3 instead of 4.
         assert!((r.rms - (29.0f64 / 16.0).sqrt()).abs() < 1e-15);
         assert!((r.max - 20f64.sqrt() / 4.0).abs() < 1e-15);
         assert_eq!(r.peak, 0.25);

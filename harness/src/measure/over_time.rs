@@ -1,4 +1,4 @@
-//! The largest displacement of a motion, over all of its recorded states.
+//! The largest displacement of a motion over all its recorded states.
 
 use catalogue::metric;
 use geometry::Vector3;
@@ -7,7 +7,8 @@ use super::{Request, Solved};
 use crate::Failure;
 use crate::outcome::{LoadStep, Metric, Plan, StageName};
 
-/// The largest displacement at the points where that of the end is looked for, and its time; nothing of a procedure without time.
+/// Largest displacement (m) over time at the points where runs are compared, and its time (s); empty for a
+/// procedure without time.
 pub(crate) fn over_time(
     run: &Solved,
     plan: &Plan,
@@ -17,7 +18,7 @@ pub(crate) fn over_time(
     let Some(history) = &run.solution.history else { return Ok(Vec::new()) };
     let points = if request.targets.is_empty() { run.method.nodes() } else { request.targets };
     let largest = |field: &[Vector3]| field.iter().fold(0.0, |largest: f64, u| largest.max(u.norm()));
-    // Where the plan has no transfer, the parameters of the nodes are displacements.
+    // Without a transfer in the plan, nodal parameters are displacements.
     let rows = match plan.runs(StageName::Transfer) {
         true => Some(run.prepared.source.at_points(points)?.0),
         false => None,

@@ -1,23 +1,28 @@
-//! How well the integration of a cloud passes a patch test.
+//! Patch test of a cloud's integration.
 //!
-//! In a constant stress the force on a node is `b_I = sum_q w_q grad phi_I - integral of phi_I n` over the whole surface, for
-//! each axis of the stress. It is zero, to rounding, on elements and smoothed cells. Gauss points in background cells miss it by
-//! what shape functions bend inside a cell, and by more where many supports reach across a flat body.
-//! The field that `b` drives is the error of a linear field. With the Laplacian `K_IJ = sum_q w_q grad phi_I . grad phi_J` for the
-//! stiffness its energy is `b K^-1 b`; conjugate gradients approach that from below, the smooth parts, which weigh most, first.
+//! In a constant stress the residual force on a node is `b_I = sum_q w_q grad phi_I - integral of phi_I n`
+//! over the whole surface, for each axis of the stress. The residual is zero to rounding for elements and
+//! smoothed cells. For Gauss points in background cells it is not, because shape functions vary nonlinearly
+//! in a cell, and more so if many supports extend across a thin body.
+//!
+//! The displacement driven by `b` is the error of a linear field. With the Laplacian `K_IJ = sum_q w_q grad
+//! phi_I . grad phi_J` as stiffness its energy is `b K^-1 b`. Conjugate gradients approach the energy from
+//! below. The smooth parts, which contribute most, converge first.
 
 use geometry::{Facet, Vector3};
 use shape::VolumeRows;
 
 use super::Solved;
 
-/// Steps of conjugate gradients: on blocks of 216 nodes, cubes and plates, ten have 0.8 to 1 of the error.
+/// Steps of conjugate gradients. On blocks of 216 nodes, cubes and plates, ten steps give 0.8 to 1 of the
+/// error.
 const STEPS: usize = 10;
 
-/// Over the volume: forces of rounding.
+/// Squared forces at rounding level, relative to the volume.
 const ROUNDING: f64 = 1e-20;
 
-/// Gradient of a linear field's error over the field's own, the root mean square along the worst axis; `None` of elements.
+/// Gradient of a linear field's error relative to the field's own gradient: the root mean square for the
+/// worst axis. `None` for elements.
 pub(super) fn patch_error(run: &Solved) -> Option<f64> {
     if run.method.interpolates {
         return None;
@@ -44,12 +49,12 @@ pub(super) fn patch_error(run: &Solved) -> Option<f64> {
     Some((energy(volume, force, &diagonal, whole) / whole).max().max(0.0).sqrt())
 }
 
-/// `b K^-1 b` for each axis; `whole` is the volume.
+/// Energy `b K^-1 b` for each axis; `whole` is the volume.
 fn energy(volume: &VolumeRows, mut left: Vec<Vector3>, diagonal: &[f64], whole: f64) -> Vector3 {
     let scaled = |left: &[Vector3]| -> Vec<Vector3> {
         left.iter().zip(diagonal).map(|(r, k)| if *k > 0.0 { r / *k } else { Vector3::zeros() }).collect()
     };
-    // The axes do not know of each other: each has numbers of its own.
+    // The axes are independent, each with its own scalars.
     let dot =
         |a: &[Vector3], b: &[Vector3]| a.iter().zip(b).map(|(a, b)| a.component_mul(b)).sum::<Vector3>();
     let over = |a: Vector3, b: Vector3| a.zip_map(&b, |a, b| if b > 0.0 { a / b } else { 0.0 });
@@ -74,7 +79,7 @@ fn energy(volume: &VolumeRows, mut left: Vec<Vector3>, diagonal: &[f64], whole: 
     energy
 }
 
-/// `K u` for each axis.
+/// Product `K u` for each axis.
 fn laplacian(volume: &VolumeRows, u: &[Vector3]) -> Vec<Vector3> {
     let mut sum = vec![Vector3::zeros(); u.len()];
     for (q, (h, w)) in volume.at().displacement_gradients(u).iter().zip(volume.weights()).enumerate() {

@@ -1,4 +1,4 @@
-//! Tools that sink into the surface, which a small penalty lets them.
+//! Penetration of tools into the surface because of a small penalty.
 
 use catalogue::warning;
 use geometry::Point3;
@@ -6,15 +6,15 @@ use geometry::Point3;
 use super::Solved;
 use crate::outcome::{LoadStep, Warning};
 
-/// Part of the way that the tools close.
+/// Fraction of the tools' closure above which a penetration is too deep.
 const DEEP: f64 = 0.05;
-/// Part of that way to which a larger penalty is to bring it.
+/// Fraction of the closure to which the suggested penalty reduces the penetration.
 const GOOD: f64 = 0.01;
 
-/// Warns of tools that sink in so deep in any recorded state that their force is another. The way that tools
-/// close counts from the gaps that they start with, for all together: what one presses may lean on the next.
-/// A tool that sinks in deeper than that is a floor, on which loads press the body: it is compared with the
-/// body's narrowest extent.
+/// Warns of tools whose penetration in any recorded state is deep enough to change their force. The closure
+/// counts from the initial gaps and is summed over all tools, because the body between them may lean on
+/// another tool. A tool whose penetration exceeds the closure is a floor, onto which loads press the body:
+/// its penetration is compared with the body's narrowest extent.
 pub(super) fn warnings(run: &Solved) -> Vec<Warning> {
     let (points, tools) = (run.prepared.contact_points(), &run.setup.tools);
     let Some(history) = run.solution.history.as_ref().filter(|_| !points.is_empty()) else {

@@ -1,4 +1,4 @@
-//! The force of every support and the mean displacement of every face that is asked for, at the end and in every recorded state.
+//! Support forces and requested mean displacements of faces, at the end and in every recorded state.
 
 use catalogue::metric;
 use geometry::Vector3;
@@ -8,7 +8,7 @@ use crate::Failure;
 use crate::discretise::place;
 use crate::outcome::{FaceMean, Outcome, SupportForce, push_numbered};
 
-/// Adds them to the metrics, to what is printed, and to the steps.
+/// Adds support forces (N) and mean displacements (m) to the outcome, its metrics and its steps.
 pub(crate) fn places(outcome: &mut Outcome, run: &Solved) -> Result<(), Failure> {
     let Solved { setup, prepared, solution, .. } = *run;
     let held = setup.supports.iter().zip(prepared.support_axes()).zip(solution.support_forces());

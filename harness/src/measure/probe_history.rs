@@ -1,4 +1,4 @@
-//! Histories of probes in dynamics: errors against an exact motion, and the period of a vibration.
+//! Probe histories in dynamics: errors against an exact motion, and the period of a vibration.
 
 use cases::exact::Exact;
 use catalogue::metric;
@@ -6,7 +6,7 @@ use geometry::{Point3, Vector3};
 
 use crate::outcome::{LoadStep, Metric};
 
-/// Numbers of the probes' displacement over all recorded states of a whole motion.
+/// Metrics of the probes' displacement over all recorded states of a complete motion.
 pub(crate) fn metrics(steps: &[LoadStep], exact: Option<&dyn Exact>, probes: &[Point3]) -> Vec<Metric> {
     let states: Vec<(f64, &[Vector3])> =
         steps.iter().filter_map(|step| Some((step.time()?, step.probes.as_slice()))).collect();
@@ -34,8 +34,9 @@ fn error(states: &[(f64, &[Vector3])], exact: Option<&dyn Exact>, probes: &[Poin
     (largest > 0.0).then(|| error / largest)
 }
 
-/// Mean time between the passages of a point, at rest at time 0, through the middle of its way in the direction of its
-/// largest displacement; `None` with less than two of them. Between two states the way is straight.
+/// Mean time (s) between passages of a point, initially at rest, through the middle of its range along its
+/// largest displacement; `None` with fewer than two passages. The displacement is interpolated linearly
+/// between states.
 fn period(states: &[(f64, Vector3)]) -> Option<f64> {
     let farthest = states.iter().map(|s| s.1).max_by(|a, b| a.norm_squared().total_cmp(&b.norm_squared()))?;
     let way: Vec<(f64, f64)> =
@@ -94,11 +95,11 @@ mod tests {
                 .collect();
             period(&states)
         };
-        // Of equal steps every passage lies at the same place between two of them.
+        // With equal steps, every passage has the same position between two states.
         assert!((swing(40, 3.5).unwrap() / 0.3 - 1.0).abs() < 1e-12);
         assert!((swing(37, 3.5).unwrap() / 0.3 - 1.0).abs() < 1e-12);
         assert_eq!((swing(40, 1.2), period(&[])), (None, None));
-        // Straight ways up and down, the first in two unequal steps: passages at 0.1, 0.5 and 0.9 s.
+        // A piecewise linear motion whose first rise takes two unequal steps: passages at 0.1, 0.5 and 0.9 s.
         let ways = [(0.05, 0.5), (0.2, 2.0), (0.4, 0.0), (0.6, 2.0), (0.8, 0.0), (1.0, 2.0)];
         let found = period(&ways.map(|(t, x)| (t, Vector3::new(x, 0.0, 0.0)))).unwrap();
         assert!((found - 0.4).abs() < 1e-12, "{found}");

@@ -10,8 +10,9 @@ use crate::Failure;
 use crate::error::Key;
 use crate::outcome::{Metric, Probe, push};
 
-/// Refuses points (m) that are farther from the mesh than the nearest cell is wide. Nearer ones may be on a curved surface,
-/// whose cells cut corners: they have the values of the nearest point of the mesh, and say how far that is.
+/// Refuses points (m) that are farther from the mesh than the longest edge of the nearest cell. Closer points
+/// may lie on a curved surface, which the cells approximate. They get the values and the distance of the
+/// nearest point of the mesh.
 pub(crate) fn check_probes(mesh: &Mesh, points: &[Point3]) -> Result<(), Failure> {
     if points.is_empty() {
         return Ok(());
@@ -28,7 +29,7 @@ pub(crate) fn check_probes(mesh: &Mesh, points: &[Point3]) -> Result<(), Failure
     Ok(())
 }
 
-/// Values at `points` (m) that [`check_probes`] takes.
+/// Displacement and stress at `points` (m) that [`check_probes`] accepts.
 pub(crate) fn probes(
     run: &Solved,
     recovered: Option<&Recovered>,
@@ -49,10 +50,10 @@ pub(crate) fn probes(
     Ok(each.map(|(((&x, u), stress), &(_, outside))| Probe { x, u, stress, outside }).collect())
 }
 
-/// Part of the largest displacement up to which an exact one is rounding.
+/// Fraction of the largest displacement below which an exact displacement is rounding.
 const ROUNDING: f64 = 1e-12;
 
-/// Errors of probes against an exact solution; `u` is the displacement of all nodes, m.
+/// Adds the errors of probes against an exact solution; `u` is the displacement of all nodes, m.
 pub(crate) fn probe_errors(metrics: &mut Vec<Metric>, probes: &[Probe], exact: &dyn Exact, u: &[Vector3]) {
     let least = ROUNDING * u.iter().map(Vector3::norm).fold(0.0, f64::max);
     let Some(first) = probes.first() else { return };
@@ -69,7 +70,7 @@ pub(crate) fn probe_errors(metrics: &mut Vec<Metric>, probes: &[Probe], exact: &
     }
 }
 
-/// The longest edge of a cell, m.
+/// Longest edge of a cell, m.
 fn width(mesh: &Mesh, cell: usize) -> f64 {
     let points: Vec<&Point3> = mesh.cell_points(cell).collect();
     let lengths = mesh.kind(cell).edges().iter().map(|&[a, b]| (points[a] - points[b]).norm());

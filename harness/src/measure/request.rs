@@ -1,4 +1,4 @@
-//! What a scene requests of every run.
+//! Requested outputs and comparisons of a run, and the reference.
 
 use cases::scene::Repeated;
 use geometry::{Point3, Vector3};
@@ -7,56 +7,58 @@ use interp::Scheme;
 use crate::Failure;
 use crate::outcome::{LoadStep, Metric, SchemeSettings, Warning, Watch};
 
-/// How often a run is repeated for its timings: at least once, until `seconds` are spent or `most` is reached.
+/// Repeats of a run for its timings. A run is made at least once, and repeated until `seconds` are spent or
+/// `most` runs are made.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Repeats {
-    /// Most repeats.
+    /// Largest number of runs.
     pub most: usize,
     /// Time to spend, s.
     pub seconds: f64,
 }
 
 impl Repeats {
-    /// No repeat.
+    /// A single run without repeats.
     pub const ONCE: Repeats = Repeats { most: 1, seconds: 0.0 };
 }
 
-/// Displacement (m) of a finished run at any points (m).
+/// Function that evaluates the displacement (m) of a finished run at any points (m).
 pub type Evaluate = Box<dyn Fn(&[Point3]) -> Result<Vec<Vector3>, Failure> + Send + Sync>;
 
-/// The displacement that errors are measured against where no exact solution is known.
+/// Reference displacement, from which errors are measured if there is no exact solution.
 pub struct Reference {
-    /// Which method made it.
+    /// Id of the method that computed the reference.
     pub method: String,
-    /// Its nodes.
+    /// Number of nodes.
     pub nodes: usize,
     /// Displacement at the scene's target points, m.
     pub targets: Vec<Vector3>,
-    /// Its load steps, where the procedure has some.
+    /// Load steps; empty if the procedure has none.
     pub steps: Vec<LoadStep>,
-    /// Whether it reached the whole load; if not, only its steps are compared with.
+    /// Whether the reference reached the whole load; if not, runs are compared only at its steps.
     pub finished: bool,
-    /// What is to be said against it.
+    /// Warnings about the reference.
     pub warnings: Vec<Warning>,
-    /// How far it is off itself.
+    /// Estimate of the reference's own error.
     pub own: OwnError,
-    /// Evaluates the reference at any point, m; a stored one knows only the targets.
+    /// Evaluates the reference at any points; `None` for a stored reference, which has values only at the
+    /// targets.
     pub at: Option<Evaluate>,
 }
 
-/// The own error of a reference, as far as it is known.
+/// Estimate of the own error of a reference.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct OwnError {
-    /// Relative errors; a smaller one of a run says nothing.
+    /// Relative errors of the reference. A run's error below them has no meaning.
     pub band: Vec<Metric>,
-    /// The solutions by whose distance they are estimated.
+    /// Solutions from whose distance the errors are estimated.
     pub by: Vec<String>,
-    /// Why nothing is known; empty where something is.
+    /// Reason why there is no estimate; empty if there is one.
     pub unknown: String,
 }
 
 impl OwnError {
-    /// Adds a distance to what is known already.
+    /// Adds a distance to the estimate. Distances of the same metric are summed.
     pub(crate) fn add(&mut self, distance: Metric) {
         let same = |m: &&mut Metric| m.entry == distance.entry && m.index == distance.index;
         match self.band.iter_mut().find(same) {
@@ -66,7 +68,7 @@ impl OwnError {
     }
 }
 
-/// What a scene requests of every run.
+/// Outputs and comparisons of a run.
 #[derive(Clone, Copy)]
 pub(crate) struct Request<'a> {
     /// Probe positions, m.
@@ -81,20 +83,21 @@ pub(crate) struct Request<'a> {
     pub(crate) states: bool,
     /// Repeats of the timed part.
     pub(crate) repeats: Repeats,
-    /// The reference, where one is known.
+    /// Reference, if there is one.
     pub(crate) reference: Option<&'a Reference>,
-    /// The secondary reference, if the scene names one.
+    /// Secondary reference, if the scene names one.
     pub(crate) beside: Option<&'a Reference>,
-    /// The same cloud integrated by another rule, which errors of integration are measured from.
+    /// Solution of the same cloud with another integration rule, from which errors of integration are
+    /// measured.
     pub(crate) integrated: Option<&'a Reference>,
-    /// The loop of frames after the first solution, if it is to run.
+    /// Simulator's loop after the first solution, if the loop is to run.
     pub(crate) repeated: Option<&'a Repeated>,
-    /// Who waits for it.
+    /// Observer of the run.
     pub(crate) watch: Option<&'a Watch>,
 }
 
 impl<'a> Request<'a> {
-    /// One solution, compared with nothing.
+    /// Request for a solution without comparisons.
     pub(crate) fn alone(probes: &'a [Point3], targets: &'a [Point3]) -> Request<'a> {
         Request {
             probes,
@@ -111,7 +114,8 @@ impl<'a> Request<'a> {
         }
     }
 
-    /// The same for a run that may have ended early: ends are compared only where both are whole.
+    /// Same request for a run that may have ended early. Ends are compared only if the run (`whole`) and the
+    /// reference reached the whole load.
     pub(crate) fn at_end(&self, whole: bool) -> Request<'a> {
         let kept = |reference: Option<&'a Reference>| reference.filter(|r| whole && r.finished);
         Request {

@@ -1,4 +1,4 @@
-//! What a run leaves for programs that draw bodies: displacement, stress and tools at every recorded state.
+//! States of a run for visualisation programs: displacement, stress and tools at every recorded state.
 
 use geometry::{Mesh, Point3, Search, Vector3};
 use shape::{Matrix3, PointRows};
@@ -12,20 +12,20 @@ use crate::scenario::PlacedTool;
 
 /// A recorded state of a run.
 pub(super) struct Recorded<'a> {
-    /// Time (s) in dynamics, part of the load in statics, 1 of a linear solution, number of a mode.
+    /// Time (s) in dynamics, fraction of the load in statics, 1 for a linear solution, or number of a mode.
     time: f64,
     /// Nodal parameters, m.
     pub(super) u: &'a [Vector3],
-    /// Parameters (Pa) of a pressure field; `None` if the stress is not known.
+    /// Parameters of a pressure field, Pa; `None` if the stress is unknown.
     pub(super) parameters: Option<&'a [f64]>,
     step: Option<&'a LoadStep>,
 }
 
-/// The recorded states of a procedure in steps, the end of one without, or the modes of vibration; at most so many of them, evenly, the
-/// last with them.
+/// Recorded states of a procedure with steps, the end of a procedure without, or the vibration modes. At most
+/// `most` of them are returned, evenly spaced and including the last.
 pub(super) fn recorded<'a>(run: &Solved<'a>, most: usize) -> Vec<Recorded<'a>> {
     let Solved { prepared, solution, .. } = *run;
-    // Pressures of a field of its own are known at the end alone.
+    // The parameters of a pressure field are known only at the end.
     let mixed = prepared.volume.pressure.is_some();
     match (&solution.history, &solution.vibration) {
         (Some(history), _) => {
@@ -57,7 +57,7 @@ pub(super) fn recorded<'a>(run: &Solved<'a>, most: usize) -> Vec<Recorded<'a>> {
     }
 }
 
-/// Shape values of the method's nodes at the points of its mesh; `None` if these are the nodes.
+/// Rows of the method's shape functions at the points of its mesh; `None` if these are the nodes.
 pub(super) fn at_mesh(run: &Solved) -> Result<Option<PointRows>, Failure> {
     let Solved { method, prepared, .. } = *run;
     Ok(match method.interpolates {
@@ -66,7 +66,7 @@ pub(super) fn at_mesh(run: &Solved) -> Result<Option<PointRows>, Failure> {
     })
 }
 
-/// The states of [`recorded`], for programs that draw bodies.
+/// Converts the states of [`recorded`] for visualisation programs.
 pub(crate) fn states(run: &Solved, most: usize) -> Result<States, Failure> {
     let Solved { method, setup, prepared, solution } = *run;
     let mesh = method.mesh();
@@ -109,12 +109,12 @@ pub(crate) fn states(run: &Solved, most: usize) -> Result<States, Failure> {
     Ok(States { mesh: mesh.clone(), states, tools, left_out })
 }
 
-/// Whether the `k`-th of `count` is among the `most` that end equal parts of them.
+/// Whether the `k`-th of `count` states is among the `most` states that end equal parts of the history.
 fn is_kept(k: usize, count: usize, most: usize) -> bool {
     count <= most || (k + 1) * most / count > k * most / count
 }
 
-/// A tool where it starts.
+/// Surface of a tool at its start.
 fn skin(set: &PlacedTool, mesh: &Mesh) -> ToolSkin {
     let first = mesh.points()[0].coords;
     let (low, high) =
@@ -138,10 +138,10 @@ fn tensors(run: &Solved, cells: &Averages, u: &[Vector3], parameters: &[f64]) ->
     }
 }
 
-/// Which quadrature points stand for each cell of the mesh, with their volumes.
+/// Quadrature points that represent each cell of the mesh, with their volumes.
 struct Averages<'a> {
     weights: &'a [f64],
-    /// Quadrature points per cell, or the nearest one to the middle of each.
+    /// Number of quadrature points per cell, or the point nearest to the centre of each cell.
     points: Result<usize, Vec<usize>>,
     count: usize,
 }
@@ -160,7 +160,7 @@ impl<'a> Averages<'a> {
         Averages { weights: volume.rows.weights(), points, count: mesh.cell_count() }
     }
 
-    /// Means by volume of the cell's points, or the value of the nearest.
+    /// Volume-weighted means over each cell's points, or the value at the nearest point.
     fn of(&self, value: impl Fn(usize) -> Matrix3) -> Vec<Matrix3> {
         let mean = |cell: usize| match &self.points {
             Err(nearest) => value(nearest[cell]),

@@ -1,4 +1,5 @@
-//! A procedure in steps: its last state, its steps, and their errors against the reference's.
+//! Reports of a procedure with steps: its last state, its steps, and their errors against the reference's
+//! steps.
 
 use catalogue::metric;
 
@@ -7,7 +8,7 @@ use crate::Failure;
 use crate::outcome::{LoadStep, Metric, push, push_numbered};
 use crate::procedure::StepHistory;
 
-/// Reports the history of a run; returns its steps with their probes and errors.
+/// Adds the metrics of a run's history; returns the steps with their probes and errors.
 pub(crate) fn report(
     metrics: &mut Vec<Metric>,
     run: &Solved,
@@ -55,12 +56,12 @@ pub(crate) fn report(
     Ok(steps)
 }
 
-/// Part of the largest value of the reference's path up to which one is rounding.
+/// Fraction of the largest value on the reference's path below which a value is rounding.
 const ROUNDING: f64 = 1e-12;
 
-/// Largest values of a path.
+/// Largest values on a path.
 struct Largest {
-    /// Of any tool, N.
+    /// Largest force of any tool, N.
     force: f64,
     /// Strain energy, J.
     energy: f64,
@@ -74,8 +75,8 @@ impl Largest {
     }
 }
 
-/// Errors of one step against the reference's at the same part of the load: of every tool's force and of the strain energy,
-/// relative, and the largest of the displacements at the probes.
+/// Errors of a step against the reference's step at the same load fraction: relative errors of every tool's
+/// force and of the strain energy, and the largest difference of the displacements at the probes, m.
 fn against(step: &LoadStep, reference: &LoadStep, largest: &Largest) -> Vec<Metric> {
     let mut metrics = Vec::new();
     for (index, (tool, other)) in step.tools.iter().zip(&reference.tools).enumerate() {

@@ -1,4 +1,5 @@
-//! Carrying a cloud's displacement to other points: the schemes in use, beside the method's own shape functions.
+//! Transfer of a cloud's displacement to other points by common schemes, compared with the method's own shape
+//! functions.
 
 use std::time::Instant;
 
@@ -12,7 +13,7 @@ use crate::Failure;
 use crate::outcome::timing::Timings;
 use crate::outcome::{Counters, Metric, SchemeSettings, Transfer, push};
 
-/// Name of the method's own shape functions among the schemes: no transfer at all.
+/// Name of the method's own shape functions among the schemes; they need no transfer.
 pub const OWN_ROWS: &str = "own-rows";
 
 const TRANSFER_ONLY: Difference = [
@@ -28,11 +29,13 @@ const BESIDE_TRANSFER: Difference = [
     &metric::BESIDE_TRANSFER_RMS,
 ];
 
-/// Applies of one table that are timed together: one alone (10 us) is at the clock's resolution.
+/// Number of applications of a table that are timed together. A single application (10 us) is at the
+/// resolution of the clock.
 const APPLIES: usize = 20;
 
-/// Every scheme the scene request for, from the cloud's nodes to the targets. What is interpolated is the displacement at the
-/// nodes, not the nodal parameters, which are no displacements.
+/// Transfers from the cloud's nodes to the targets by every requested scheme, then by the method's own shape
+/// functions. The schemes interpolate the displacement at the nodes, not the nodal parameters, which are not
+/// displacements.
 pub fn transfers(run: &Solved, request: &Request, counters: &mut Counters) -> Result<Vec<Transfer>, Failure> {
     if request.schemes.is_empty() || request.targets.is_empty() {
         return Ok(Vec::new());
@@ -48,7 +51,7 @@ pub fn transfers(run: &Solved, request: &Request, counters: &mut Counters) -> Re
         .iter()
         .map(|(settings, scheme)| {
             let name = scheme.name();
-            // A mesh serves barycentric interpolation only if its nodes are the cloud's.
+            // Barycentric interpolation needs a mesh whose nodes are those of the cloud.
             let mesh = Some(method.mesh()).filter(|mesh| mesh.points() == nodes);
             let build = || scheme.rows(nodes, mesh, request.targets);
             let ((rows, info), timing) = timed(request, build, |(rows, _)| rows.rows(), &at_nodes)?;
@@ -65,7 +68,8 @@ pub fn transfers(run: &Solved, request: &Request, counters: &mut Counters) -> Re
             }
             if let Some(beside) = request.beside {
                 push_difference(&mut metrics, BESIDE, &field, &beside.targets);
-                // The other method's own field, taken at this cloud's nodes and interpolated back: nothing but the transfer.
+                // The other method's field, evaluated at this cloud's nodes and interpolated back, isolates
+                // the error of the transfer.
                 if let Some(at) = &beside.at {
                     let moved = rows.rows().apply(&at(nodes)?);
                     push_difference(&mut metrics, BESIDE_TRANSFER, &moved, &beside.targets);
@@ -111,8 +115,8 @@ fn transfer(
     }
 }
 
-/// Builds, packs (both are the time to build) and applies, repeated until the time for repeats is spent: a radial basis on 1331
-/// nodes takes seconds.
+/// Builds, packs (both count as the time to build) and applies a table, repeated until the time for repeats
+/// is spent: a radial basis on 1331 nodes takes seconds.
 fn timed<T, E: Into<Failure>>(
     request: &Request,
     mut build: impl FnMut() -> Result<T, E>,
@@ -142,7 +146,7 @@ fn timed<T, E: Into<Failure>>(
     Ok((table, timings))
 }
 
-/// A linear field of 10 % strain and rotation: what the better schemes reproduce without error.
+/// Linear field of 10 % strain and rotation, which schemes of first order reproduce exactly.
 fn linear_field(x: &Point3) -> Vector3 {
     Vector3::new(0.1 * x.x + 0.05 * x.y, -0.05 * x.x - 0.04 * x.y + 0.02 * x.z, 0.03 * x.x - 0.04 * x.z)
 }

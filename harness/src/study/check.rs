@@ -1,10 +1,10 @@
-//! Bounds on numbers: of one run, or of a family of runs at several levels.
+//! Checks of bounds on metrics of one run, or of a family of runs at several levels.
 
 use cases::scene::{Bound, Check};
 use catalogue::metric::{self, Needs};
 use reports::{Check as Verdict, Family, Record, Status};
 
-/// The SI value a check's metric names, among the records of one run.
+/// Value of a metric among the records of one run, SI units; `None` if there is no such record.
 pub fn value(metric: &str, records: &[Record]) -> Option<f64> {
     let own = |r: &&Record| r.family != Family::Interp;
     if let Some(phase) = metric.strip_prefix("time-") {
@@ -12,7 +12,7 @@ pub fn value(metric: &str, records: &[Record]) -> Option<f64> {
         return records.iter().filter(own).find(median).map(|r| r.value);
     }
     if metric == "transfer-rms" {
-        // The worst of the schemes that the scene asks for.
+        // The largest error of all requested schemes.
         return records.iter().filter(|r| r.quantity == metric).map(|r| r.value).reduce(f64::max);
     }
     let quantity = if metric == "condition" { "condition-max" } else { metric };
@@ -23,13 +23,13 @@ pub fn value(metric: &str, records: &[Record]) -> Option<f64> {
     records.iter().filter(own).find(plain).map(|r| r.value)
 }
 
-/// The own error of the reference that a check's metric is an error against, among the records of one run.
+/// Own error of the reference in a metric, among the records of one run; `None` if it is unknown.
 pub fn band(metric: &str, records: &[Record]) -> Option<f64> {
     records.iter().find(|r| r.quantity == metric && r.statistic == "band").map(|r| r.value)
 }
 
-/// The observed order between the two finest levels of a family of runs, each given by its records; the quantity is
-/// the metric without its prefix `order-`.
+/// Observed order between the two finest levels of a family of runs, each given by its records. The quantity
+/// is the metric without its prefix `order-`.
 pub fn order(metric: &str, family: &[&[Record]]) -> Option<f64> {
     let quantity = metric.strip_prefix("order-")?;
     let mut points: Vec<(f64, f64)> =
@@ -38,7 +38,8 @@ pub fn order(metric: &str, family: &[&[Record]]) -> Option<f64> {
     reports::observed_order(&points)?.pairs.last().copied()
 }
 
-/// The value of a metric of many runs, each given by its records: an order of levels, or the share of clouds that carried the load.
+/// Value of a metric of several runs, each given by its records: an order of levels, or the fraction of
+/// clouds that reached the load.
 pub fn of_many(metric: &str, runs: &[&[Record]]) -> Option<f64> {
     if metric == metric::CARRIED_SHARE.name {
         let carried = runs.iter().filter(|records| carried(records)).count();
@@ -47,23 +48,23 @@ pub fn of_many(metric: &str, runs: &[&[Record]]) -> Option<f64> {
     order(metric, runs)
 }
 
-/// Whether a run gave numbers and carried the whole load, as what knows no steps does.
+/// Whether a run has results and reached the whole load. A procedure without load steps always reaches it.
 pub fn carried(records: &[Record]) -> bool {
     !records.is_empty() && value(metric::LOAD_CARRIED.name, records).is_none_or(|load| load > 0.999_999)
 }
 
-/// Whether the check is about many runs together: a family of levels, or clouds of many seeds.
+/// Whether the check concerns several runs together: a family of levels, or clouds of many seeds.
 pub fn is_of_many(check: &Check) -> bool {
     matches!(check.metric.needs, Needs::Levels | Needs::Seeds)
 }
 
-/// The verdict on one value. No value is a failure: what was to be guarded is gone. `band` is the own error of the
-/// reference that the value is an error against: below that, a bound proves nothing.
+/// Verdict on one value. A missing value fails, because the guarded quantity no longer exists. `band` is the
+/// own error of the reference that the value is compared with: a bound below it proves nothing.
 pub fn judge(check: &Check, case: &str, method: &str, value: Option<f64>, band: Option<f64>) -> Verdict {
     let (bound, status, reason) = match (&check.bound, value) {
         (bound, None) => (text(bound), Status::Fail, "this run gives no such number".to_string()),
         (Bound::Within { at_least, at_most }, Some(v)) => {
-            // Written so that a NaN fails.
+            // The comparisons are written so that NaN fails.
             let holds = at_least.is_none_or(|low| v >= low) && at_most.is_none_or(|high| v <= high);
             let off = (!holds).then(|| format!("{v:.6e} is not {}", text(&check.bound)));
             let unproven = band.filter(|band| at_most.is_some_and(|high| high < *band)).map(|band| {
@@ -75,7 +76,7 @@ pub fn judge(check: &Check, case: &str, method: &str, value: Option<f64>, band: 
             (text(&check.bound), if holds { Status::Pass } else { Status::Fail }, reason)
         }
         (Bound::KnownBand { low, high, reason }, Some(v)) => {
-            // Written so that a NaN fails.
+            // The comparisons are written so that NaN fails.
             if v >= *low && v <= *high {
                 (text(&check.bound), Status::KnownFailure, reason.clone())
             } else {
@@ -96,7 +97,7 @@ pub fn judge(check: &Check, case: &str, method: &str, value: Option<f64>, band: 
     }
 }
 
-/// The verdict on a check of a run that failed: the failure is counted by itself.
+/// Verdict on a check of a failed run. The failure itself is counted separately.
 pub fn not_run(check: &Check, case: &str, method: &str, failure: &str) -> Verdict {
     Verdict { status: Status::NotRun, reason: failure.into(), ..judge(check, case, method, None, None) }
 }

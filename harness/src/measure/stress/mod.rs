@@ -1,10 +1,10 @@
-//! The stress (Pa) of a method at a point: one answer for probes, errors, fields and the page.
+//! Stress (Pa) of a method at a point, the same for probes, errors, fields and the report.
 //!
-//! A method has a stress of its own at its quadrature points, with the dilation and the pressure of its
-//! projection there. Anywhere else its stress is the smooth one recovered from these points. The derivative
-//! of the displacement is no substitute: reduced integration leaves it free between the points (in a thick
-//! sphere the pressure is 131 % off there, and 0.4 % at the points), and a projection or a smoothed gradient
-//! has another strain.
+//! A method has its own stress at its quadrature points, with the dilation and the pressure of its
+//! projection. Everywhere else its stress is the smooth stress recovered from these points. The displacement
+//! gradient is no substitute. Reduced integration does not constrain it between the points: in a thick sphere
+//! the pressure is wrong by 131 % there, and by 0.4 % at the points. A projection or a smoothed gradient has
+//! a different strain.
 
 mod own;
 mod recovered;

@@ -1,13 +1,13 @@
-//! Stress (Pa) as the method itself has it at its quadrature points: of the law at its own dilation, with the
-//! mean pressure of its projection.
+//! Stress (Pa) of the method itself at its quadrature points: from the law at the method's own dilation, with
+//! the mean pressure of its projection.
 
 use shape::{Matrix3, Vector3};
 
 use super::super::mean_pressure::{self, cauchy, dilated, dilation, mean};
 use super::Solved;
 
-/// Cauchy stress at every quadrature point, of nodal parameters `u` (m) and the parameters (Pa) of a pressure
-/// field, where there is one.
+/// Cauchy stress (Pa) at every quadrature point from nodal parameters `u` (m) and, if there is a pressure
+/// field, its parameters (Pa).
 pub(in super::super) fn own_stress(run: &Solved, u: &[Vector3], parameters: &[f64]) -> Vec<Matrix3> {
     let (laws, volume) = (&run.setup.laws, &run.prepared.volume);
     let law = |q: usize| &laws[volume.region.get(q).map_or(0, |&r| usize::from(r))];
