@@ -1,4 +1,4 @@
-//! What a finished run is compared with and what it is like: errors, maxima, energies, counts, probes.
+//! Comparisons and properties of a finished run: errors, maxima, energies, counts, probes.
 
 mod dead_pressure;
 mod displacement;
@@ -53,7 +53,7 @@ pub(crate) use surface::surface;
 pub(crate) use transfer::transfers;
 pub(crate) use warnings::warnings;
 
-/// A solved run, of which everything is measured.
+/// Solved run, from which all metrics are computed.
 #[derive(Clone, Copy)]
 pub(crate) struct Solved<'a> {
     pub(crate) method: &'a Discretisation,
@@ -62,13 +62,13 @@ pub(crate) struct Solved<'a> {
     pub(crate) solution: &'a Solution,
 }
 
-/// Displacement (m) where runs are compared, and how many of these points lie outside the body.
+/// Displacement (m) at the points where runs are compared, and the number of points outside the body.
 pub(crate) struct Field {
     pub(crate) values: Vec<Vector3>,
     pub(crate) outside: usize,
 }
 
-/// Errors, maxima, energies, counts.
+/// Adds errors, maxima, energies and counts to the metrics.
 pub(crate) fn measure(
     metrics: &mut Vec<Metric>,
     run: &Solved,
@@ -137,8 +137,8 @@ pub(crate) fn measure(
     Ok(())
 }
 
-/// Smallest J at the points of the finer quadrature, of a body at large strain: under-integrated elements can fold between
-/// their points.
+/// Smallest volume ratio J at the points of the finer quadrature; `None` at small strain. Under-integrated
+/// elements can fold between their own points.
 fn smallest_fine_j(run: &Solved) -> Result<Option<f64>, Failure> {
     let Solved { setup, prepared, solution, .. } = *run;
     if solution.history.is_none() || setup.laws.iter().all(Law::is_small_strain) {
@@ -149,7 +149,7 @@ fn smallest_fine_j(run: &Solved) -> Result<Option<f64>, Failure> {
     Ok(gradients.iter().map(|h| (Matrix3::identity() + h).determinant()).reduce(f64::min))
 }
 
-/// Norms over the body against an exact solution.
+/// Adds the norms of the error over the body against an exact solution.
 fn errors_in_the_volume(
     metrics: &mut Vec<Metric>,
     run: &Solved,
@@ -172,7 +172,8 @@ fn errors_in_the_volume(
     Ok(())
 }
 
-/// Differences from an exact solution or the references where displacements are compared.
+/// Adds the differences from an exact solution or the references at the points where displacements are
+/// compared.
 fn errors_at_targets(metrics: &mut Vec<Metric>, run: &Solved, field: &[Vector3], request: &Request) {
     let against = against(run, request);
     if let Some(integrated) = request.integrated {
@@ -195,12 +196,12 @@ fn errors_at_targets(metrics: &mut Vec<Metric>, run: &Solved, field: &[Vector3],
     }
 }
 
-/// Where displacements are compared: the scene's points, or the method's own nodes.
+/// Points where displacements are compared, m: the scene's targets, or the method's own nodes.
 fn compared<'a>(run: &Solved<'a>, request: &Request<'a>) -> &'a [Point3] {
     if request.targets.is_empty() { run.method.nodes() } else { request.targets }
 }
 
-/// The exact displacement there, or the reference's; `None` where neither is known.
+/// Displacement (m) of the exact solution or the reference at these points; `None` if there is neither.
 fn against(run: &Solved, request: &Request) -> Option<Vec<Vector3>> {
     match (&run.setup.exact, request.reference) {
         (Some(exact), _) => Some(exact_at(exact.as_ref(), compared(run, request))),
@@ -208,7 +209,7 @@ fn against(run: &Solved, request: &Request) -> Option<Vec<Vector3>> {
     }
 }
 
-/// What the rows of a method are like: the volume they integrate, neighbours, conditioning, fallbacks.
+/// Adds properties of the method's tables: integrated volume, neighbours, conditioning, fallbacks.
 pub(crate) fn of_tables(metrics: &mut Vec<Metric>, prepared: &Prepared) {
     push(metrics, &metric::VOLUME, prepared.volume.rows.weights().iter().sum());
     for (entry, value) in &prepared.volume.diagnostics {
@@ -216,7 +217,7 @@ pub(crate) fn of_tables(metrics: &mut Vec<Metric>, prepared: &Prepared) {
     }
 }
 
-/// Metrics of a difference: along x, y and z, and of the magnitude.
+/// Metrics of a difference along x, y and z, and of its magnitude.
 type Difference = [&'static metric::Metric; 4];
 
 const RMS: Difference = [&metric::RMS_X, &metric::RMS_Y, &metric::RMS_Z, &metric::RMS];
@@ -235,7 +236,7 @@ const DISCRETISATION: Difference = [
     &metric::DISCRETISATION_RMS,
 ];
 
-/// RMS of a difference along each axis and of its magnitude.
+/// Adds the RMS of a difference along each axis and of its magnitude.
 fn push_difference(metrics: &mut Vec<Metric>, entries: Difference, field: &[Vector3], against: &[Vector3]) {
     let d = difference(field, against);
     for (entry, value) in entries.into_iter().zip(d.rms.into_iter().chain([d.rms_magnitude])) {

@@ -1,5 +1,5 @@
-//! What a run leaves for the pictures: the deformed surface, the tools where they stand, and a section between them with its
-//! pressure.
+//! Data of a run for the pictures: the deformed surface, the tools at their positions, and a section between
+//! the tools with its pressure.
 
 use geometry::{Mesh, Point3, Vector3};
 use reports::{Section, SectionCell, SurfaceField, ToolHull};
@@ -10,8 +10,8 @@ use crate::Failure;
 use crate::outcome::{Identity, LoadStep};
 use crate::scenario::PlacedTool;
 
-/// Displacement of the boundary's corner nodes, and with tools also these and a section; `last` is where the tools stand, `None`
-/// in a linear procedure.
+/// Displacement of the boundary's corner nodes (m), and, if there are tools, their hulls and a section.
+/// `last` has the positions of the tools; `None` for a linear procedure.
 pub(crate) fn picture(
     identity: &Identity,
     run: &Solved,
@@ -54,7 +54,7 @@ pub(crate) fn picture(
     })
 }
 
-/// The body's extent along each axis, m.
+/// Extent of the body along each axis, m.
 fn extent(mesh: &Mesh) -> Vector3 {
     let first = mesh.points()[0].coords;
     let (low, high) =
@@ -62,7 +62,7 @@ fn extent(mesh: &Mesh) -> Vector3 {
     high - low
 }
 
-/// Points whose convex hull is the tool at a closure (m); of a plate a slab as wide as the body.
+/// Points whose convex hull is the tool at a closure (m); for a plate, a slab as wide as the body.
 fn hull(set: &PlacedTool, closure: f64, mesh: &Mesh) -> ToolHull {
     let points = set.tool.shape().outline(extent(mesh).max());
     let place = set.tool.place(closure).coords;
@@ -72,8 +72,9 @@ fn hull(set: &PlacedTool, closure: f64, mesh: &Mesh) -> ToolHull {
     }
 }
 
-/// The undeformed plane through the first tool's place that holds its way and the body's longest extent across that, cut
-/// through every cell, with the cell's mean pressure; `None` where the quadrature doesn't go by cells.
+/// Section by the undeformed plane through the first tool's position, spanned by the tool's direction of
+/// travel and the axis of the body's longest extent across it. Each cut cell has its mean pressure. `None` if
+/// the quadrature is not per cell.
 fn section(tool: &PlacedTool, run: &Solved, of_mesh: &[Vector3]) -> Option<Section> {
     let Solved { method, setup, prepared, solution } = *run;
     let (mesh, weights) = (method.mesh(), prepared.volume.rows.weights());
@@ -99,8 +100,8 @@ fn section(tool: &PlacedTool, run: &Solved, of_mesh: &[Vector3]) -> Option<Secti
     Some(Section { right: right.into(), up: up.into(), cells: cells.collect() })
 }
 
-/// Where a plane cuts a cell's straight edges: deformed corners (m) in the order around the cut; `None` where it misses the
-/// cell.
+/// Polygon in which a plane cuts a cell's straight edges: deformed corners (m) in order around the cut;
+/// `None` if the plane misses the cell.
 fn cut(
     mesh: &Mesh,
     cell: usize,
@@ -111,7 +112,7 @@ fn cut(
     let nodes = mesh.cell(cell);
     let met = mesh.kind(cell).edges().iter().filter_map(|ends| {
         let [a, b] = ends.map(|k| nodes[k] as usize);
-        // A node in the plane counts as above it: a face in the plane is cut once, not twice.
+        // A node in the plane counts as above the plane, so that a face in the plane is cut once, not twice.
         if (side[a] < 0.0) == (side[b] < 0.0) {
             return None;
         }

@@ -1,4 +1,4 @@
-//! What a run leaves for a view in three dimensions: its surface as the elements have it, at some of its states.
+//! Data of a run for the three-dimensional view: the surface of the elements at some of the run's states.
 
 use geometry::{Facet, Mesh, Point3, Search, Vector3};
 use reports::{Body, BodyState, Faces, Inside, InsideState, Skin, pack};
@@ -9,14 +9,15 @@ use super::{Field, Recovered, Request, Solved, against, compared, states};
 use crate::Failure;
 use crate::outcome::{State, ToolSkin, von_mises};
 
-/// States kept of a run: as many as tell a way. A body of 1000 surface nodes has 20 kB in each.
+/// Number of states kept of a run, enough to show a motion. A body of 1000 surface nodes takes 20 kB for
+/// each.
 const KEPT: usize = 6;
-/// Cells of the largest mesh whose inside is kept, which takes a megabyte.
+/// Largest number of cells for which the inside is kept, which takes a megabyte.
 const CELLS: usize = 30_000;
-/// Points that the difference to the reference is interpolated from.
+/// Number of points from which the difference to the reference is interpolated.
 const NEAREST: usize = 4;
 
-/// Surface, tools and states; `field` is what the request compares.
+/// Surface, tools and states of a run; `field` is the displacement at the points where runs are compared.
 pub(crate) fn surface(run: &Solved, field: &Field, request: &Request) -> Result<Body, Failure> {
     let all = states(run, KEPT)?;
     let mesh = &all.mesh;
@@ -47,19 +48,20 @@ pub(crate) fn surface(run: &Solved, field: &Field, request: &Request) -> Result<
     })
 }
 
-/// Whether the inside of a body is kept too.
+/// Whether the inside of a body is kept.
 fn keeps_inside(mesh: &Mesh) -> bool {
     mesh.cell_count() <= CELLS
 }
 
-/// The points of a body: a node of its mesh once for each material that it is in, as stress jumps where
-/// materials meet. A point is a node and the first region of a material.
+/// Points of a body. A node of the mesh is one point for each material that it belongs to, because stress
+/// jumps at an interface. A point is given by a node and the first region of a material.
 struct Points {
-    /// Those of faces, ascending, and then the others, ascending, of a body whose inside is kept.
+    /// Points on faces in ascending order, followed, if the inside is kept, by the other points in ascending
+    /// order.
     all: Vec<(u32, u16)>,
-    /// How many are of faces.
+    /// Number of points on faces.
     skin: usize,
-    /// For each region the first of the same material.
+    /// First region of the same material, for each region.
     alike: Vec<u16>,
 }
 
@@ -80,7 +82,7 @@ impl Points {
         Points { skin: skin.len(), all: [skin, inner].concat(), alike }
     }
 
-    /// The point of a node in a cell; `None` inside a body whose inside is not kept.
+    /// Index of the point of a node in a cell; `None` inside a body whose inside is not kept.
     fn index(&self, mesh: &Mesh, node: u32, cell: usize) -> Option<usize> {
         let point = (node, self.alike[usize::from(mesh.region(cell))]);
         let (skin, inner) = self.all.split_at(self.skin);
@@ -88,12 +90,12 @@ impl Points {
         skin.binary_search(&point).ok().or_else(inside)
     }
 
-    /// Nodes of the points of faces.
+    /// Nodes of the points on faces.
     fn skin(&self) -> impl Iterator<Item = usize> {
         self.all[..self.skin].iter().map(|point| point.0 as usize)
     }
 
-    /// Nodes of the points of no face.
+    /// Nodes of the points inside.
     fn inner(&self) -> impl Iterator<Item = usize> {
         self.all[self.skin..].iter().map(|point| point.0 as usize)
     }
@@ -102,7 +104,8 @@ impl Points {
 /// Pressure (Pa), von Mises stress (Pa) and determinant of the deformation gradient at every point.
 type Values = Vec<[f32; 3]>;
 
-/// The values of a state; `rows` has the shape values of its mesh where nodes are no points of it.
+/// Values of a state. `rows` has the shape functions at the points of the mesh if these are not the method's
+/// nodes.
 fn values(
     run: &Solved,
     points: &Points,
@@ -112,7 +115,7 @@ fn values(
 ) -> Option<Values> {
     let mesh = run.method.mesh();
     let recovered = Recovered::new(run, at.u, at.parameters?)?;
-    // The mean over the cells of the material around.
+    // The determinant is averaged over the adjacent cells of the material.
     let mut j = vec![(0.0, 0.0); points.all.len()];
     let det_f = &state.tensors.as_ref()?.det_f;
     for (cell, det_f) in det_f.iter().enumerate() {
@@ -133,8 +136,8 @@ fn values(
     Some(points.all.iter().zip(j).map(value).collect())
 }
 
-/// How far points of the body are from the reference or the exact solution at the end: interpolated by
-/// inverse squares of distances from where that is known, most often at nodes.
+/// Difference (m) of surface points from the reference or the exact solution at the end, interpolated with
+/// inverse squared distances from the points where it is known, usually nodes.
 fn off<'a>(
     run: &Solved,
     field: &Field,
@@ -157,7 +160,7 @@ fn off<'a>(
     Ok(pack(points.map(at)))
 }
 
-/// Cells, and points on no face.
+/// Cells and inside points of a body.
 fn inside(mesh: &Mesh, points: &Points, states: &[(&State, Option<&Values>)]) -> Inside {
     let mut cells: Vec<usize> = (0..mesh.cell_count()).collect();
     let nodes = |cell: usize| mesh.cell(cell).len();
@@ -182,7 +185,7 @@ fn packed(values: &[[f32; 3]]) -> [String; 3] {
     [0, 1, 2].map(|k| pack(values.iter().map(|v| v[k])))
 }
 
-/// Nodes of a cloud where they are at the end.
+/// Deformed positions of a cloud's nodes at the end, m; empty for elements.
 fn cloud(run: &Solved) -> Result<String, Failure> {
     let Solved { method, prepared, solution, .. } = *run;
     if method.interpolates {

@@ -1,4 +1,4 @@
-//! What is to be said against the numbers of a run: each warning where its number is known.
+//! Warnings about the results of a run, each with the value that triggered it.
 
 use cases::scene::Procedure;
 use catalogue::{metric, warning};
@@ -13,38 +13,44 @@ use crate::adapter;
 use crate::discretise::{Essential, place};
 use crate::outcome::{LoadStep, Metric, Probe, Warning};
 
-/// Of the norm of the stress. On the cases with an exact solution the jump is 0.5 to 0.95 of the energy error
-/// where a mesh is fine enough for its order and at least 0.2 where it locks; displacements are then off by 5
-/// to 50 %. On a bonded punch, whose edge is singular, it is 0.07 to 0.4 of the root of the force's error.
+/// Smallest stress jump that is reported, relative to the norm of the stress. In cases with an exact solution
+/// the jump is 0.5 to 0.95 of the energy error if a mesh is fine enough for its order, and at least 0.2 if
+/// the mesh locks; displacements are then wrong by 5 to 50 %. On a bonded punch, whose edge is singular, it
+/// is 0.07 to 0.4 of the root of the force's error.
 const ROUGH_STRESS: f64 = 0.2;
-/// Factor of Nitsche's method over the needed one: at 2 three tenths of the energy are left.
+/// Smallest ratio of Nitsche's factor to the needed factor without a warning. At a ratio of 2, three tenths
+/// of the energy are left.
 const FACTOR_TO_SPARE: f64 = 2.0;
-/// Of the largest displacement.
+/// Largest gap at a support without a warning, relative to the largest displacement.
 const GIVING_SUPPORT: f64 = 0.01;
-/// Of the energy, as a root: on a patch test at a Poisson's ratio of 0.4999 it is 0.19 where the energy is off by 0.21, on one of a
-/// body 10,000 times as long as thick 0.18 where it is off by 0.16.
+/// Largest root of the leaked energy relative to the strain energy without a warning. In a patch test at a
+/// Poisson's ratio of 0.4999 the root is 0.19 for an energy error of 0.21. In a patch test of a body 10,000
+/// times as long as thick it is 0.18 for an error of 0.16.
 const LEAK: f64 = 0.1;
-/// Of the largest root mean square displacement or traction on a surface, beside what flat facets of a curved one make: on a
-/// sphere 1.2 times their turn.
+/// Largest misfit of an exact solution without a warning, relative to the largest root-mean-square
+/// displacement or traction on a surface. The effect of flat facets on a curved surface is allowed in
+/// addition: on a sphere it is 1.2 times their turn.
 const MISFIT: f64 = 0.01;
-/// Of the gradient of a linear field.
+/// Largest patch-test error without a warning, relative to the gradient of a linear field.
 const UNBALANCED: f64 = 0.05;
-/// Of the largest displacement, and of the body's size.
+/// Relative rounding of the largest displacement and of the body's size.
 const ROUNDING: f64 = 1e-12;
-/// Of the body's narrowest extent.
+/// Largest initial overlap of a tool without a warning, relative to the body's narrowest extent.
 const DEEP: f64 = 0.01;
-/// Of the largest kinetic energy.
+/// Fraction of the largest kinetic energy below which the body is at rest.
 const AT_REST: f64 = 1e-3;
-/// Of the largest displacement, in one step.
+/// Largest error of one time step without a warning, relative to the largest displacement.
 const LONG_STEP: f64 = 0.01;
-/// Certain digits of the largest displacement. Two or three more are right as a rule, and as many fewer of strains, which then hold
-/// to 0.01 %: less than the errors by which methods are compared.
+/// Fewest reliable digits of the largest displacement without a warning. Usually two or three more are
+/// correct, and as many fewer of strains. Strains are then accurate to 0.01 %, less than the errors by which
+/// methods are compared.
 const DIGITS: f64 = 4.0;
-/// A cloud on the vertices of its tetrahedra has two to six cells per node, and one point in each sees its motions; at 1.7 some
-/// clouds already move between their points.
+/// Fewest integration points per node without a warning. A cloud on the vertices of its tetrahedra has two to
+/// six cells per node, and one point in each cell detects all motions of the cloud. At 1.7 points per node,
+/// some clouds already have motions without strain at their points.
 const POINTS_PER_NODE: f64 = 2.0;
 
-/// All that can be said once the run is measured.
+/// All warnings of a measured run.
 pub(crate) fn warnings(
     run: &Solved,
     metrics: &[Metric],
@@ -156,7 +162,7 @@ fn another_problem(run: &Solved) -> Option<Warning> {
     Some(Warning::new(&warning::EXACT_MISFIT, misfit.relative, "reference.exact", message))
 }
 
-/// Largest nodal displacement of all recorded states (m), no less than what is rounding of the body's size.
+/// Largest nodal displacement of all recorded states, m, and at least the rounding of the body's size.
 fn largest_displacement(run: &Solved) -> f64 {
     let recorded = run.solution.history.iter().flat_map(|history| &history.fields).chain([&run.solution.u]);
     let (low, high) = place::bounds(run.method.mesh());
@@ -166,7 +172,7 @@ fn largest_displacement(run: &Solved) -> f64 {
 fn long_step(run: &Solved, error: Option<f64>, largest: f64) -> Option<Warning> {
     let error = error?;
     let relative = error / largest;
-    // A jolt that has died away leaves the body where it comes to rest.
+    // An initial oscillation that has decayed does not change the final state.
     let (low, high) = place::bounds(run.method.mesh());
     if is_at_rest(run) && error < DEEP * (high - low).min() {
         return None;
@@ -181,7 +187,7 @@ fn long_step(run: &Solved, error: Option<f64>, largest: f64) -> Option<Warning> 
     })
 }
 
-/// Whether a motion has lost its kinetic energy at the end.
+/// Whether the kinetic energy has decayed at the end.
 fn is_at_rest(run: &Solved) -> bool {
     let Some(history) = &run.solution.history else { return true };
     let kinetic =
@@ -201,13 +207,13 @@ fn giving(gap: Option<f64>, largest: f64) -> Option<Warning> {
     })
 }
 
-/// The energy that the body lacks for what a support lets pass: of the strain `gap A / V`, with the modulus `K + 4 mu / 3` of
-/// one that is not free sideways. The stress of nearly incompressible tissue, and of a flat body, is wrong long before the
-/// displacement.
+/// Warning of a weakly imposed support that leaks. The leaked energy is that of the strain `gap A / V`, with
+/// the modulus `K + 4 mu / 3` of laterally constrained material. The stress of nearly incompressible tissue
+/// and of a thin body is wrong long before the displacement is.
 fn leaking(run: &Solved, largest: f64, energy: Option<f64>) -> Option<Warning> {
     let [gap, area] = run.prepared.support_gap(&run.solution.u)?;
     let energy = energy.filter(|e| *e > 0.0)?;
-    // A rigid motion has a gap and an energy of rounding.
+    // In a rigid motion, the gap and the energy are rounding.
     if gap < ROUNDING * largest {
         return None;
     }
@@ -269,7 +275,8 @@ fn few_carriers(step: &LoadStep) -> Vec<Warning> {
     each.collect()
 }
 
-/// Tools that stand in the undeformed body: an interference that is meant is small beside it.
+/// Warning of tools that overlap the undeformed body. An intended interference fit is small compared with the
+/// limit.
 fn inside(run: &Solved) -> Vec<Warning> {
     let points = run.prepared.contact_points();
     if points.is_empty() {
@@ -292,7 +299,8 @@ fn inside(run: &Solved) -> Vec<Warning> {
     each.collect()
 }
 
-/// Tools of a static path only close: one that touches nothing at its end was set beside the body, or has slipped off it.
+/// Warning of tools without contact at the end. In a static procedure tools only close, so such a tool misses
+/// the body or has slipped off.
 fn untouched(step: &LoadStep) -> Vec<Warning> {
     let free = step.tools.iter().enumerate().filter(|(_, tool)| tool.active == 0 && tool.closure != 0.0);
     let each = free.map(|(index, _)| {

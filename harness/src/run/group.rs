@@ -70,6 +70,9 @@ impl<'a> Group<'a> {
 
     /// Same as [`Group::new`], but the group may own its scene, and `watch` is called with the steps of the
     /// reference and of every run.
+    ///
+    /// # Errors
+    /// Returns the same errors as [`Group::new`].
     pub fn watched(
         scene: Cow<'a, Scene>,
         poisson: Option<f64>,
@@ -104,6 +107,9 @@ impl<'a> Group<'a> {
     }
 
     /// Group without a reference, which suffices for a plan.
+    ///
+    /// # Errors
+    /// Returns an error if a file of target points cannot be read.
     pub fn unreferenced(scene: &'a Scene, repeats: Repeats) -> Result<Group<'a>, Failure> {
         Group::prepared(Cow::Borrowed(scene), repeats)
     }

@@ -127,7 +127,10 @@ impl Posed {
         self.prepared.fixed()
     }
 
-    /// Consistent nodal forces of all loads, N.
+    /// Consistent nodal forces of all loads, N, one per node.
+    ///
+    /// # Errors
+    /// Returns an error if the value of a load is not finite.
     pub fn force(&self) -> Result<Vec<Vector3>, Failure> {
         Ok(statics::nodal_forces(&self.prepared.volume.rows, &self.prepared.loads())?)
     }
@@ -150,12 +153,19 @@ impl Posed {
         &self.prepared.volume.rows
     }
 
-    /// Shape function values at points (m), and the number of points that lie outside the mesh.
+    /// Shape function values at points (m), and the number of points outside the mesh, which take the values
+    /// of the nearest point.
+    ///
+    /// # Errors
+    /// Returns an error if a point has no shape functions.
     pub fn at_points(&self, points: &[Point3]) -> Result<(PointRows, usize), Failure> {
         Ok(self.prepared.source.at_points(points)?)
     }
 
     /// Shape function values and gradients at points (m).
+    ///
+    /// # Errors
+    /// Returns an error if a point has no shape functions.
     pub fn gradients_at(&self, points: &[Point3]) -> Result<GradRows, Failure> {
         Ok(self.prepared.source.gradients_at(points)?)
     }

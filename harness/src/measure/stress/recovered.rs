@@ -1,12 +1,12 @@
-//! The smooth stress of a run, recovered from that at its quadrature points, and how far its own jumps around
-//! it.
+//! Recovered stress: the smooth stress of a run, from the stress at its quadrature points, and the jump of
+//! the method's own stress around the smooth stress.
 //!
-//! Stress is smooth inside one material, and a method's stress is the less so the worse it is: it jumps from
-//! element to element, and a mesh that locks has a pressure that changes its sign from one cell to the next.
-//! Around each node a polynomial of the method's order (of the pressure a linear one) is fitted to the stress
-//! at the points that the node reaches; the fits, weighted by the shape functions, are the smooth stress
-//! (Zienkiewicz & Zhu 1992, Int. J. Numer. Meth. Eng. 33, 1331, and of elements 1987, 24, 337). A fit sees
-//! one material only: across a border stress may jump.
+//! The true stress is smooth within one material, but a method's own stress jumps from element to element,
+//! the more so the less accurate the method is. On a mesh that locks, the pressure changes its sign from cell
+//! to cell. Around each node, a polynomial of the method's order (for the pressure a linear polynomial) is
+//! fitted to the stress at the points in the node's support. The fits, weighted by the shape functions, are
+//! the smooth stress (Zienkiewicz & Zhu 1992, Int. J. Numer. Meth. Eng. 33, 1331, and of elements 1987, 24,
+//! 337). A fit uses one material only, because stress may jump at an interface.
 
 use material::LinearElastic;
 use nalgebra::{SMatrix, SVector};
@@ -15,52 +15,57 @@ use shape::{Matrix3, Point3, Vector3};
 use super::{Solved, own_stress};
 use crate::discretise::place;
 
-/// Factors of the first terms of 1, x, y, z, xx, yy, zz, yz, zx, xy in `[xx, yy, zz, xy, yz, zx]` of the
-/// stress, a column for each term. Coordinates are over the patch size.
+/// Coefficients of the first `M` of the terms 1, x, y, z, xx, yy, zz, yz, zx, xy for the stress components
+/// `[xx, yy, zz, xy, yz, zx]`, a column for each term. Coordinates are relative to the patch size.
 type Fit<const M: usize> = SMatrix<f64, 6, M>;
 
-/// Terms of a linear fit.
+/// Number of terms of a linear fit.
 const LINEAR: usize = 4;
-/// Terms of a quadratic fit.
+/// Number of terms of a quadratic fit.
 const QUADRATIC: usize = 10;
-/// Added to the normal matrix, over its constant's part: what lies in a plane has no slope across it.
+/// Regularisation added to the diagonal of the normal matrix, relative to the entry of the constant term.
+/// Points in a plane do not determine a slope across the plane.
 const RIDGE: f64 = 1e-6;
-/// Passes over what the ones before leave: the ridge keeps 1e-15 of a slope from the third on.
+/// Number of passes, each of which fits the residual of the previous passes. From the third pass on, the
+/// regularisation changes a slope by only 1e-15.
 const PASSES: usize = 3;
-/// The same of the quadratic terms, which follow what a linear fit leaves: few points do not tell them apart.
+/// Regularisation of the quadratic terms, which are fitted to the residual of the linear fit. Few points do
+/// not distinguish these terms.
 const QUADRATIC_RIDGE: f64 = 1e-3;
 
-/// Energy that is rounding, over that of the largest displacement taken as a strain across the body: a rigid
-/// motion has no more, and no stress to tell. In free fall the gradients themselves are rounding.
+/// Energy at rounding level, relative to the energy of the largest displacement taken as a strain across the
+/// body. A rigid motion has no more energy, and no stress. In free fall the gradients themselves are
+/// rounding.
 const ROUNDING: f64 = 1e-20;
 
-/// The fits of a state of a run.
+/// Fits of the stress in one state of a run.
 pub(crate) struct Recovered<'a> {
     run: Solved<'a>,
     /// Nodal parameters of the state, m.
     u: &'a [Vector3],
     /// Stress at the quadrature points, Pa.
     own: Vec<Matrix3>,
-    /// For each region the first of the same material.
+    /// First region of the same material, for each region.
     alike: Vec<u16>,
-    /// For the first region of each material the fit around each node that has points in it.
+    /// Fits around the nodes, for the first region of each material; `None` for nodes without points in the
+    /// material.
     patches: Vec<Vec<Option<Patch>>>,
 }
 
-/// Polynomials around a node.
+/// Polynomial fits around a node.
 struct Patch {
-    /// The linear fit.
+    /// Linear fit.
     linear: Fit<LINEAR>,
-    /// Quadratic part, of methods of second order.
+    /// Quadratic part, for second-order methods.
     quadratic: Option<Fit<QUADRATIC>>,
-    /// Of the coordinates, m.
+    /// Scale of the coordinates, m.
     size: f64,
 }
 
 impl<'a> Recovered<'a> {
-    /// Of a state with nodal parameters `u` (m) and the parameters (Pa) of a pressure field, where there is
-    /// one. `None` of tissue that relaxes, whose stress is that of its past and followed at quadrature points
-    /// only.
+    /// Fits the stress of a state with nodal parameters `u` (m) and, if there is a pressure field, its
+    /// parameters (Pa). `None` for viscoelastic tissue, whose stress depends on its history, which is
+    /// followed at quadrature points only.
     pub fn new(run: &Solved<'a>, u: &'a [Vector3], parameters: &[f64]) -> Option<Recovered<'a>> {
         if run.setup.relaxes() {
             return None;
@@ -73,12 +78,13 @@ impl<'a> Recovered<'a> {
         Some(recovered)
     }
 
-    /// At a point (m) of a region, whose row of nodes and shape values this is.
+    /// Smooth stress (Pa) at a point (m) of a region; `row` has the nodes and shape function values at the
+    /// point.
     pub fn at(&self, x: &Point3, region: u16, row: (&[u32], &[f64])) -> Matrix3 {
         self.blended(x, region, row, Patch::at)
     }
 
-    /// The fits around a point as its shape values weigh them.
+    /// Average of the fits around a point, weighted by the shape function values.
     fn blended(
         &self,
         x: &Point3,
@@ -94,7 +100,7 @@ impl<'a> Recovered<'a> {
                 whole += phi.abs();
             }
         }
-        // A node reaches no point of a region that is thinner than the points are apart.
+        // In a region thinner than the point spacing, a node may have no points in its support.
         if whole > 0.0 { sum / whole } else { self.own[self.nearest(x, material)] }
     }
 
@@ -123,7 +129,7 @@ impl<'a> Recovered<'a> {
         self.run.prepared.volume.region.get(q).copied().unwrap_or(0)
     }
 
-    /// The fits of the material whose first region this is; none of another.
+    /// Fits of the material whose first region is `material`; empty for other regions.
     fn of_material(&self, material: usize) -> Vec<Option<Patch>> {
         if usize::from(self.alike[material]) != material {
             return Vec::new();
@@ -141,7 +147,7 @@ impl<'a> Recovered<'a> {
         nodes.map(|(node, points)| (!points.is_empty()).then(|| self.fitted(node, points))).collect()
     }
 
-    /// The polynomials nearest to the stress of some points, by volume and shape value.
+    /// Least-squares polynomials for the stress at some points, weighted by volume and shape function value.
     fn fitted(&self, node: &Point3, points: &[(usize, f64)]) -> Patch {
         let volume = &self.run.prepared.volume.rows;
         let from = |q: usize| volume.points()[q] - node;
@@ -150,7 +156,7 @@ impl<'a> Recovered<'a> {
         let bases: Vec<(Basis, f64)> = points.iter().map(at).collect();
         let mut left: Vec<SMatrix<f64, 1, 6>> =
             points.iter().map(|&(q, _)| components(&self.own[q])).collect();
-        // The mean first: its rounding would be a slope across a plane.
+        // The mean is fitted first; otherwise its rounding would become a slope across a plane.
         let mean = nearest_fit::<1>(&bases, &mut left, 0.0, 1);
         let mut linear = nearest_fit::<LINEAR>(&bases, &mut left, RIDGE, PASSES);
         linear.set_column(0, &(mean + linear.column(0)));
@@ -159,7 +165,7 @@ impl<'a> Recovered<'a> {
         Patch { linear, quadratic, size }
     }
 
-    /// The quadrature point of a material nearest to `x`.
+    /// Index of the quadrature point of a material nearest to `x`.
     fn nearest(&self, x: &Point3, material: u16) -> usize {
         let points = self.run.prepared.volume.rows.points();
         let far = |q: &usize| (points[*q] - x).norm_squared();
@@ -169,9 +175,9 @@ impl<'a> Recovered<'a> {
 }
 
 impl Patch {
-    /// At `r` (m) from the node. The pressure of nearly incompressible elements of second order alternates
-    /// from point to point, which a linear fit takes the mean of and a quadratic one follows (tet10 in a
-    /// thick sphere: 1.8 and 3.6 % off).
+    /// Stress at `r` (m) from the node. In nearly incompressible second-order elements the pressure
+    /// alternates from point to point: a linear fit averages it, a quadratic fit follows it (errors of tet10
+    /// in a thick sphere: 1.8 and 3.6 %). The quadratic part is therefore used for the deviator only.
     fn at(&self, r: &Vector3) -> Matrix3 {
         let linear = self.linear_at(r);
         let Some(quadratic) = &self.quadratic else { return linear };
@@ -179,7 +185,7 @@ impl Patch {
         linear + more - Matrix3::identity() * (more.trace() / 3.0)
     }
 
-    /// The linear fit there.
+    /// Stress of the linear fit at `r` (m) from the node.
     fn linear_at(&self, r: &Vector3) -> Matrix3 {
         let r = r / self.size;
         tensor(&(self.linear * SVector::from([1.0, r.x, r.y, r.z])))
@@ -194,8 +200,8 @@ fn basis(r: &Vector3, size: f64) -> Basis {
     Basis::from([1.0, x, y, z, x * x, y * y, z * z, y * z, z * x, x * y])
 }
 
-/// The polynomial of the first `M` terms nearest to what is `left`, which it is taken from; each point has
-/// its weight.
+/// Weighted least-squares polynomial of the first `M` terms for the residuals `left`, from which the
+/// polynomial is then subtracted.
 fn nearest_fit<const M: usize>(
     bases: &[(Basis, f64)],
     left: &mut [SMatrix<f64, 1, 6>],
@@ -211,7 +217,7 @@ fn nearest_fit<const M: usize>(
         matrix[(k, k)] += ridge * matrix[(0, 0)];
     }
     let mut fit = Fit::<M>::zeros();
-    // Without: of points that weigh nothing.
+    // There is no factor if the points have no weight.
     let Some(factor) = matrix.cholesky() else { return fit };
     for _ in 0..passes {
         let mut right = SMatrix::<f64, M, 6>::zeros();
