@@ -23,9 +23,9 @@ const ROUGH_STRESS: f64 = 0.2;
 const FACTOR_TO_SPARE: f64 = 2.0;
 /// Largest gap at a support without a warning, relative to the largest displacement.
 const GIVING_SUPPORT: f64 = 0.01;
-/// Largest root of the leaked energy relative to the strain energy without a warning. In a patch test at a
-/// Poisson's ratio of 0.4999 the root is 0.19 for an energy error of 0.21. In a patch test of a body 10,000
-/// times as long as thick it is 0.18 for an error of 0.16.
+/// Largest `sqrt(leaked energy / strain energy)` without a warning. In a patch test at a Poisson's ratio of
+/// 0.4999 the root is 0.19 for an energy error of 0.21. In a patch test of a body 10,000 times as long as
+/// thick it is 0.18 for an error of 0.16.
 const LEAK: f64 = 0.1;
 /// Largest misfit of an exact solution without a warning, relative to the largest root-mean-square
 /// displacement or traction on a surface. The effect of flat facets on a curved surface is allowed in
@@ -35,7 +35,8 @@ const MISFIT: f64 = 0.01;
 const UNBALANCED: f64 = 0.05;
 /// Relative rounding of the largest displacement and of the body's size.
 const ROUNDING: f64 = 1e-12;
-/// Largest initial overlap of a tool without a warning, relative to the body's narrowest extent.
+/// Limit relative to the body's narrowest extent, for a tool's initial overlap and for the time-step error of
+/// a motion that comes to rest.
 const DEEP: f64 = 0.01;
 /// Fraction of the largest kinetic energy below which the body is at rest.
 const AT_REST: f64 = 1e-3;

@@ -81,7 +81,7 @@ pub struct LoadStep {
     pub iterations: u64,
     /// Displacement at the scene's probes, m.
     pub probes: Vec<Vector3>,
-    /// Errors relative to the reference at the same step.
+    /// Errors against the reference at the same step.
     pub against: Vec<Metric>,
     /// Other results of the procedure: time and energies in dynamics.
     pub more: Vec<Metric>,

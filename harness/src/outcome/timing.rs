@@ -1,4 +1,4 @@
-//! Times of separate phases over repeats, and the peak of memory.
+//! Times of separate phases over repeats.
 
 use std::time::Instant;
 

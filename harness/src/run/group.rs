@@ -339,7 +339,7 @@ impl<'a> Group<'a> {
     /// Plan and sizes of one method, without running the method.
     ///
     /// # Errors
-    /// Returns the errors of an actual run for regions that select nothing.
+    /// Returns an error if the method cannot be discretised and, as in a run, if a region selects nothing.
     pub fn plan(&self, scenario: &Scenario) -> Result<(Plan, Sizes), Failure> {
         let (discretisation, setup) = (scenario.discretise()?, scenario.setup()?);
         reach::check(&discretisation, &setup).map_err(|failure| scenario.locate(failure))?;

@@ -111,17 +111,17 @@ struct Pass {
     solution: Solution,
 }
 
-/// Fraction of a pass's CPU time spent in the kernel above which the pass is taken to have touched its memory
-/// for the first time.
+/// Fraction of a pass's CPU time spent in the operating-system kernel above which the pass is taken to have
+/// touched its memory for the first time.
 const FIRST_USE: f64 = 0.25;
 /// Smallest kernel time that counts, s. Kernel times have a resolution of a hundredth of a second.
 const LEAST_FIRST_USE: f64 = 0.03;
 
 /// Runs the timed part as often as it is repeated. The counters are those of the last pass.
 ///
-/// A first pass that touches memory for the first time is discarded and run again. The host of a virtual
-/// machine reclaims unused memory: there the first use took 1.5 to 2 s per GB and the second 0.05 to 0.3 s,
-/// and the rows of a cloud of 97,336 nodes took 1.7 s instead of 0.47 s.
+/// If the first pass touches its memory for the first time, it is discarded and run again. The host of a
+/// virtual machine reclaims unused memory: there the first use took 1.5 to 2 s per GB and the second 0.05 to
+/// 0.3 s, and the rows of a cloud of 97,336 nodes took 1.7 s instead of 0.47 s.
 fn passes(
     method: &Discretisation,
     setup: &Setup,
@@ -151,7 +151,7 @@ fn passes(
 }
 
 /// Whether a pass was the first to use its memory, from the kernel's CPU seconds before and after the pass
-/// and the CPU seconds spent in its repeats.
+/// and the CPU seconds that the pass took.
 fn is_first_use(before: Option<f64>, after: Option<f64>, spent: &[f64]) -> bool {
     let system = after.zip(before).map_or(0.0, |(after, before)| after - before);
     system >= LEAST_FIRST_USE && system > FIRST_USE * spent.iter().sum::<f64>()
@@ -290,7 +290,7 @@ fn size(method: &Discretisation, prepared: &Prepared, dofs: usize) -> Size {
     }
 }
 
-/// Converts a finished run to a reference. It keeps the tables, and so can evaluate the displacement anywhere
+/// Converts a finished run to a reference, which keeps the tables and can evaluate the displacement anywhere
 /// later.
 pub(crate) fn reference(finished: Finished, targets: &[Point3]) -> Result<Reference, Failure> {
     let Finished { outcome, prepared, u } = finished;

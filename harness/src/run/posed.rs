@@ -75,7 +75,8 @@ impl Group<'_> {
         Ok(Posed { identity: scenario.identity(), method, setup, prepared, plan })
     }
 
-    /// Compares the solution of an external solver, with the same errors as any other run.
+    /// Compares the solution of an external solver with the references; the errors are those of any other
+    /// run.
     ///
     /// # Errors
     /// Returns an error for fields with a wrong number of nodes or with numbers that are not finite, for a
