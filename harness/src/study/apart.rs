@@ -39,22 +39,22 @@ pub struct ApartArgs {
 pub struct ExperimentArgs {
     /// The study file
     pub study: PathBuf,
-    /// The run tables that ask for it
+    /// Indices of the run tables that request the run
     #[arg(long, value_delimiter = ',')]
     pub tables: Vec<usize>,
-    /// What its result is stored under
+    /// Key of the stored result
     #[arg(long)]
     pub key: String,
-    /// Where to write the result
+    /// File to which the result is written
     #[arg(long)]
     pub answer: PathBuf,
     /// Whether the study is run in its quick tier
     #[arg(long)]
     pub quick: bool,
-    /// Who started it: it ends with that process
+    /// Id of the parent process, with which this process ends
     #[arg(long)]
     pub parent: u32,
-    /// Memory that it may allocate
+    /// Memory that the run may allocate, bytes
     #[arg(long)]
     pub memory_limit: Option<u64>,
 }
