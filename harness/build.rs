@@ -1,11 +1,13 @@
-//! Fixes at build time what a program is: its commit, whether the sources were changed since, its compiler, target and features.
+//! Records the provenance of the program at build time: commit, whether the sources differ from the commit,
+//! compiler, target and features.
 //!
-//! What git says when the program runs is of another moment: somebody may have checked out another commit since.
+//! When the program runs, git could report another commit, which was checked out after the build.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// What the program is made of, from the workspace's folder. Changes elsewhere (scenes, tests, docs) make no other program.
+/// Paths of the program's sources, relative to the workspace's folder. Changes elsewhere (scenes, tests,
+/// docs) do not change the program.
 const SOURCES: [&str; 10] = [
     "adapters",
     "Cargo.toml",
@@ -27,7 +29,8 @@ fn main() {
     let variable = |name: &str| std::env::var(name).unwrap_or_default();
     println!("cargo::rustc-env=TISSUEBENCH_TARGET={}", variable("TARGET"));
     println!("cargo::rustc-env=TISSUEBENCH_FEATURES={}", variable("CARGO_CFG_TARGET_FEATURE"));
-    // All of these are compiled into the program: what reruns this script would build it anew anyway.
+    // All of these are compiled into the program: a change that reruns this script rebuilds the program
+    // anyway.
     for source in SOURCES.iter().filter(|source| **source != "solvers") {
         watch(&root.join(source));
     }
@@ -42,17 +45,19 @@ fn main() {
     println!("cargo::rustc-env=TISSUEBENCH_DIRTY={dirty}");
 }
 
-/// Runs this script again when a file changes. One that does not exist would rerun it at every build.
+/// Reruns this script when a file changes. A missing file would rerun the script at every build.
 fn watch(path: &Path) {
     if path.exists() {
         println!("cargo::rerun-if-changed={}", path.display());
     }
 }
 
-/// The commit checked out, if this file is part of a git repository: a tarball inside another one's folder is not.
+/// Checked-out commit; `None` if this file is not tracked, such as in a tarball unpacked inside another
+/// repository.
 fn commit(root: &Path) -> Option<String> {
     git(root, &["ls-files", "--error-unmatch", "harness/build.rs"])?;
-    // Every commit, checkout and reset writes a line to the log of HEAD; without a log the branch's own file changes.
+    // Every commit, checkout and reset adds a line to the log of HEAD. Without a log, the branch's own file
+    // changes.
     let at = |name: &str| git(root, &["rev-parse", "--git-path", name]).map(|path| root.join(path));
     let log = at("logs/HEAD").filter(|path| path.exists());
     let branch = || git(root, &["symbolic-ref", "-q", "HEAD"]).and_then(|name| at(&name));
