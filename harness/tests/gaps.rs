@@ -45,8 +45,8 @@ fn methods(mesh: &str) -> String {
     .join(",\n")
 }
 
-/// Strain energies (J) by method.
-fn energies(mesh: &str) -> Vec<(String, f64)> {
+/// Strain energy (J) of each method, and the warnings that doubt it.
+fn energies(mesh: &str) -> Vec<(String, f64, Vec<String>)> {
     let dir = tempfile::tempdir().unwrap();
     let path = write(&dir, "slit.msh", mesh);
     let scene = format!(
@@ -59,28 +59,48 @@ method = [{}]
 "#,
         methods(&path)
     );
-    let done = tissuebench(&["run", &write(&dir, "slit.toml", &scene), "--format", "json"]);
+    let done = tissuebench(&["run", &write(&dir, "slit.toml", &scene), "--once", "--format", "json"]);
     assert_eq!(done.code, 0, "{}", done.stderr);
     let energy = |object: &serde_json::Value| {
         let energy = object["metrics"]["strain-energy"]["value"].as_f64().unwrap();
-        (object["method"].as_str().unwrap().to_string(), energy)
+        let told = object["warnings"].as_array().unwrap().iter();
+        let told = told.filter(|w| w["code"] == "stress-jump" || w["code"] == "few-cells");
+        let messages = told.map(|w| w["message"].as_str().unwrap().to_string()).collect();
+        (object["method"].as_str().unwrap().to_string(), energy, messages)
     };
     objects(&done.stdout).iter().map(energy).collect()
 }
 
+/// Glued, clouds have 30 to 45 % of the energy of quadratic elements on the same cells.
 #[test]
 fn clouds_open_slits_as_elements_do() {
     for (tip, width, bend) in [(-1.0, 0.3, 0.0), (5.4, 0.3, 0.0), (5.4, 0.6, 3.0)] {
         let all = energies(&slit(2, tip, width, bend));
-        let (_, exact) = &all[0];
+        let (_, exact, _) = &all[0];
         assert_eq!(all.len(), 8);
-        for (method, energy) in &all[1..] {
+        for (method, energy, told) in &all[1..] {
             let off = energy / exact - 1.0;
-            // If the faces of the slit stick together, the energy is 30 to 45 % of this. Nodal smoothing is
-            // soft, and the cloud `own` has only 240 nodes.
-            let bound = if method == "nodal" || method == "own" { 0.3 } else { 0.15 };
-            assert!(off.abs() < bound, "{tip} {width} {bend}, {method}: {off}");
+            let bound = match method.as_str() {
+                // Node smoothing is soft where a body bends, and its stress has few jumps to warn by.
+                "nodal" => 0.25,
+                // Halves that bend on their own, far from any gap: 240 nodes are few.
+                "own" if tip < 0.0 => 0.18,
+                _ => 0.1,
+            };
+            let placed = told.iter().any(|message| message.contains(" mm"));
+            assert!(off.abs() < bound || placed, "{tip} {width} {bend}, {method}: {off}, {told:?}");
         }
+    }
+}
+
+/// On half the spacing all clouds on the cells' nodes are within a tenth, with and without a warning.
+#[test]
+fn finer_clouds_open_slits_as_elements_do() {
+    let all = energies(&slit(4, 5.4, 0.3, 0.0));
+    let (_, exact, _) = &all[0];
+    for (method, energy, _) in all[1..].iter().filter(|(method, ..)| method != "own") {
+        let off = energy / exact - 1.0;
+        assert!(off.abs() < 0.1, "{method}: {off}");
     }
 }
 

@@ -144,6 +144,21 @@ fn a_tip_carries_in_every_procedure_and_a_finer_mesh_agrees() {
     assert!((moving / still - 1.0).abs() < 0.1, "{moving} {still}");
 }
 
+/// Four cells carry the plate, too stiffly, and say so with the place.
+#[test]
+fn a_tip_of_few_cells_carries_with_a_warning() {
+    let [coarse, fine] =
+        [0, 2].map(|times| run(&pyramid(times), PLATE, 16.0, "3 mm", STATIC, &[TET10]).remove(0));
+    let told = |run: &Value| {
+        let warnings = run["warnings"].as_array().unwrap().clone();
+        let few = warnings.iter().find(|w| w["code"] == "few-cells").map(|w| w["message"].to_string());
+        few.is_some_and(|message| message.contains("cells across") && message.contains(" mm"))
+    };
+    let forces = [&coarse, &fine].map(|run| value(run, "tool-force"));
+    assert!(forces[0] > 1.2 * forces[1], "{forces:?}");
+    assert!(told(&coarse), "{coarse}");
+}
+
 #[test]
 fn small_closures_and_clouds_and_edges_carry_too() {
     let cloud = r#"family = "efg", kernel = "cubic-spline", support_scale = 1.6, basis = "linear", integration = { rule = "gauss", points = 4 }, essential = "penalty""#;

@@ -130,7 +130,7 @@ pub(crate) fn measure(
     if let Some([gap, _]) = prepared.support_gap(&solution.u) {
         push(metrics, &metric::SUPPORT_GAP, gap);
     }
-    if let Some(jump) = recovered.and_then(Recovered::jump) {
+    if let Some((jump, _)) = recovered.and_then(Recovered::jump) {
         push(metrics, &metric::STRESS_JUMP, jump);
     }
     of_tables(metrics, prepared);

@@ -7,7 +7,7 @@ use geometry::Point3;
 use super::exact_fit::Misfit;
 use super::patch::patch_error;
 use super::penetration::{self, narrowest};
-use super::{Solved, dead_pressure, exact_fit, few_cells, large_strain};
+use super::{Recovered, Solved, dead_pressure, exact_fit, few_cells, large_strain};
 use crate::Failure;
 use crate::adapter;
 use crate::discretise::{Essential, place};
@@ -54,6 +54,7 @@ const POINTS_PER_NODE: f64 = 2.0;
 /// All warnings of a measured run.
 pub(crate) fn warnings(
     run: &Solved,
+    recovered: Option<&Recovered>,
     metrics: &[Metric],
     probes: &[Probe],
     last: Option<&LoadStep>,
@@ -82,7 +83,7 @@ pub(crate) fn warnings(
     found.extend(run.solution.digits.and_then(few_digits));
     found.extend(unchecked(run));
     found.extend(large_strain(run));
-    found.extend(rough_stress(value(&metric::STRESS_JUMP)));
+    found.extend(rough_stress(recovered, value(&metric::STRESS_JUMP)));
     Ok(found)
 }
 
@@ -323,15 +324,18 @@ fn few_digits(digits: f64) -> Option<Warning> {
     })
 }
 
+fn millimetres(x: &Point3) -> String {
+    format!("({:.2}, {:.2}, {:.2}) mm", 1e3 * x.x, 1e3 * x.y, 1e3 * x.z)
+}
+
 fn large_strain(run: &Solved) -> Vec<Warning> {
     let Some([strain, turn]) = large_strain::largest(run) else { return Vec::new() };
-    let place = |x: &Point3| format!("({:.2}, {:.2}, {:.2}) mm", 1e3 * x.x, 1e3 * x.y, 1e3 * x.z);
     let help = "take one of large strain (law = \"neo-hookean\", kind = \"static\")";
     let strained = (strain.value > large_strain::LARGE).then(|| {
         let message = format!(
             "strains by {:.1} % at {}, and by more than {:.0} % in {:.2} % of the volume, which a law of small strain is not for: {help}",
             100.0 * strain.value,
-            place(&strain.at),
+            millimetres(&strain.at),
             100.0 * large_strain::LARGE,
             100.0 * strain.share
         );
@@ -342,7 +346,7 @@ fn large_strain(run: &Solved) -> Vec<Warning> {
             "turns by {:.3} rad at {}, and by more than {} rad in {:.2} % of the volume, which a law of small strain takes for a strain \
              of {:.1} %: {help}",
             turn.value,
-            place(&turn.at),
+            millimetres(&turn.at),
             large_strain::TURNED,
             100.0 * turn.share,
             50.0 * turn.value * turn.value
@@ -352,12 +356,14 @@ fn large_strain(run: &Solved) -> Vec<Warning> {
     strained.into_iter().chain(turned).collect()
 }
 
-fn rough_stress(jump: Option<f64>) -> Option<Warning> {
+fn rough_stress(recovered: Option<&Recovered>, jump: Option<f64>) -> Option<Warning> {
     let value = jump.filter(|value| *value > ROUGH_STRESS)?;
+    let (_, at) = recovered?.jump()?;
     let message = format!(
-        "the stress is not smooth: {:.0} % of it, in the energy norm, are jumps between neighbours. The mesh or cloud is too \
-         coarse, or it locks; the error may be smaller or several times as large",
-        100.0 * value
+        "the stress is not smooth: {:.0} % of it, in the energy norm, are jumps between neighbours, most of all at {}. The mesh or \
+         cloud is too coarse, or it locks; the error may be smaller or several times as large",
+        100.0 * value,
+        millimetres(&at)
     );
     Some(Warning::new(&warning::STRESS_JUMP, value, "", message))
 }

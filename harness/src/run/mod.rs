@@ -225,7 +225,8 @@ fn loaded(
     if outcome.plan.runs(StageName::Schemes) {
         outcome.transfers = transfers(run, &request.at_end(whole), &mut counters)?;
     }
-    outcome.warnings = warnings(run, &outcome.metrics, &outcome.probes, outcome.last.as_ref())?;
+    outcome.warnings =
+        warnings(run, recovered.as_ref(), &outcome.metrics, &outcome.probes, outcome.last.as_ref())?;
     if let Some(ask) = request.repeated.filter(|_| whole && run.method.outside.is_none()) {
         outcome.latencies = repeated(ask, run, request.probes, &mut outcome.metrics)?;
     }

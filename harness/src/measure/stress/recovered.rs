@@ -106,23 +106,28 @@ impl<'a> Recovered<'a> {
 
     /// `|s* - s| / sqrt(|s|^2 + |s* - s|^2)` in the energy norm of the materials at small strain, 0 to 1;
     /// `None` without stress. Here s* is of linear fits, whatever the method: quadratic ones follow the
-    /// jumps.
-    pub fn jump(&self) -> Option<f64> {
+    /// jumps. With it the quadrature point (m) whose part is the largest.
+    pub fn jump(&self) -> Option<(f64, Point3)> {
         let volume = &self.run.prepared.volume.rows;
         let gradients = volume.at().displacement_gradients(self.u);
         let largest = self.u.iter().map(|u| u.norm_squared()).fold(0.0, f64::max);
         let (low, high) = place::bounds(self.run.method.mesh());
         let as_strain = largest / (high - low).norm_squared();
         let (mut own, mut off, mut scale) = (0.0, 0.0, 0.0);
+        let mut most = (0.0, Point3::origin());
         for (q, ((stress, w), x)) in self.own.iter().zip(volume.weights()).zip(volume.points()).enumerate() {
             let region = self.region(q);
             let material = &self.run.setup.materials[usize::from(region)];
             let smooth = self.blended(x, region, volume.rows().row(q), Patch::linear_at);
             own += w * energy(material, stress);
-            off += w * energy(material, &(smooth - stress));
+            let part = w * energy(material, &(smooth - stress));
+            off += part;
+            if part > most.0 {
+                most = (part, *x);
+            }
             scale += w * material.mu() * (gradients[q].norm_squared() + as_strain);
         }
-        (own > ROUNDING * scale).then(|| (off / (own + off)).sqrt())
+        (own > ROUNDING * scale).then(|| ((off / (own + off)).sqrt(), most.1))
     }
 
     fn region(&self, q: usize) -> u16 {
