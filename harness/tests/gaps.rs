@@ -45,7 +45,7 @@ fn methods(mesh: &str) -> String {
     .join(",\n")
 }
 
-/// Strain energy (J) of each method, and the warnings that doubt it.
+/// Strain energy (J) of each method, and its warnings that doubt the energy.
 fn energies(mesh: &str) -> Vec<(String, f64, Vec<String>)> {
     let dir = tempfile::tempdir().unwrap();
     let path = write(&dir, "slit.msh", mesh);
@@ -71,7 +71,8 @@ method = [{}]
     objects(&done.stdout).iter().map(energy).collect()
 }
 
-/// Glued, clouds have 30 to 45 % of the energy of quadratic elements on the same cells.
+/// If the faces of the slit stick together, clouds have 30 to 45 % of the energy of quadratic elements on the
+/// same cells.
 #[test]
 fn clouds_open_slits_as_elements_do() {
     for (tip, width, bend) in [(-1.0, 0.3, 0.0), (5.4, 0.3, 0.0), (5.4, 0.6, 3.0)] {
@@ -81,9 +82,9 @@ fn clouds_open_slits_as_elements_do() {
         for (method, energy, told) in &all[1..] {
             let off = energy / exact - 1.0;
             let bound = match method.as_str() {
-                // Node smoothing is soft where a body bends, and its stress has few jumps to warn by.
+                // Nodal smoothing is soft in bending, and its stress has few jumps that cause a warning.
                 "nodal" => 0.25,
-                // Halves that bend on their own, far from any gap: 240 nodes are few.
+                // The separated halves bend far from any gap, and 240 nodes are few.
                 "own" if tip < 0.0 => 0.18,
                 _ => 0.1,
             };
@@ -93,7 +94,7 @@ fn clouds_open_slits_as_elements_do() {
     }
 }
 
-/// On half the spacing all clouds on the cells' nodes are within a tenth, with and without a warning.
+/// On half the spacing all clouds on the nodes of the cells are within a tenth, with or without a warning.
 #[test]
 fn finer_clouds_open_slits_as_elements_do() {
     let all = energies(&slit(4, 5.4, 0.3, 0.0));

@@ -144,7 +144,7 @@ fn a_tip_carries_in_every_procedure_and_a_finer_mesh_agrees() {
     assert!((moving / still - 1.0).abs() < 0.1, "{moving} {still}");
 }
 
-/// Four cells carry the plate, too stiffly, and say so with the place.
+/// A tip of four cells carries the plate, but is too stiff. The run warns of this with a position.
 #[test]
 fn a_tip_of_few_cells_carries_with_a_warning() {
     let [coarse, fine] =

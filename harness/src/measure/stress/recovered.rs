@@ -104,9 +104,9 @@ impl<'a> Recovered<'a> {
         if whole > 0.0 { sum / whole } else { self.own[self.nearest(x, material)] }
     }
 
-    /// `|s* - s| / sqrt(|s|^2 + |s* - s|^2)` in the energy norm of the materials at small strain, 0 to 1;
-    /// `None` without stress. Here s* is of linear fits, whatever the method: quadratic ones follow the
-    /// jumps. With it the quadrature point (m) whose part is the largest.
+    /// Stress jump `|s* - s| / sqrt(|s|^2 + |s* - s|^2)` in the energy norm of the materials at small strain,
+    /// 0 to 1, and the quadrature point (m) that contributes most; `None` without stress. Here s* is of
+    /// linear fits, whatever the method, because quadratic fits follow the jumps.
     pub fn jump(&self) -> Option<(f64, Point3)> {
         let volume = &self.run.prepared.volume.rows;
         let gradients = volume.at().displacement_gradients(self.u);
