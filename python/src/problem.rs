@@ -32,6 +32,9 @@ pub(crate) struct Problem {
 /// for a penalty method.
 const OFF_SUPPORTS: f64 = 0.01;
 
+/// Characters of the longest name of a solver, as of a method.
+const NAME: usize = 64;
+
 impl Problem {
     pub(crate) fn new(
         py: Python<'_>,
@@ -207,6 +210,14 @@ impl Problem {
     ) -> PyResult<Run> {
         if let Some(seconds) = seconds.filter(|s| !(*s >= 0.0 && s.is_finite())) {
             return Err(input(py, &format!("seconds: {seconds}; give a finite number from 0 on")));
+        }
+        let is_name = (1..=NAME).contains(&solver.chars().count()) && !solver.chars().any(char::is_control);
+        if !is_name {
+            let found = solver.escape_debug();
+            return Err(input(
+                py,
+                &format!("solver: '{found}'; give 1 to {NAME} characters, without control characters"),
+            ));
         }
         let fields = fields(py, "u", u.as_array())?;
         fields.last().map_or(Ok(()), |last| self.on_supports(py, last))?;

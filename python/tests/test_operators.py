@@ -172,6 +172,9 @@ def test_what_no_folder_of_results_can_hold_is_refused(block):
     for seconds in [np.nan, np.inf, -1.0]:
         with pytest.raises(tb.SceneError, match="seconds: "):
             problem.compare(u, seconds=seconds)
+    for solver in ["", "x" * 65, "a\x1b[31m"]:
+        with pytest.raises(tb.SceneError, match="solver: "):
+            problem.compare(u, solver=solver)
 
 
 def test_contact_forces_of_a_displacement_are_those_of_the_scene(root):
