@@ -90,7 +90,12 @@ fn scenes_and_studies_name_the_other_verb() {
     let dir = tempfile::tempdir().unwrap();
     let scene = write(&dir, "block.toml", common::BLOCK);
     let study = write(&dir, "study.toml", "title = \"One\"\n[[run]]\nscene = \"block.toml\"\n");
-    assert_fails(&tissuebench(&["run", &study]), 2, "is a study, not a scene: tissuebench verify ");
+    for verb in [&["run"][..], &["plan"], &["pick", "--error", "5%"]] {
+        let done = tissuebench(&[verb, &[&study]].concat());
+        assert_fails(&done, 2, "is a study, not a scene: tissuebench verify ");
+    }
+    let body = write(&dir, "body.stl", "solid body\nendsolid body\n");
+    assert_fails(&tissuebench(&["run", &body]), 2, "is a body, not a scene: tissuebench init --file ");
     let out = inside(&dir, "out");
     assert_fails(
         &tissuebench(&["verify", &scene, "--out", &out]),

@@ -33,6 +33,7 @@ use std::path::Path;
 use cases::scene::{self, ErrorKind, Scene, SceneError};
 use catalogue::nearest;
 use clap::{CommandFactory, Parser};
+use geometry::files;
 use reports::{Rendered, ReportError, RunSet};
 use schemars::schema_for;
 
@@ -196,6 +197,21 @@ fn refuse(errors: &[SceneError]) -> u8 {
     if errors.iter().all(|e| e.kind == ErrorKind::NotAvailable) { 3 } else { 2 }
 }
 
+/// Prints why a file is no scene, and what it is for if it is another kind of file.
+fn refuse_scene(path: &Path, errors: &[SceneError]) -> u8 {
+    if holds_key(path, "run") {
+        eprintln!("{0}: is a study, not a scene: tissuebench verify {0} runs it", path.display());
+    } else if files::is_surface(path) || files::is_mesh(path) {
+        eprintln!(
+            "{0}: is a body, not a scene: tissuebench init --file {0} writes one of it",
+            path.display()
+        );
+    } else {
+        return refuse(errors);
+    }
+    2
+}
+
 /// Claims the results folder for a scene or study, and prints which results it replaces. Returns an exit code
 /// on failure.
 fn take(file: &Path, out: &Path) -> Result<Folder, u8> {
@@ -210,13 +226,7 @@ fn take(file: &Path, out: &Path) -> Result<Folder, u8> {
 /// Loads the scene and returns it with the indices of the selected methods.
 fn open(args: &SceneArgs) -> Result<(Scene, Vec<usize>), u8> {
     let path = &args.file;
-    let scene = scene::load_with(path, &args.set).map_err(|errors| {
-        if holds_key(path, "run") {
-            eprintln!("{0}: is a study, not a scene: tissuebench verify {0} runs it", path.display());
-            return 2;
-        }
-        refuse(&errors)
-    })?;
+    let scene = scene::load_with(path, &args.set).map_err(|errors| refuse_scene(path, &errors))?;
     let chosen = choose(&scene, args)?;
     Ok((scene, chosen))
 }

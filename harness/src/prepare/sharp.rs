@@ -1,15 +1,16 @@
 //! Finds corners and edges of the body that a tool meets before the faces around them.
 //!
 //! The contact points of a face lie inside the face. A tool pressed on the tip of a pyramid would penetrate
-//! deeply before touching the first of them. Faces around such a tip receive contact points at their corners
-//! and edges.
+//! deeply before touching the first of them, and so would a tool pressed on the rim of a coarse mesh, however
+//! blunt. Faces around such a corner receive contact points at their corners and edges.
 
 use std::collections::BTreeMap;
 
-use contact::Tool;
+use contact::{Drive, ON_THE_WAY, Tool};
 use geometry::{Facet, Mesh, Point3, Vector3};
 
 use crate::discretise::place;
+use crate::scenario::PlacedTool;
 
 /// Scalar product of two unit normals above which the faces count as flat.
 const FLAT: f64 = 0.8;
@@ -31,12 +32,13 @@ struct Face {
 }
 
 /// Marks the facets around corners and edges that the tool meets first, among the facets for which `passes`
-/// is true.
+/// is true. `points` are the contact points.
 pub(super) fn mark(
     mesh: &Mesh,
     facets: &[Facet],
     passes: impl Fn(Facet) -> bool,
-    tool: &Tool,
+    points: &[Point3],
+    PlacedTool { tool, drive, .. }: &PlacedTool,
     sharp: &mut [bool],
 ) {
     let faces: Vec<Face> = facets.iter().map(|&facet| face(mesh, facet)).collect();
@@ -59,8 +61,19 @@ pub(super) fn mark(
         })
     };
     let at = |node: u32| mesh.points()[node as usize];
+    // Corners that the tool meets before any contact point, and penetrates too deeply until then for a step
+    // to be accepted, or stops in between.
+    let touched = points.iter().filter_map(way).fold(f64::INFINITY, f64::min);
+    let missed = |x: &Point3| {
+        let met = way(x).filter(|met| *met < touched);
+        let squares = points.iter().map(|p| (p - x).norm_squared());
+        met.is_some_and(|met| {
+            touched - met > ON_THE_WAY * squares.fold(f64::INFINITY, f64::min).sqrt()
+                || matches!(*drive, Drive::Closure(end) if met < end && end < touched)
+        })
+    };
     for (&corner, owners) in &around {
-        if first(&at(corner), None, owners) {
+        if first(&at(corner), None, owners) || missed(&at(corner)) {
             owners.iter().for_each(|&k| sharp[k] = true);
         }
         // Each edge is visited at its lower corner.

@@ -52,7 +52,8 @@ impl Touch {
         for (index, set) in tools.iter().enumerate() {
             outside(&surface, index, &set.tool)?;
             let half = set.tool.half_breadth();
-            sharp::mark(mesh, &facets, |facet| passes(mesh, facet, &set.tool), &set.tool, &mut sharp);
+            let on_its_way = |facet| passes(mesh, facet, &set.tool);
+            sharp::mark(mesh, &facets, on_its_way, surface.points(), set, &mut sharp);
             for (k, &facet) in facets.iter().enumerate().filter(|(_, facet)| passes(mesh, **facet, &set.tool))
             {
                 // Points are ordered by facet, so that those of this facet are near this index.

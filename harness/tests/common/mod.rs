@@ -3,6 +3,7 @@
 #![allow(dead_code)] // each test file uses its share
 
 pub mod blocks;
+pub mod implicit;
 
 use std::path::Path;
 use std::process::Command;

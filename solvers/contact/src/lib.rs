@@ -45,7 +45,7 @@ pub use error::ContactError;
 pub use evaluate::{ContactCounts, Contacts};
 pub use history::ContactHistory;
 pub use law::{ContactLaw, Slip};
-pub use overlap::Outline;
+pub use overlap::{ON_THE_WAY, Outline};
 pub use passage::Stand;
 pub use search::{ContactSearch, SearchAt};
 pub use surface::ContactSurface;

@@ -7,7 +7,7 @@ use super::{ContactError, ContactSurface, Stand, Tool};
 
 /// Largest depth of a surface location in a tool without contact, relative to the distance to the nearest
 /// contact point, during the loading: points may be about to touch.
-const ON_THE_WAY: f64 = 0.5;
+pub const ON_THE_WAY: f64 = 0.5;
 /// The same at the end of the loading, when no contact can follow.
 const IN_THE_END: f64 = 0.01;
 /// Number of subdivisions of a triangle into four, to find its deepest location.

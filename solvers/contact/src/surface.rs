@@ -9,6 +9,11 @@ use super::{ContactError, Contacts, Outline, Tool};
 /// Largest number of points in a cluster.
 pub(super) const CLUSTER: usize = 32;
 
+/// Product of two unit normals above which the points are on the same side of an edge.
+const ALIKE: f64 = 0.7;
+/// Distance, relative to the size of the surface, below which two points coincide.
+const SAME: f64 = 1e-9;
+
 /// Surface prepared for contact: made once per surface, for any number of tools and states.
 #[derive(Clone, Debug)]
 pub struct ContactSurface<'a> {
@@ -54,10 +59,12 @@ impl<'a> ContactSurface<'a> {
         let mut nodes = Vec::new();
         let clusters: Vec<Cluster> =
             ranges.into_iter().map(|points| Cluster::new(rows, &order, points, &mut nodes)).collect();
-        let mut beside = vec![[0; 2]; order.len()];
+        let bent = bent(rows);
+        let mut beside: Vec<[u32; 2]> = (0..order.len() as u32).map(|q| [q; 2]).collect();
         for cluster in &clusters {
             let near = &order[cluster.points.clone()];
-            near.iter().for_each(|&q| beside[q as usize] = two_beside(rows, q, near));
+            let flat = near.iter().filter(|&&q| !bent[q as usize]);
+            flat.for_each(|&q| beside[q as usize] = two_beside(rows, q, near));
         }
         ContactSurface { rows, order, clusters, nodes, beside, outline: None }
     }
@@ -126,7 +133,8 @@ impl<'a> ContactSurface<'a> {
     ///
     /// The deformed normal `(x_b - x_a) x (x_c - x_a)` is computed from two neighbouring points, which
     /// ignores any bending between them. A push that points out of the surface by less than 12 degrees is
-    /// therefore accepted, and so are a few points on a crease.
+    /// therefore accepted, and so are a few points on a crease. Points at corners and on edges are not checked:
+    /// faces of every side meet there.
     ///
     /// # Errors
     ///
@@ -213,14 +221,33 @@ impl Cluster {
     }
 }
 
+/// Whether each point coincides with a point of a face that has another normal.
+fn bent(rows: &SurfaceRows) -> Vec<bool> {
+    let (points, normals) = (rows.points(), rows.normals());
+    // Sorted along a direction in which few points of a regular mesh have the same coordinate.
+    let along: Vec<f64> = points.iter().map(|p| p.x + 0.7549 * p.y + 0.5698 * p.z).collect();
+    let mut order: Vec<usize> = (0..points.len()).collect();
+    order.sort_by(|&a, &b| along[a].total_cmp(&along[b]));
+    let size = order.first().zip(order.last()).map_or(0.0, |(&a, &b)| along[b] - along[a]);
+    let mut bent = vec![false; points.len()];
+    for (k, &a) in order.iter().enumerate() {
+        for &b in order[k + 1..].iter().take_while(|&&b| along[b] - along[a] <= SAME * size) {
+            if (points[a] - points[b]).norm() <= SAME * size && normals[a].dot(&normals[b]) <= ALIKE {
+                (bent[a], bent[b]) = (true, true);
+            }
+        }
+    }
+    bent
+}
+
 /// Returns the two points that span the surface around `q` best: close to `q`, and in clearly different
 /// directions.
 fn two_beside(rows: &SurfaceRows, q: u32, near: &[u32]) -> [u32; 2] {
     let normal = rows.normals()[q as usize];
     let way = |other: u32| rows.points()[other as usize] - rows.points()[q as usize];
     // Points beyond an edge, where the normal differs, are excluded.
-    let mut flat: Vec<u32> =
-        near.iter().copied().filter(|&p| p != q && normal.dot(&rows.normals()[p as usize]) > 0.7).collect();
+    let alike = |p: u32| normal.dot(&rows.normals()[p as usize]) > ALIKE;
+    let mut flat: Vec<u32> = near.iter().copied().filter(|&p| p != q && alike(p)).collect();
     flat.sort_by(|&a, &b| way(a).norm().total_cmp(&way(b).norm()));
     for (k, &b) in flat.iter().enumerate() {
         for &a in &flat[..k] {

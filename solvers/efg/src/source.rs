@@ -5,7 +5,7 @@ use std::sync::Arc;
 use catalogue::metric::{self, Metric};
 use geometry::quadrature::Parts;
 use geometry::shapes::Shape;
-use geometry::{Cloud, Facet, Mesh};
+use geometry::{Cloud, Facet, Mesh, locate};
 use shape::{
     DilationGroups, FluxRows, GradRows, Point3, PointRows, Quadrature, RowSource, Rows, SourceError,
     SurfaceRows, TraceRows, Vector3, VolumeRows,
@@ -123,6 +123,10 @@ const FACE_POINTS: usize = 6;
 /// by 0.1 %.
 const CONTACT_POINTS: usize = 3;
 
+/// Distance from the cells, over the mean spacing of the nodes, beyond which a point takes the value of the
+/// nearest one in a cell where its own neighbours do not determine the functions.
+const BEYOND: f64 = 0.5;
+
 /// Shape functions over a background of linear tetrahedra.
 pub struct CloudSource {
     approximation: Approximation,
@@ -161,6 +165,33 @@ impl CloudSource {
         let nodes = cloud.points.len();
         let spacing = cloud.spacing.iter().sum::<f64>() / nodes as f64;
         Ok(CloudSource { approximation, nodes, spacing, background, integration })
+    }
+}
+
+impl CloudSource {
+    /// Rows at points, and how many of these lie beyond the cells and took the value of the nearest point:
+    /// coarse cells leave out thin parts of a body, where few nodes are in reach.
+    fn near<T>(
+        &self,
+        points: &[Point3],
+        rows: impl Fn(&[Point3]) -> Result<(T, MlsInfo), EfgError>,
+    ) -> Result<(T, usize), EfgError> {
+        let found = rows(points);
+        if found.as_ref().is_ok_and(|(_, info)| info.enlarged == 0) {
+            return Ok((found?.0, 0));
+        }
+        let (mut moved, mut count) = (points.to_vec(), 0);
+        for (point, place) in moved.iter_mut().zip(locate(&self.background, points)?) {
+            if place.outside > BEYOND * self.spacing {
+                let corners = self.background.cell_points(place.cell as usize).zip(place.barycentric);
+                *point = Point3::from(corners.map(|(corner, part)| corner.coords * part).sum::<Vector3>());
+                count += 1;
+            }
+        }
+        match count {
+            0 => Ok((found?.0, 0)),
+            _ => Ok((rows(&moved)?.0, count)),
+        }
     }
 }
 
@@ -291,11 +322,11 @@ impl RowSource for CloudSource {
     }
 
     fn at_points(&self, points: &[Point3]) -> Result<(PointRows, usize), SourceError> {
-        Ok((self.approximation.point_rows(points)?.0, 0))
+        Ok(self.near(points, |points| self.approximation.point_rows(points))?)
     }
 
     fn gradients_at(&self, points: &[Point3]) -> Result<GradRows, SourceError> {
-        Ok(self.approximation.grad_rows(points)?.0)
+        Ok(self.near(points, |points| self.approximation.grad_rows(points))?.0)
     }
 }
 

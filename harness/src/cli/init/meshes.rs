@@ -18,8 +18,8 @@ const HOLD: usize = 3;
 pub(super) struct Meshes(Vec<(String, Arc<Mesh>)>);
 
 impl Meshes {
-    /// Makes the meshes of a scene, as a run does.
-    pub fn new(scene: &Scene) -> Result<Meshes, Failure> {
+    /// Makes the meshes of a scene, as a run does, as far as the first that does not fit.
+    pub fn new(scene: &Scene, fits: impl Fn(&str, &Mesh) -> Result<(), Failure>) -> Result<Meshes, Failure> {
         let own = scene.methods.iter().map(|method| (method.id.clone(), method.clone()));
         let mut all: Vec<_> = own.collect();
         if let Some(Reference::Method { id, size: Some(size) }) = &scene.reference
@@ -32,21 +32,16 @@ impl Meshes {
         let made = all.into_iter().map(|(name, method)| {
             let case = String::new();
             let scenario = Scenario { case, scene, method, level: 0, poisson: None, size_key: None };
-            Ok((name, scenario.discretise()?.mesh))
+            let mesh = scenario.discretise()?.mesh;
+            fits(&name, &mesh)?;
+            Ok((name, mesh))
         });
         Ok(Meshes(made.collect::<Result<_, Failure>>()?))
     }
 
-    /// The largest distance by which a mesh falls short of the end of the body on one side, m, and the mesh.
-    pub fn shortest(&self, bounds: [Point3; 2], side: Side) -> (f64, &str) {
-        let (axis, sign) = (side.axis(), side.sign());
-        let end = bounds[usize::from(sign > 0.0)][axis];
-        let short = |mesh: &Mesh| {
-            let (low, high) = place::bounds(mesh);
-            sign * (end - if sign > 0.0 { high[axis] } else { low[axis] })
-        };
-        let all = self.0.iter().map(|(name, mesh)| (short(mesh), name.as_str()));
-        all.fold((0.0, ""), |most, one| if one.0 > most.0 { one } else { most })
+    /// The largest distance by which a mesh falls [`short`], m.
+    pub fn shortest(&self, bounds: [Point3; 2], side: Side) -> f64 {
+        self.0.iter().map(|(_, mesh)| short(mesh, bounds, side)).fold(0.0, f64::max)
     }
 
     /// The first mesh with a piece that a place does not hold, and its number of pieces.
@@ -74,6 +69,14 @@ impl Meshes {
         let inside = |mesh: &Mesh| fem::nearest_cells(mesh, &[*p]).is_ok_and(|found| found[0].1 == 0.0);
         self.0.iter().all(|(_, mesh)| inside(mesh))
     }
+}
+
+/// Distance by which a mesh falls short of the end of the body on one side, m.
+pub(super) fn short(mesh: &Mesh, bounds: [Point3; 2], side: Side) -> f64 {
+    let (axis, sign) = (side.axis(), side.sign());
+    let (low, high) = place::bounds(mesh);
+    let [end, reached] = [bounds, [low, high]].map(|ends| ends[usize::from(sign > 0.0)][axis]);
+    sign * (end - reached)
 }
 
 /// The piece of each node, numbered from 0, and how many there are; nodes of a cell are of one piece.

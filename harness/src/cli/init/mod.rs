@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 
 use cases::scene::{self, Place, Region, Scene, SceneError};
 use catalogue::Dimension;
-use geometry::files;
+use geometry::{Mesh, files};
 
 pub use args::InitArgs;
 
@@ -188,7 +188,7 @@ fn wanted(
     let question = "What is held: comparisons of x, y and z, or a surface of the mesh file";
     wanted.hold = ask.value("hold", args.hold.as_deref(), question, &default, |text| held(text, organ))?;
     let height = organ.extent(side.axis());
-    let (short, _) = meshes.shortest(organ.bounds, side);
+    let short = meshes.shortest(organ.bounds, side);
     wanted.drive = driven(args, ask, strain, &described((CLOSURE * height).max(2.0 * short)))?;
     if let Drive::Closure(by) = wanted.drive
         && by >= height
@@ -226,21 +226,23 @@ fn fine_enough(wanted: &mut Wanted, organ: &Organ, part: f64, out: &Path) -> Res
     let (size, side, height) = (wanted.size, wanted.side, organ.extent(wanted.side.axis()));
     let unit = wanted.unit;
     let described = |metres: f64| scene_text::length(metres, unit, organ.largest_extent());
+    let reaches = |name: &str, mesh: &Mesh| match meshes::short(mesh, organ.bounds, side) {
+        short if short > SHORT * height => {
+            let short = described(short);
+            Err(input(format!("the mesh of {name} ends {short} from where the plate touches")))
+        }
+        _ => Ok(()),
+    };
     let mut why = String::new();
     for (parts, finer) in FINENESS {
         (wanted.parts, wanted.size) = (parts, size.times(finer));
-        let meshes = match Meshes::new(&parsed(wanted, out)?) {
+        let meshes = match Meshes::new(&parsed(wanted, out)?, reaches) {
             Ok(meshes) => meshes,
             Err(bad) => {
                 why = bad.to_string();
                 continue;
             }
         };
-        let (short, name) = meshes.shortest(organ.bounds, side);
-        if short > SHORT * height {
-            why = format!("the mesh of {name} ends {} from where the plate touches", described(short));
-            continue;
-        }
         let more = (0..).map(|k| part + f64::from(k) * MORE);
         for held in more.take_while(|held| *held <= MOST.max(part)) {
             wanted.hold = Hold::Where(held_end(organ, side, held, &described));
@@ -254,10 +256,8 @@ fn fine_enough(wanted: &mut Wanted, organ: &Organ, part: f64, out: &Path) -> Res
             }
         }
     }
-    let problem = format!(
-        "no mesh of up to {} nodes does: {why}; give more, or another --press-from",
-        size.described()
-    );
+    let problem =
+        format!("no mesh of up to {} does: {why}; give more, or another --press-from", size.described());
     Err(input(problem))
 }
 

@@ -281,11 +281,7 @@ probes = [[{near}], [{middle}]]
                 let size = self.size.times(doubled * part);
                 let id = word(method);
                 writeln!(text, "[[method]]\nid = \"{id}-{name}\"\nseries = \"{id}\"").expect("a string");
-                let size = match (method, size) {
-                    (Method::Efg, Size::Nodes(_)) => self.size_key(size),
-                    _ => format!("size = {{ {} }}", self.size_key(size)),
-                };
-                writeln!(text, "{}{size}\n", keys(method)).expect("a string");
+                writeln!(text, "{}size = {{ {} }}\n", keys(method), self.size_key(size)).expect("a string");
             }
             text.truncate(text.trim_end().len());
             text.push('\n');
@@ -304,7 +300,7 @@ fn about(method: Method) -> &'static str {
             "tet10: curved displacements, fewer elements for the same error. Twice the nodes of the others, as edges have them too."
         }
         Method::Efg => {
-            "efg: element-free Galerkin, a cloud of nodes over cells that only integrate. Try basis = \"quadratic\" with \
+            "efg: element-free Galerkin, a cloud of the nodes of a mesh, whose cells only integrate. Try basis = \"quadratic\" with \
              support_scale = 2.2."
         }
     }

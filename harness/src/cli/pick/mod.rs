@@ -14,7 +14,7 @@ use reports::{Reference, Seconds};
 use serde::Serialize;
 
 use crate::cli::args::Format;
-use crate::cli::{choose, interrupt, refuse, take, text, write_results};
+use crate::cli::{choose, interrupt, refuse_scene, take, text, write_results};
 use crate::outcome::provenance;
 use crate::run::{Group, Repeats, RunOptions, case_name};
 use crate::study::{self, folder};
@@ -118,7 +118,8 @@ fn demand(args: &PickArgs) -> Result<Demand, String> {
 
 /// Loads the scene and selects the methods to try.
 fn opened(args: &PickArgs) -> Result<(Scene, Vec<usize>), u8> {
-    let (scene, own) = usual::with_usual(&args.scene, args.usual).map_err(|errors| refuse(&errors))?;
+    let (scene, own) = usual::with_usual(&args.scene, args.usual)
+        .map_err(|errors| refuse_scene(&args.scene.file, &errors))?;
     if own == 0 || args.usual {
         let ids: Vec<&str> = scene.methods[own..].iter().map(|m| m.id.as_str()).collect();
         eprintln!("usual methods that fit: {}", ids.join(", "));
