@@ -24,7 +24,7 @@ pub struct InitArgs {
     #[arg(long, value_name = "NUMBER")]
     pub poisson: Option<String>,
     /// The side from which the plate presses: top (z), bottom, left (x), right, front (y) or back (default:
-    /// the first whose end is blunt and stands on what is held)
+    /// the first whose end is blunt, stands on what is held and is not slender)
     #[arg(long, value_name = "SIDE")]
     pub press_from: Option<String>,
     /// What is held: comparisons such as "z < 3 mm", or a surface that the file names (default: a fifth of the body, away from the

@@ -16,11 +16,17 @@ const END: usize = 2;
 const BLUNT: f64 = 0.012;
 /// Part of an end that stands on what is held at the least: the rest hangs over, and bends away.
 const BACKED: f64 = 0.5;
+/// Breadth of the body between an end and what is held, over the length between them, at the least: a more
+/// slender one buckles.
+const STOUT: f64 = 0.2;
 /// Part of the body that is held at the least.
 const HELD: f64 = 0.08;
 
-/// Points of a grid in the body's box that are inside.
-pub(super) struct Filled(Vec<bool>);
+/// Points of a grid in the body's box that are inside, and the distance between these along each axis, m.
+pub(super) struct Filled {
+    inside: Vec<bool>,
+    steps: [f64; 3],
+}
 
 impl Filled {
     pub fn new(organ: &Organ) -> Filled {
@@ -29,7 +35,8 @@ impl Filled {
         };
         let point = |k: usize| Point3::new(at(k % GRID, 0), at(k / GRID % GRID, 1), at(k / GRID / GRID, 2));
         let inside = |k: usize| organ.surface.signed_distance(&point(k)) < 0.0;
-        Filled((0..GRID.pow(3)).into_par_iter().map(inside).collect())
+        let inside = (0..GRID.pow(3)).into_par_iter().map(inside).collect();
+        Filled { inside, steps: [0, 1, 2].map(|axis| organ.extent(axis) / GRID as f64) }
     }
 
     /// Whether a point is inside: its layer counted from one side, and its place in the layer.
@@ -38,7 +45,7 @@ impl Filled {
         let mut k = [0; 3];
         k[axis] = if side.sign() > 0.0 { GRID - 1 - layer } else { layer };
         (k[(axis + 1) % 3], k[(axis + 2) % 3]) = (place[0], place[1]);
-        self.0[k[0] + GRID * (k[1] + GRID * k[2])]
+        self.inside[k[0] + GRID * (k[1] + GRID * k[2])]
     }
 
     /// Points inside in a layer.
@@ -47,7 +54,7 @@ impl Filled {
     }
 
     fn all(&self) -> f64 {
-        self.0.iter().filter(|inside| **inside).count().max(1) as f64
+        self.inside.iter().filter(|inside| **inside).count().max(1) as f64
     }
 
     /// Part of the height, from the side opposite to the plate on, that is held: `least`, or more where that
@@ -61,8 +68,9 @@ impl Filled {
         least.max((layers.count() + 1) as f64 / GRID as f64)
     }
 
-    /// Part of the body at the end of a side, and part of that end which stands on what is held.
-    fn end(&self, side: Side, held: f64) -> [f64; 2] {
+    /// Part of the body at the end of a side, part of that end which stands on what is held, and breadth over
+    /// length between the two.
+    fn end(&self, side: Side, held: f64) -> [f64; 3] {
         let pressed: usize = (0..END).map(|layer| self.count(side, layer)).sum();
         let ground = GRID - (held * GRID as f64).round() as usize;
         let ends: Vec<[usize; 2]> =
@@ -70,20 +78,24 @@ impl Filled {
         let stands =
             |place: &&[usize; 2]| (END - 1..=ground.min(GRID - 1)).all(|k| self.has(side, k, **place));
         let backed = ends.iter().filter(stands).count();
-        [pressed as f64 / self.all(), backed as f64 / ends.len().max(1) as f64]
+        let axis = side.axis();
+        let narrowest = (END - 1..ground).map(|layer| self.count(side, layer)).min().unwrap_or(0) as f64;
+        let breadth = (narrowest * self.steps[(axis + 1) % 3] * self.steps[(axis + 2) % 3]).sqrt();
+        let stout = breadth / (ground as f64 * self.steps[axis]);
+        [pressed as f64 / self.all(), backed as f64 / ends.len().max(1) as f64, stout]
     }
 
-    /// The side from which a plate presses best: the first whose end is blunt and stands on what is held, or
-    /// else the one that comes nearest.
-    pub fn side(&self, least: f64) -> Side {
-        let quality = |&side: &Side| {
-            let [pressed, backed] = self.end(side, self.held(side, least));
-            (pressed / BLUNT).min(1.0) * (backed / BACKED).min(1.0)
+    /// The sides from the one from which a plate presses best on: first those whose end is blunt, stands on what
+    /// is held and does not buckle, then those that come near.
+    pub fn sides(&self, least: f64) -> Vec<Side> {
+        let quality = |side: &Side| {
+            let [pressed, backed, stout] = self.end(*side, self.held(*side, least));
+            (pressed / BLUNT).min(1.0) * (backed / BACKED).min(1.0) * (stout / STOUT).min(1.0)
         };
-        let all = Side::value_variants().iter().copied();
-        let best = all.map(|side| (quality(&side), side));
-        let better = |best: (f64, Side), one: (f64, Side)| if one.0 > best.0 { one } else { best };
-        best.reduce(better).map_or(Side::Top, |(_, side)| side)
+        let mut all: Vec<(f64, Side)> =
+            Side::value_variants().iter().map(|side| (quality(side), *side)).collect();
+        all.sort_by(|a, b| b.0.total_cmp(&a.0));
+        all.into_iter().map(|(_, side)| side).collect()
     }
 }
 

@@ -161,29 +161,34 @@ fn wanted(
         None => ask.value("nodes", args.nodes.as_deref(), "Nodes of the finest size", "1000", nodes)?,
     };
     let filled = Filled::new(organ);
-    let question = "Side from which the plate presses: top, bottom, left, right, front or back";
-    let best = word(filled.side(HELD));
-    let side = ask.value("press-from", args.press_from.as_deref(), question, &best, choice::<Side>)?;
-    let held_part = filled.held(side, HELD);
+    let sides = filled.sides(HELD);
     let mut wanted = Wanted {
-        title: title(file, side),
+        title: String::new(),
         path: path_from(out, file)?,
         unit,
         strain,
         young,
         young_value,
         poisson,
-        hold: Hold::Where(held_end(organ, side, held_part, &described)),
-        side,
+        hold: Hold::Where(String::new()),
+        side: sides[0],
         bounds: organ.bounds,
-        drive: Drive::Closure(CLOSURE * organ.extent(side.axis())),
+        drive: Drive::Closure(CLOSURE * organ.smallest_extent()),
         gap: gap(args, strain)?,
         methods,
         size,
         parts: FINENESS[0].0,
         probes: organ.bounds,
     };
-    let meshes = fine_enough(&mut wanted, organ, held_part, out)?;
+    let pressed = |wanted: &mut Wanted, side| {
+        (wanted.title, wanted.side, wanted.size) = (title(file, side), side, size);
+        fine_enough(wanted, organ, filled.held(side, HELD), out)
+    };
+    let fits = |side: &&Side| args.press_from.is_none() && pressed(&mut wanted, **side).is_ok();
+    let best = word(*sides.iter().find(fits).unwrap_or(&sides[0]));
+    let question = "Side from which the plate presses: top, bottom, left, right, front or back";
+    let side = ask.value("press-from", args.press_from.as_deref(), question, &best, choice::<Side>)?;
+    let meshes = pressed(&mut wanted, side)?;
     let Hold::Where(default) = wanted.hold.clone() else { unreachable!("comparisons so far") };
     let question = "What is held: comparisons of x, y and z, or a surface of the mesh file";
     wanted.hold = ask.value("hold", args.hold.as_deref(), question, &default, |text| held(text, organ))?;
@@ -233,6 +238,7 @@ fn fine_enough(wanted: &mut Wanted, organ: &Organ, part: f64, out: &Path) -> Res
         }
         _ => Ok(()),
     };
+    wanted.hold = Hold::Where(held_end(organ, side, part, &described));
     let mut why = String::new();
     for (parts, finer) in FINENESS {
         (wanted.parts, wanted.size) = (parts, size.times(finer));
