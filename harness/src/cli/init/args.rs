@@ -1,4 +1,5 @@
-//! The options of `init`. All are optional: what is not given is asked on a terminal, and else takes its default.
+//! Options of `init`. All are optional: on a terminal, missing values are asked for; otherwise defaults
+//! apply.
 
 use std::path::PathBuf;
 
@@ -7,14 +8,14 @@ use clap::{Args, ValueEnum};
 /// Arguments of `init`.
 #[derive(Args)]
 pub struct InitArgs {
-    /// The organ: a closed surface (STL, OBJ, PLY) or a mesh file (.msh, .inp, .vtu, .vtk)
+    /// Organ: a closed surface (STL, OBJ, PLY) or a mesh file (.msh, .inp, .vtu, .vtk)
     #[arg(long, value_name = "FILE")]
     pub file: Option<PathBuf>,
-    /// Length unit of the file: m, cm, mm or um (default: the one in which it is as long as organs are)
+    /// Length unit of the file: m, cm, mm or um (default: the unit that gives the length of an organ)
     #[arg(long)]
     pub unit: Option<String>,
-    /// Large strain: a neo-Hookean law, a plate in contact. Small strain: a linear law, the end of the body is moved or loaded (default:
-    /// large)
+    /// Large strain: neo-Hookean law, contact with a plate. Small strain: linear law, one end of the body
+    /// displaced or loaded (default: large)
     #[arg(long, value_name = "small|large")]
     pub strain: Option<String>,
     /// Young's modulus (default: "20 kPa")
@@ -23,44 +24,44 @@ pub struct InitArgs {
     /// Poisson's ratio, 0 to below 0.5 (default: 0.45)
     #[arg(long, value_name = "NUMBER")]
     pub poisson: Option<String>,
-    /// The side from which the plate presses: top (z), bottom, left (x), right, front (y) or back (default:
-    /// the first whose end is blunt, stands on what is held and is not slender)
+    /// Side of the plate: top (z), bottom, left (x), right, front (y) or back (default: the first side with a
+    /// blunt end that is supported by the constrained part through a body that is not slender)
     #[arg(long, value_name = "SIDE")]
     pub press_from: Option<String>,
-    /// What is held: comparisons such as "z < 3 mm", or a surface that the file names (default: a fifth of the body, away from the
-    /// plate)
+    /// Constrained part of the body: comparisons such as "z < 3 mm", or a named surface of the file (default:
+    /// at least a fifth of the height, opposite to the plate)
     #[arg(long, value_name = "WHERE")]
     pub hold: Option<String>,
-    /// How far the plate presses into the body's height (default: a twentieth of it)
+    /// Displacement of the plate into the body (default: a twentieth of the body's height)
     #[arg(long, value_name = "LENGTH", conflicts_with = "load")]
     pub closure: Option<String>,
-    /// In place of --closure: the force on the plate, such as "0.5 N"; at small strain a pressure, such as "1 kPa"
+    /// Force on the plate, such as "0.5 N", instead of --closure; at small strain a pressure, such as "1 kPa"
     #[arg(long, value_name = "FORCE")]
     pub load: Option<String>,
-    /// Distance from which the plate starts (default: it touches the body)
+    /// Initial distance of the plate from the body (default: in contact)
     #[arg(long, value_name = "LENGTH", conflicts_with = "load")]
     pub gap: Option<String>,
     /// Methods, each in three sizes: tet4, tet4-nodal, tet10 and efg (default: tet4,tet10,efg)
     #[arg(long, value_name = "LIST")]
     pub methods: Option<String>,
-    /// About how many nodes the finest size of each method has; tet10 has twice as many (default: 1000)
+    /// Approximate number of nodes in the finest size of each method, twice as many for tet10 (default: 1000)
     #[arg(long, value_name = "N", conflicts_with = "spacing")]
     pub nodes: Option<String>,
-    /// In place of --nodes: the mean length of the edges of the finest size
+    /// Mean edge length of the finest size, instead of --nodes
     #[arg(long, value_name = "LENGTH")]
     pub spacing: Option<String>,
-    /// The scene to write (default: the name of the file, ending in .toml)
+    /// Scene file to write (default: the name of the organ's file, with suffix .toml)
     #[arg(long, value_name = "SCENE")]
     pub out: Option<PathBuf>,
-    /// Ask nothing: take the defaults on a terminal too
+    /// Ask nothing: use the defaults on a terminal too
     #[arg(long)]
     pub yes: bool,
-    /// Replace the scene if there is one
+    /// Replace an existing scene
     #[arg(long)]
     pub force: bool,
 }
 
-/// The side from which the plate presses.
+/// Side from which the plate presses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(super) enum Side {
     Top,
@@ -72,7 +73,7 @@ pub(super) enum Side {
 }
 
 impl Side {
-    /// The axis on which it lies.
+    /// Returns the axis normal to the side.
     pub fn axis(self) -> usize {
         match self {
             Side::Left | Side::Right => 0,
@@ -81,13 +82,13 @@ impl Side {
         }
     }
 
-    /// 1 at the end of the axis, -1 at its start.
+    /// Returns 1 for a side at the end of its axis, -1 at its start.
     pub fn sign(self) -> f64 {
         if matches!(self, Side::Top | Side::Right | Side::Back) { 1.0 } else { -1.0 }
     }
 }
 
-/// How large strains may become.
+/// Range of strains, which decides the law and the loading.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(super) enum Strain {
     Small,
@@ -103,12 +104,12 @@ pub(super) enum Method {
     Efg,
 }
 
-/// The word of the command line.
+/// Returns the word of a value on the command line.
 pub(super) fn word<T: ValueEnum>(value: T) -> String {
     value.to_possible_value().map_or(String::new(), |value| value.get_name().to_string())
 }
 
-/// One of the words that a choice has.
+/// Parses a word of a choice; the error lists the known words.
 pub(super) fn choice<T: ValueEnum>(text: &str) -> Result<T, String> {
     T::from_str(text.trim(), true).map_err(|_| {
         let known: Vec<String> = T::value_variants().iter().cloned().map(word).collect();

@@ -1,5 +1,5 @@
-//! The body as points of a grid: from which side a plate finds an end that it can press, and how much holds
-//! the other end.
+//! The body as a grid of points. It serves to find a side with an end that a plate can press, and the height
+//! of the constrained part at the opposite end.
 
 use clap::ValueEnum;
 use geometry::Point3;
@@ -8,21 +8,21 @@ use rayon::prelude::*;
 use super::args::Side;
 use super::organ::Organ;
 
-/// Points along each axis.
+/// Number of points along each axis.
 const GRID: usize = 24;
-/// Layers of points that are the end of the body on one side.
+/// Number of point layers in the end of the body on one side.
 const END: usize = 2;
-/// Part of the body that an end has at the least; a cap of a ball has 2 %, the tip of a cone .06 %.
+/// Smallest fraction of the body in a blunt end; a cap of a ball has 2 %, the tip of a cone .06 %.
 const BLUNT: f64 = 0.012;
-/// Part of an end that stands on what is held at the least: the rest hangs over, and bends away.
+/// Smallest fraction of an end directly above the constrained part. The rest overhangs and bends away.
 const BACKED: f64 = 0.5;
-/// Breadth of the body between an end and what is held, over the length between them, at the least: a more
-/// slender one buckles.
+/// Smallest ratio of breadth to length of the body between an end and the constrained part. A more slender
+/// body buckles.
 const STOUT: f64 = 0.2;
-/// Part of the body that is held at the least.
+/// Smallest fraction of the body that is constrained.
 const HELD: f64 = 0.08;
 
-/// Points of a grid in the body's box that are inside, and the distance between these along each axis, m.
+/// Marks of the grid points inside the body, in its bounding box, and the grid spacing along each axis, m.
 pub(super) struct Filled {
     inside: Vec<bool>,
     steps: [f64; 3],
@@ -39,7 +39,7 @@ impl Filled {
         Filled { inside, steps: [0, 1, 2].map(|axis| organ.extent(axis) / GRID as f64) }
     }
 
-    /// Whether a point is inside: its layer counted from one side, and its place in the layer.
+    /// Whether a point is inside. `layer` is counted from `side`; `place` is the position in the layer.
     fn has(&self, side: Side, layer: usize, place: [usize; 2]) -> bool {
         let axis = side.axis();
         let mut k = [0; 3];
@@ -48,7 +48,7 @@ impl Filled {
         self.inside[k[0] + GRID * (k[1] + GRID * k[2])]
     }
 
-    /// Points inside in a layer.
+    /// Returns the number of inside points in a layer.
     fn count(&self, side: Side, layer: usize) -> usize {
         places().filter(|&place| self.has(side, layer, place)).count()
     }
@@ -57,8 +57,8 @@ impl Filled {
         self.inside.iter().filter(|inside| **inside).count().max(1) as f64
     }
 
-    /// Part of the height, from the side opposite to the plate on, that is held: `least`, or more where that
-    /// is little of the body.
+    /// Returns the constrained fraction of the height, at the end opposite to `side`: `least`, or more if
+    /// that contains little of the body.
     pub fn held(&self, side: Side, least: f64) -> f64 {
         let mut sum = 0.0;
         let layers = (0..GRID).rev().take_while(|&layer| {
@@ -68,8 +68,8 @@ impl Filled {
         least.max((layers.count() + 1) as f64 / GRID as f64)
     }
 
-    /// Part of the body at the end of a side, part of that end which stands on what is held, and breadth over
-    /// length between the two.
+    /// Returns the fraction of the body in the end of a side, the fraction of that end above the constrained
+    /// part, and the ratio of breadth to length between the two.
     fn end(&self, side: Side, held: f64) -> [f64; 3] {
         let pressed: usize = (0..END).map(|layer| self.count(side, layer)).sum();
         let ground = GRID - (held * GRID as f64).round() as usize;
@@ -85,8 +85,8 @@ impl Filled {
         [pressed as f64 / self.all(), backed as f64 / ends.len().max(1) as f64, stout]
     }
 
-    /// The sides from the one from which a plate presses best on: first those whose end is blunt, stands on what
-    /// is held and does not buckle, then those that come near.
+    /// Returns the sides from best to worst for the plate. Sides with a blunt end, supported by the
+    /// constrained part and not slender, come first in their usual order.
     pub fn sides(&self, least: f64) -> Vec<Side> {
         let quality = |side: &Side| {
             let [pressed, backed, stout] = self.end(*side, self.held(*side, least));

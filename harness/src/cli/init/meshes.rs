@@ -1,5 +1,4 @@
-//! The meshes that the methods and the reference of a scene will have: what a scene names has to be there in
-//! each.
+//! Meshes of the scene's methods and reference. Places named in the scene must exist in each of them.
 
 use std::sync::Arc;
 
@@ -11,14 +10,14 @@ use crate::Failure;
 use crate::discretise::place;
 use crate::scenario::Scenario;
 
-/// Corners of a cell that hold it: three that are on no line.
+/// Number of constrained corners that hold a cell: three that are not collinear.
 const HOLD: usize = 3;
 
-/// One mesh for each method, and one for the reference, with their names.
+/// Meshes of the methods and of the reference, with their names.
 pub(super) struct Meshes(Vec<(String, Arc<Mesh>)>);
 
 impl Meshes {
-    /// Makes the meshes of a scene, as a run does, as far as the first that does not fit.
+    /// Makes the meshes of a scene as a run does. Stops with the error of the first mesh that `fits` refuses.
     pub fn new(scene: &Scene, fits: impl Fn(&str, &Mesh) -> Result<(), Failure>) -> Result<Meshes, Failure> {
         let own = scene.methods.iter().map(|method| (method.id.clone(), method.clone()));
         let mut all: Vec<_> = own.collect();
@@ -39,12 +38,12 @@ impl Meshes {
         Ok(Meshes(made.collect::<Result<_, Failure>>()?))
     }
 
-    /// The largest distance by which a mesh falls [`short`], m.
+    /// Returns the largest distance, m, by which a mesh falls [`short`].
     pub fn shortest(&self, bounds: [Point3; 2], side: Side) -> f64 {
         self.0.iter().map(|(_, mesh)| short(mesh, bounds, side)).fold(0.0, f64::max)
     }
 
-    /// The first mesh with a piece that a place does not hold, and its number of pieces.
+    /// Returns the name of the first mesh with an unconstrained piece, and its number of pieces.
     pub fn unheld(&self, place: &Place) -> Result<Option<(&str, usize)>, Failure> {
         for (name, mesh) in &self.0 {
             let mut held = vec![false; mesh.points().len()];
@@ -64,14 +63,14 @@ impl Meshes {
         Ok(None)
     }
 
-    /// Whether a point is inside of all of them.
+    /// Whether a point is inside all meshes.
     pub fn all_have(&self, p: &Point3) -> bool {
         let inside = |mesh: &Mesh| fem::nearest_cells(mesh, &[*p]).is_ok_and(|found| found[0].1 == 0.0);
         self.0.iter().all(|(_, mesh)| inside(mesh))
     }
 }
 
-/// Distance by which a mesh falls short of the end of the body on one side, m.
+/// Returns the distance, m, by which a mesh falls short of the end of the body on one side.
 pub(super) fn short(mesh: &Mesh, bounds: [Point3; 2], side: Side) -> f64 {
     let (axis, sign) = (side.axis(), side.sign());
     let (low, high) = place::bounds(mesh);
@@ -79,7 +78,7 @@ pub(super) fn short(mesh: &Mesh, bounds: [Point3; 2], side: Side) -> f64 {
     sign * (end - reached)
 }
 
-/// The piece of each node, numbered from 0, and how many there are; nodes of a cell are of one piece.
+/// Returns the piece of each node, numbered from 0, and the number of pieces. Cells connect their nodes.
 fn pieces(mesh: &Mesh) -> (Vec<usize>, usize) {
     let mut above: Vec<usize> = (0..mesh.points().len()).collect();
     fn top(above: &mut [usize], mut node: usize) -> usize {

@@ -1,4 +1,4 @@
-//! `tissuebench init`: a scene of an organ under a plate, from options, answers and defaults.
+//! `tissuebench init`: writes a scene of an organ under a plate, from options, answers and defaults.
 
 mod args;
 mod filled;
@@ -28,12 +28,12 @@ use organ::Organ;
 use questions::Questions;
 use scene_text::{Drive, Hold, Size, Wanted};
 
-/// Part of the body that is held unless something else is said.
+/// Default of the constrained fraction of the height.
 const HELD: f64 = 0.2;
-/// Part of the height by which the plate presses unless something else is said.
+/// Default displacement of the plate over the body's height.
 const CLOSURE: f64 = 0.05;
-/// The sizes of each method as parts of the finest, and how many times as many nodes that has: the first that
-/// do are taken.
+/// Node counts of each method's sizes over the finest one, and factors on the requested node count. The first
+/// entry that gives valid meshes is used.
 const FINENESS: [([f64; 3], f64); 7] = [
     ([0.25, 0.5, 1.0], 1.0),
     ([0.4, 0.6, 1.0], 1.0),
@@ -43,15 +43,17 @@ const FINENESS: [([f64; 3], f64); 7] = [
     ([0.6, 0.8, 1.0], 3.0),
     ([0.6, 0.8, 1.0], 5.0),
 ];
-/// Part of the height by which a mesh may fall short of the plate.
+/// Largest gap between a mesh and the end of the body at the plate, over the height.
 const SHORT: f64 = 0.05;
-/// Part of the height by which more is held where that does not reach all of a mesh, and the most that is.
+/// Increment of the constrained height if it does not reach all pieces of a mesh, and its largest value, both
+/// over the height.
 const MORE: f64 = 0.05;
 const MOST: f64 = 0.5;
-/// Fewer nodes than this make no mesh of an organ at a quarter of them; more are a matter of hours.
+/// Bounds of the node count. With fewer nodes, an organ cannot be meshed at a quarter of them; with more,
+/// runs take hours.
 const NODES: [f64; 2] = [100.0, 200_000.0];
 
-/// Writes the scene and says which defaults it took.
+/// Writes the scene and prints the defaults used.
 pub fn init(args: &InitArgs) -> Result<(), Failure> {
     let terminal = !args.yes && std::io::stdin().is_terminal();
     let answers = terminal.then(|| Box::new(BufReader::new(std::io::stdin())) as _);
@@ -105,13 +107,13 @@ pub fn init(args: &InitArgs) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Parts of a model in a mesh file that the scene leaves out.
+/// Returns the parts of a mesh file's model that the scene leaves out.
 fn model_of(file: &Path) -> Vec<files::LeftOut> {
     let found = files::left_out(file).into_iter();
     found.filter(|part| part.kind != files::Kind::Values).collect()
 }
 
-/// Refuses to write over a file: a scene unless that is forced, the organ always.
+/// Refuses to overwrite the organ's file, or an existing scene unless `force` is set.
 fn free(out: &Path, file: &Path, force: bool) -> Result<(), Failure> {
     disk::input(file);
     disk::spare(out).map_err(|bad| input(format!("--out '{}': {bad}", out.display())))?;
@@ -125,7 +127,7 @@ fn free(out: &Path, file: &Path, force: bool) -> Result<(), Failure> {
     Ok(())
 }
 
-/// The body in the unit given, or in the one in which it is as long as organs are.
+/// Reads the body in the given unit, or in the unit that gives the length of an organ.
 fn sized(file: &Path, args: &InitArgs, ask: &mut Questions) -> Result<(Organ, LengthUnit), Failure> {
     let millimetre = LengthUnit { name: "mm", metres: 1e-3 };
     let read = |unit| Organ::read(file, unit);
@@ -137,7 +139,7 @@ fn sized(file: &Path, args: &InitArgs, ask: &mut Questions) -> Result<(Organ, Le
     Ok((if same { organ } else { read(unit)? }, unit))
 }
 
-/// Values of the scene: given, answered, or fitted to the meshes that it makes.
+/// Returns the values of the scene, from options, answers or fits to its meshes, and these meshes.
 fn wanted(
     args: &InitArgs,
     ask: &mut Questions,
@@ -205,7 +207,7 @@ fn wanted(
     Ok((wanted, meshes))
 }
 
-/// Distance from which the plate starts, m.
+/// Returns the initial distance of the plate, m.
 fn gap(args: &InitArgs, strain: Strain) -> Result<f64, Failure> {
     match (&args.gap, strain) {
         (None, _) => Ok(0.0),
@@ -218,15 +220,15 @@ fn gap(args: &InitArgs, strain: Strain) -> Result<f64, Failure> {
     }
 }
 
-/// Comparisons that hold a part of the height, at the end away from the plate.
+/// Returns comparisons for a fraction of the height at the end opposite to the plate.
 fn held_end(organ: &Organ, side: Side, part: f64, described: &dyn Fn(f64) -> String) -> String {
     let (than, opposite) = if side.sign() > 0.0 { ("<=", 0) } else { (">=", 1) };
     let end = organ.bounds[opposite][side.axis()] + side.sign() * part * organ.extent(side.axis());
     format!("{} {than} {}", ["x", "y", "z"][side.axis()], described(end))
 }
 
-/// Makes sizes finer until every mesh reaches the plate and all its pieces reach what is held, of which
-/// `part` of the height is tried first. Leaves size and hold in `wanted`.
+/// Refines sizes until every mesh reaches the plate and all its pieces reach the constrained part, which
+/// starts at `part` of the height. Stores sizes and constrained part in `wanted`.
 fn fine_enough(wanted: &mut Wanted, organ: &Organ, part: f64, out: &Path) -> Result<Meshes, Failure> {
     let (size, side, height) = (wanted.size, wanted.side, organ.extent(wanted.side.axis()));
     let unit = wanted.unit;
@@ -267,7 +269,7 @@ fn fine_enough(wanted: &mut Wanted, organ: &Organ, part: f64, out: &Path) -> Res
     Err(input(problem))
 }
 
-/// The scene of a text.
+/// Parses the text of the scene.
 fn parsed(wanted: &Wanted, out: &Path) -> Result<Scene, Failure> {
     scene::parse(&scene_text::text(wanted), &out.display().to_string()).map_err(|errors| refused(&errors))
 }
@@ -277,7 +279,7 @@ fn title(file: &Path, side: Side) -> String {
     format!("{name}, pressed by a plate from the {}", word(side))
 }
 
-/// The file as a scene names it: relative where it lies in the scene's folder or below.
+/// Returns the file's path for the scene: relative if the file is in the scene's folder or below.
 fn path_from(out: &Path, file: &Path) -> Result<String, Failure> {
     let real = |path: &Path| path.canonicalize().map_err(|bad| input(format!("{}: {bad}", path.display())));
     let folder = out.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
@@ -287,7 +289,7 @@ fn path_from(out: &Path, file: &Path) -> Result<String, Failure> {
     text.map(String::from).ok_or_else(|| input(format!("--file '{}': its name is no text", file.display())))
 }
 
-/// A quantity above zero in SI units.
+/// Parses a positive quantity and returns its value in SI units.
 fn quantity(dimension: Dimension, text: &str) -> Result<f64, String> {
     let value = dimension.read(text).map_err(|bad| bad.to_string())?;
     if value > 0.0 && value.is_finite() {
@@ -333,7 +335,7 @@ fn methods(text: &str) -> Result<Vec<Method>, String> {
     Ok(found)
 }
 
-/// Comparisons, or a surface that the file names.
+/// Parses comparisons, or a named surface of the file.
 fn held(text: &str, organ: &Organ) -> Result<Hold, String> {
     if text.contains(['<', '>', '=']) {
         return Ok(Hold::Where(text.into()));
@@ -348,7 +350,7 @@ fn held(text: &str, organ: &Organ) -> Result<Hold, String> {
     Err(format!("{names}; or write comparisons such as \"z < 3 mm\""))
 }
 
-/// The way or the load of the plate.
+/// Returns the displacement or the load of the plate.
 fn driven(args: &InitArgs, ask: &mut Questions, strain: Strain, way: &str) -> Result<Drive, Failure> {
     if let Some(text) = &args.load {
         let dimension = match strain {
@@ -363,7 +365,7 @@ fn driven(args: &InitArgs, ask: &mut Questions, strain: Strain, way: &str) -> Re
     ask.value("closure", args.closure.as_deref(), question, way, read)
 }
 
-/// Refuses comparisons that hold nothing, everything, or what is pressed.
+/// Refuses comparisons that select nothing, everything, or the point touched by the plate.
 fn holds(region: &Region, organ: &Organ, side: Side) -> Result<(), Failure> {
     let tolerance = Region::TOLERANCE * (organ.bounds[1] - organ.bounds[0]).norm();
     let inside = |p: &geometry::Point3| region.contains([p.x, p.y, p.z], tolerance);
@@ -387,7 +389,7 @@ fn holds(region: &Region, organ: &Organ, side: Side) -> Result<(), Failure> {
     Ok(())
 }
 
-/// What is wrong with the scene, by the option that says it.
+/// Returns the errors of the scene, each at the option that caused it.
 fn refused(errors: &[SceneError]) -> Failure {
     let options = [
         ("support[0]", "--hold"),

@@ -1,4 +1,4 @@
-//! The body of the file: its extent, the names it gives, and points inside.
+//! The body in a file: its extent, named surfaces, and points inside.
 
 use std::path::Path;
 
@@ -11,21 +11,21 @@ use crate::Failure;
 use crate::cli::args::LengthUnit;
 use crate::cli::mesh_files::input;
 
-/// Points along each axis among which the middle of a bent body is searched.
+/// Number of grid points along each axis in the search for the middle of a bent body.
 const GRID: usize = 11;
-/// Probes lie at least this part of the smallest extent below the surface, which coarse meshes cut off.
+/// Smallest depth of probes over the body's smallest extent: coarse meshes cut off the surface.
 const BELOW: f64 = 0.05;
 
-/// Points that are tried from a tip to the middle.
+/// Number of intervals between a tip and the middle in the search for a probe.
 const STRIDES: i32 = 20;
 
-/// A body that a plate can press.
+/// A body to be pressed by a plate.
 pub(super) struct Organ {
-    /// Its boundary, in metres.
+    /// Boundary of the body, m.
     pub surface: Surface,
-    /// Surfaces that the file names.
+    /// Named surfaces of the file.
     pub names: Vec<String>,
-    /// Lowest and highest corner of its box, m.
+    /// Lowest and highest corner of the bounding box, m.
     pub bounds: [Point3; 2],
 }
 
@@ -46,30 +46,30 @@ impl Organ {
         Ok(Organ { surface, names, bounds })
     }
 
-    /// Length of its box along an axis, m.
+    /// Returns the length of the bounding box along an axis, m.
     pub fn extent(&self, axis: usize) -> f64 {
         self.bounds[1][axis] - self.bounds[0][axis]
     }
 
-    /// Its shortest side, m.
+    /// Returns the smallest extent of the bounding box, m.
     pub fn smallest_extent(&self) -> f64 {
         (0..3).map(|axis| self.extent(axis)).fold(f64::MAX, f64::min)
     }
 
-    /// Its longest side, m.
+    /// Returns the largest extent of the bounding box, m.
     pub fn largest_extent(&self) -> f64 {
         (0..3).map(|axis| self.extent(axis)).fold(0.0, f64::max)
     }
 
-    /// The point that a plate from this side touches first.
+    /// Returns the point that a plate from this side touches first, m.
     pub fn first_touched(&self, side: Side) -> Point3 {
         let ahead = |p: &Point3| side.sign() * p[side.axis()];
         let first = self.surface.points()[0];
         self.surface.points().iter().fold(first, |best, p| if ahead(p) > ahead(&best) { *p } else { best })
     }
 
-    /// Close to the plate: just below the point that it touches first; where that is a tip, which coarse meshes cut off, on the way
-    /// from it to the middle. All meshes have the point.
+    /// Returns a probe close to the plate, inside all meshes, m. The probe lies just below the first point of
+    /// contact. If coarse meshes cut off a tip there, the probe lies between the tip and the middle.
     pub fn near(&self, side: Side, meshes: &Meshes) -> Point3 {
         let (tip, middle) = (self.first_touched(side), self.middle(meshes));
         let below = BELOW * self.smallest_extent();
@@ -82,8 +82,8 @@ impl Organ {
         inside.unwrap_or(middle)
     }
 
-    /// The middle of the box, or where that is not well inside (a bent body) the deepest of a grid of points
-    /// that all meshes have.
+    /// Returns the centre of the bounding box, m. If that is not well inside (a bent body), returns the
+    /// deepest grid point that is inside all meshes.
     pub fn middle(&self, meshes: &Meshes) -> Point3 {
         let middle = nalgebra::center(&self.bounds[0], &self.bounds[1]);
         if self.depth(&middle) > 2.0 * BELOW * self.smallest_extent() && meshes.all_have(&middle) {

@@ -1,20 +1,21 @@
-//! Values from options, from answers on a terminal, or from defaults that are named in the output.
+//! Values from options, from answers on a terminal, or from defaults, which are named in the output.
 
 use std::io::{BufRead, Write};
 
 use crate::Failure;
 use crate::cli::mesh_files::input;
 
-/// Where values come from that no option gives.
+/// Source of values without an option.
 pub(super) struct Questions {
-    /// Answers, line by line; `None` takes the defaults.
+    /// Answers, one per line; `None` uses the defaults.
     pub answers: Option<Box<dyn BufRead>>,
-    /// Defaults that were taken: option, value, what it is.
+    /// Defaults used, as option, value and meaning.
     pub taken: Vec<[String; 3]>,
 }
 
 impl Questions {
-    /// The value of an option: as given, else as answered, else the default. An answer that is wrong is asked for again.
+    /// Returns the value of an option: the given one, the answer, or the default. An invalid answer is asked
+    /// for again.
     pub fn value<T>(
         &mut self,
         option: &str,
@@ -33,7 +34,7 @@ impl Questions {
             let mut line = String::new();
             let count = answers.read_line(&mut line).map_err(|bad| input(format!("stdin: {bad}")))?;
             let text = line.trim();
-            // The end of the answers takes the rest of the defaults.
+            // At the end of the answers, defaults are used.
             if count == 0 {
                 self.answers = None;
             } else if text.is_empty() {
@@ -69,7 +70,7 @@ mod tests {
         let mut questions = Questions { answers: Some(Box::new(answers)), taken: Vec::new() };
         let mut ask = |given| questions.value("nodes", given, "How many", "3", number);
         assert_eq!(ask(Some("5")).unwrap(), 5);
-        assert_eq!(ask(None).unwrap(), 7); // the second answer: the first is none
+        assert_eq!(ask(None).unwrap(), 7); // the second answer: the first is invalid
         assert_eq!(ask(None).unwrap(), 3); // an empty line
         assert_eq!(ask(None).unwrap(), 3); // the end
         assert_eq!(ask(Some("x")).unwrap_err().to_string(), "--nodes 'x': is no number");

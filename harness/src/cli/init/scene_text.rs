@@ -1,4 +1,4 @@
-//! The text of a scene, with comments that say what each part is for and what to try next.
+//! The text of a scene, with comments on the purpose of each part and on changes to try next.
 
 use std::fmt::Write as _;
 
@@ -7,68 +7,68 @@ use geometry::Point3;
 use super::args::{Method, Side, Strain, word};
 use crate::cli::args::LengthUnit;
 
-/// The sizes of each method.
+/// Names of the sizes of each method.
 const SIZES: [&str; 3] = ["coarse", "medium", "fine"];
-/// The reference has so many times as many nodes.
+/// Ratio of the reference's node count to that of the finest size.
 const FINER: f64 = 6.0;
-/// Pressure of a plate per penetration, over Young's modulus by the body's height: tissue then goes into the plate by a
-/// five-hundredth of its shortening.
+/// Contact stiffness of the plate (pressure per penetration), over Young's modulus divided by the body's
+/// height. The tissue then penetrates the plate by a five-hundredth of its shortening.
 const STIFF: f64 = 500.0;
-/// At small strain the outermost part of the height is moved or loaded, as no plate finds where it touches.
+/// Fraction of the height that is displaced or loaded at small strain, where no contact is computed.
 const PRESSED: f64 = 0.1;
 
-/// Everything that the scene says.
+/// All values of the scene.
 pub(super) struct Wanted {
     pub title: String,
-    /// The file, as the scene names it.
+    /// Path of the file in the scene.
     pub path: String,
     pub unit: LengthUnit,
     pub strain: Strain,
     pub young: String,
-    /// The same, Pa.
+    /// Young's modulus, Pa.
     pub young_value: f64,
     pub poisson: f64,
-    /// What is held: comparisons or names.
+    /// Constrained part: comparisons or a named surface.
     pub hold: Hold,
     pub side: Side,
-    /// The box of the body, m.
+    /// Bounding box of the body, m.
     pub bounds: [Point3; 2],
     pub drive: Drive,
-    /// Distance from which the plate starts, m.
+    /// Initial distance of the plate, m.
     pub gap: f64,
     pub methods: Vec<Method>,
     pub size: Size,
-    /// The sizes of each method as parts of the finest one's nodes.
+    /// Node counts of each method's sizes over the finest one.
     pub parts: [f64; 3],
-    /// Close to the plate, and in the middle.
+    /// Probes close to the plate and in the middle, m.
     pub probes: [Point3; 2],
 }
 
-/// What is held.
+/// The constrained part of the body.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Hold {
     Where(String),
     On(String),
 }
 
-/// What the plate does.
+/// Displacement or load of the plate.
 pub(super) enum Drive {
-    /// It goes into the height of the body by this much, m.
+    /// Displacement into the body, m.
     Closure(f64),
-    /// A force, at small strain a pressure.
+    /// Force, or pressure at small strain.
     Load(String),
 }
 
-/// The finest size of each method.
+/// Finest size of each method.
 #[derive(Clone, Copy)]
 pub(super) enum Size {
     Nodes(f64),
-    /// m.
+    /// Mean edge length, m.
     Spacing(f64),
 }
 
 impl Size {
-    /// In words.
+    /// Describes the size.
     pub fn described(self) -> String {
         match self {
             Size::Nodes(count) => format!("{count} nodes"),
@@ -76,7 +76,7 @@ impl Size {
         }
     }
 
-    /// The size with so many times the nodes.
+    /// Returns the size with `nodes` times the node count.
     pub fn times(self, nodes: f64) -> Size {
         match self {
             Size::Nodes(count) => Size::Nodes((count * nodes).round()),
@@ -85,18 +85,19 @@ impl Size {
     }
 }
 
-/// The whole scene.
+/// Returns the text of the whole scene.
 pub(super) fn text(wanted: &Wanted) -> String {
     let parts = [head(wanted), wanted.held(), wanted.pressed(), wanted.compared(), wanted.run_by()];
     parts.join("\n")
 }
 
-/// Text as TOML quotes it.
+/// Quotes a text for TOML.
 fn quoted(text: &str) -> String {
     toml::Value::from(text).to_string()
 }
 
-/// A length in a unit, to a thousandth of the largest power of ten in the body's size.
+/// Formats a length in a unit, with decimals down to a thousandth of the body's size rounded down to a power
+/// of ten.
 pub(super) fn length(metres: f64, unit: LengthUnit, largest: f64) -> String {
     let decimals = (3.0 - (largest / unit.metres).log10().floor()).clamp(0.0, 9.0) as usize;
     let text = format!("{:.decimals$}", metres / unit.metres);
@@ -150,7 +151,7 @@ impl Wanted {
         self.bounds[1][axis] - self.bounds[0][axis]
     }
 
-    /// Coordinate of the outermost point on the side of the plate, m.
+    /// Returns the coordinate of the outermost point on the side of the plate, m.
     fn end(&self) -> f64 {
         self.bounds[usize::from(self.side.sign() > 0.0)][self.side.axis()]
     }
@@ -267,7 +268,7 @@ probes = [[{near}], [{middle}]]
         }
     }
 
-    /// Every method in three sizes.
+    /// Returns the tables of all methods, each in three sizes.
     fn run_by(&self) -> String {
         let mut text = String::from(
             "# What is run: each method in three sizes makes one curve of run time against error. Leave out what you need not.\n\
@@ -276,7 +277,7 @@ probes = [[{near}], [{middle}]]
         for &method in &self.methods {
             writeln!(text, "\n# {}", about(method)).expect("a string");
             for (name, part) in SIZES.iter().zip(self.parts) {
-                // Small meshes of tet10 are few cells: half of its nodes are on their edges.
+                // Half of the nodes of tet10 are on edges: small meshes have few cells.
                 let doubled = if method == Method::Tet10 { 2.0 } else { 1.0 };
                 let size = self.size.times(doubled * part);
                 let id = word(method);
