@@ -197,7 +197,8 @@ fn refuse(errors: &[SceneError]) -> u8 {
     if errors.iter().all(|e| e.kind == ErrorKind::NotAvailable) { 3 } else { 2 }
 }
 
-/// Prints why a file is no scene, and what it is for if it is another kind of file.
+/// Prints why a file is not a scene, or which command takes it if it is a study or a body. Returns the exit
+/// code.
 fn refuse_scene(path: &Path, errors: &[SceneError]) -> u8 {
     if holds_key(path, "run") {
         eprintln!("{0}: is a study, not a scene: tissuebench verify {0} runs it", path.display());

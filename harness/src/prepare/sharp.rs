@@ -61,8 +61,8 @@ pub(super) fn mark(
         })
     };
     let at = |node: u32| mesh.points()[node as usize];
-    // Corners that the tool meets before any contact point, and penetrates too deeply until then for a step
-    // to be accepted, or stops in between.
+    // A corner is missed if the tool meets it before all contact points. The tool then penetrates too deeply
+    // for a step to be accepted, or it stops before it meets them.
     let touched = points.iter().filter_map(way).fold(f64::INFINITY, f64::min);
     let missed = |x: &Point3| {
         let met = way(x).filter(|met| *met < touched);

@@ -140,7 +140,7 @@ fn array(file: &MeshFile) -> Result<Vec<Point3>, Failure> {
     Ok(rows.map(|x| Point3::new(x[0], x[1], x[2]) * file.unit).collect())
 }
 
-/// Returns the first node that coincides with an earlier one, after that one.
+/// Returns the first duplicate node, after the node it coincides with.
 fn duplicate(points: &[Point3]) -> Option<[usize; 2]> {
     let mut seen = HashMap::with_capacity(points.len());
     points.iter().enumerate().find_map(|(node, p)| {
