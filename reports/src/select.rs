@@ -1,4 +1,4 @@
-//! Records gathered into runs (one discretisation) and series (one approximation at several sizes).
+//! Selection of records: runs (one discretisation) and series (one approximation at several sizes).
 
 use std::cmp::Ordering;
 
@@ -9,30 +9,30 @@ use crate::seconds::Seconds;
 /// All numbers of one discretisation of one case.
 #[derive(Clone, Debug)]
 pub(crate) struct Run<'a> {
-    /// Any of its records: it carries the identity.
+    /// A record of the run, which identifies it.
     pub(crate) is: &'a Record,
-    /// The seconds that are its time.
+    /// Kind of time by which the run is compared.
     pub(crate) by: Seconds,
     records: Vec<&'a Record>,
 }
 
 impl<'a> Run<'a> {
-    /// A plain value, by quantity.
+    /// Plain value of a quantity.
     pub(crate) fn value(&self, quantity: &str) -> Option<f64> {
         self.plain(quantity).map(|r| r.value)
     }
 
-    /// The reference's own error in a quantity, where it is known: a smaller error of the run says nothing.
+    /// Error of the reference itself in a quantity, if known. Smaller errors of the run are not significant.
     pub(crate) fn band(&self, quantity: &str) -> Option<f64> {
         self.records.iter().find(|r| r.quantity == quantity && r.statistic == "band").map(|r| r.value)
     }
 
-    /// Everything recorded.
+    /// All records of the run.
     pub(crate) fn records(&self) -> &[&'a Record] {
         &self.records
     }
 
-    /// The record of a plain value; what was recorded step by step is a history, not a value.
+    /// Record of a plain value, which is not part of a history.
     fn plain(&self, quantity: &str) -> Option<&'a Record> {
         let fits = |r: &&&Record| r.quantity == quantity && r.statistic == "value" && step(r).is_none();
         self.records.iter().find(fits).copied()
@@ -43,8 +43,8 @@ impl<'a> Run<'a> {
         self.plain(quantity).map(|r| r.unit.as_str())
     }
 
-    /// A time in seconds by phase and statistic: of a phase whose median is not that of the clock on the wall
-    /// the one that it is compared by, and no spread.
+    /// Time of a phase by statistic, s. If runs are not compared by median wall time, the `median` is the
+    /// time of the comparison, and there is no `spread`.
     pub(crate) fn time(&self, phase: &str, statistic: &str) -> Option<f64> {
         let of = |quantity: &str, statistic: &str| {
             let fits = |r: &&&Record| r.quantity == quantity && r.phase == phase && r.statistic == statistic;
@@ -58,7 +58,7 @@ impl<'a> Run<'a> {
         }
     }
 
-    /// Median time of the whole run: its `total`, or else the sum of its phases.
+    /// Median time of the whole run, s: its `total`, or else the sum of its phases.
     pub(crate) fn total(&self) -> Option<f64> {
         self.time("total", "median").or_else(|| {
             let phases = ["refine", "prepare", "assemble", "factor", "solve", "transfer"];
@@ -67,27 +67,27 @@ impl<'a> Run<'a> {
         })
     }
 
-    /// Whether it carried the whole load, as what knows no steps does.
+    /// Whether the run reached the whole load; true for a run without load steps.
     pub(crate) fn whole(&self) -> bool {
         self.value("load-carried").is_none_or(|load| load > 0.999_999)
     }
 
-    /// Whether tools touch its body.
+    /// Whether tools touch the body.
     pub(crate) fn has_contact(&self) -> bool {
         self.records.iter().any(|r| r.quantity == "tool-force")
     }
 
-    /// Whether the others are compared with it: it differs by nothing from itself. An exact solution is no run.
+    /// Whether the run is the reference of the others, with an error of zero. An exact solution is not a run.
     pub(crate) fn is_reference(&self) -> bool {
         self.value("relative-rms") == Some(0.0) && self.value("l2").is_none()
     }
 
-    /// Peak memory in bytes: of the method, beyond its input.
+    /// Peak memory of the method in excess of its input, bytes.
     pub(crate) fn memory(&self) -> Option<f64> {
         self.memory_of("")
     }
 
-    /// Peak memory in bytes of the whole process.
+    /// Peak memory of the whole process, bytes.
     pub(crate) fn memory_of_process(&self) -> Option<f64> {
         self.memory_of("process")
     }
@@ -96,26 +96,27 @@ impl<'a> Run<'a> {
         self.records.iter().find(|r| r.quantity == "memory" && r.phase == phase).map(|r| r.value)
     }
 
-    /// The name of its series.
+    /// Name of the series.
     pub(crate) fn name(&self) -> &'a str {
         &self.is.series
     }
 }
 
-/// One approximation, coarse to fine.
+/// An approximation at several sizes, from coarse to fine.
 #[derive(Clone, Debug)]
 pub(crate) struct Series<'a> {
-    /// Its runs by falling spacing.
+    /// Runs by decreasing spacing.
     pub(crate) runs: Vec<Run<'a>>,
 }
 
 impl<'a> Series<'a> {
-    /// Any of its records: case, family, variant, settings and Poisson's ratio are the same in all.
+    /// A record of the series. Case, family, variant, settings and Poisson's ratio are the same in all its
+    /// records.
     pub(crate) fn is(&self) -> &'a Record {
         self.runs[0].is
     }
 
-    /// Name shared by its sizes.
+    /// Common name of the sizes.
     pub(crate) fn name(&self) -> &'a str {
         &self.is().series
     }
@@ -125,13 +126,13 @@ impl<'a> Series<'a> {
         &self.runs[self.runs.len() - 1]
     }
 
-    /// `(spacing, value)` of a quantity, coarse to fine, where both are positive.
+    /// `(spacing, value)` of a quantity, from coarse to fine, for positive spacings and values.
     pub(crate) fn points(&self, quantity: &str) -> Vec<(f64, f64)> {
         let point = |run: &Run| run.value(quantity).map(|v| (run.is.spacing, v));
         self.runs.iter().filter_map(point).filter(|(h, v)| *h > 0.0 && *v > 0.0).collect()
     }
 
-    /// The order theory promises for a smooth solution's error: displacement p + 1, energy p.
+    /// Theoretical order of the error for a smooth solution: p + 1 for displacement, p for energy.
     pub(crate) fn theory(&self, quantity: &str) -> Option<f64> {
         let degree =
             degree(self.is()).filter(|_| matches!(self.is().purpose, Purpose::Patch | Purpose::Smooth))?;
@@ -143,7 +144,7 @@ impl<'a> Series<'a> {
     }
 }
 
-/// Polynomial degree that the approximation holds completely.
+/// Polynomial degree to which the approximation is complete.
 fn degree(record: &Record) -> Option<f64> {
     match (record.family, record.variant.as_str(), record.basis.as_deref()) {
         (Family::Fem | Family::External, "tet4" | "hex8", _) | (Family::Efg, _, Some("linear")) => Some(1.0),
@@ -154,13 +155,14 @@ fn degree(record: &Record) -> Option<f64> {
     }
 }
 
-/// Elements first, in the order people know them, then meshfree methods, then transfer schemes.
+/// Sort key of methods: elements in their usual order, then meshfree methods, then transfer schemes.
 fn rank(record: &Record) -> (Family, usize) {
     let known = ["tet4", "tet10", "hex8", "hex20"];
     (record.family, known.iter().position(|n| *n == record.variant).unwrap_or(known.len()))
 }
 
-/// The order of runs in tables and figures: by case, Poisson's ratio and family, elements before clouds, then by settings and size.
+/// Order of runs in tables and figures: by case, Poisson's ratio and family, elements before clouds, then by
+/// settings and size.
 fn shown(a: &Record, b: &Record) -> Ordering {
     type Who<'a> = (&'a str, &'a str, Vec<(&'static str, String)>, u64, u32, u64, &'a str, &'a str);
     fn who(r: &Record) -> Who<'_> {
@@ -172,7 +174,7 @@ fn shown(a: &Record, b: &Record) -> Ordering {
         .then_with(|| who(a).cmp(&who(b)))
 }
 
-/// Gathers records into runs, in the order that they are shown in.
+/// Gathers records into runs, in the order of tables and figures.
 pub(crate) fn runs<'r>(records: impl IntoIterator<Item = &'r Record>) -> Vec<Run<'r>> {
     let mut sorted: Vec<&Record> = records.into_iter().collect();
     sorted.sort_by_key(|r| r.key());
@@ -183,12 +185,13 @@ pub(crate) fn runs<'r>(records: impl IntoIterator<Item = &'r Record>) -> Vec<Run
     runs
 }
 
-/// The kernel shown where several are compared: the published one.
+/// Kernel shown among several compared ones: the published one.
 const USUAL_KERNEL: &str = "cubic-spline";
 
-/// Series of a case without the meshfree ones that only try another kernel, and all series of the methods that do.
+/// Returns the series of a case without meshfree series that only vary the kernel, and all series of the
+/// methods with such variations.
 ///
-/// A method counts as compared where its name comes with three kernels or more, one of them the usual one.
+/// A method counts as compared if its name occurs with three or more kernels, including the usual one.
 pub(crate) fn kernels<'a>(all: &[Series<'a>]) -> (Vec<Series<'a>>, Vec<Series<'a>>) {
     let compared = |s: &Series| {
         let mut tried: Vec<&str> = all
@@ -204,17 +207,18 @@ pub(crate) fn kernels<'a>(all: &[Series<'a>]) -> (Vec<Series<'a>>, Vec<Series<'a
     (all.iter().filter(usual).cloned().collect(), all.iter().filter(|s| compared(s)).cloned().collect())
 }
 
-/// The runs of solvers, without transfer schemes.
+/// Runs of solvers, without transfer schemes.
 pub(crate) fn solved<'a>(runs: &[Run<'a>]) -> Vec<Run<'a>> {
     runs.iter().filter(|r| r.is.family != Family::Interp).cloned().collect()
 }
 
-/// Neighbouring runs by case, without those cases that test exactness alone: speed and locking mean nothing there.
+/// Runs grouped by case, without cases that only test exactness, for which speed and locking have no meaning.
+/// The runs of a case must be adjacent.
 pub(crate) fn competing<'a, 'r>(runs: &'a [Run<'r>]) -> impl Iterator<Item = &'a [Run<'r>]> {
     by_case(runs).filter(|case| case[0].is.purpose != Purpose::Patch)
 }
 
-/// Gathers runs into series: everything equal but the size.
+/// Gathers runs into series, whose members differ only in size.
 pub(crate) fn series<'a>(runs: &[Run<'a>]) -> Vec<Series<'a>> {
     let mut all: Vec<Series<'a>> = Vec::new();
     for run in runs {
@@ -237,7 +241,7 @@ pub(crate) fn series<'a>(runs: &[Run<'a>]) -> Vec<Series<'a>> {
     all
 }
 
-/// One label per record: the name of its series, and where names repeat also the settings that differ.
+/// Labels of records: the name of the series and, for repeated names, the settings that differ.
 pub(crate) fn labels<'r>(records: impl IntoIterator<Item = &'r Record>) -> Vec<String> {
     let all: Vec<_> = records.into_iter().map(|r| (r, r.settings())).collect();
     let label = |(record, settings): &(&Record, Vec<(&str, String)>)| {
@@ -260,17 +264,17 @@ pub(crate) fn labels<'r>(records: impl IntoIterator<Item = &'r Record>) -> Vec<S
     all.iter().map(label).collect()
 }
 
-/// Neighbouring runs by case.
+/// Adjacent runs grouped by case.
 pub(crate) fn by_case<'a, 'r>(runs: &'a [Run<'r>]) -> impl Iterator<Item = &'a [Run<'r>]> {
     runs.chunk_by(|a, b| a.is.case == b.is.case)
 }
 
-/// Neighbouring runs by case and Poisson's ratio.
+/// Adjacent runs grouped by case and Poisson's ratio.
 pub(crate) fn by_material<'a, 'r>(runs: &'a [Run<'r>]) -> impl Iterator<Item = &'a [Run<'r>]> {
     runs.chunk_by(|a, b| a.is.case == b.is.case && a.is.poisson.to_bits() == b.is.poisson.to_bits())
 }
 
-/// Splits into neighbouring groups that agree in a key, keeping the order.
+/// Splits items into adjacent groups with equal keys, in order.
 pub(crate) fn groups<T, K: PartialEq>(items: &[T], key: impl Fn(&T) -> K) -> Vec<&[T]> {
     items.chunk_by(|a, b| key(a) == key(b)).collect()
 }

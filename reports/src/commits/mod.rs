@@ -1,7 +1,7 @@
-//! A study over commits: what is kept of each of its results, and which steps from one to the next are outside of noise.
+//! History of a study over commits: a summary of each result, and the steps that exceed noise.
 //!
-//! A history is a folder with one small file for each results that were added, `0007-1a2b3c4d5e6f.toml`: their errors, the repeats of
-//! their times, the program and the machine.
+//! A history is a folder with one small file for each result added, `0007-1a2b3c4d5e6f.toml`. It contains the
+//! errors, the repeats of the times, the program and the machine.
 
 mod summary;
 mod trend;
@@ -15,10 +15,10 @@ use crate::error::ReportError;
 use crate::figures::{OVER_COMMITS as TITLE, over_commits};
 use crate::run_set::RunSet;
 
-/// Adds results to a history, with what they are called beside their commit; returns the file.
+/// Adds results to a history, with a label in addition to their commit. Returns the path of the new file.
 ///
 /// # Errors
-/// A folder that can't be read or written.
+/// A folder that cannot be read or written.
 pub fn add(history: &Path, set: &RunSet, label: &str) -> Result<PathBuf, ReportError> {
     let last = files(history)?.last().map_or(0, |(number, _)| *number);
     let commit: String = set.provenance.program.commit.chars().take(12).collect();
@@ -29,19 +29,19 @@ pub fn add(history: &Path, set: &RunSet, label: &str) -> Result<PathBuf, ReportE
     Ok(path)
 }
 
-/// What a history shows, a trend for each study on each machine, in the order of their first results.
+/// Returns a trend for each study on each machine of a history, in the order of their first results.
 ///
 /// # Errors
-/// A folder or a file that can't be read.
+/// A folder or a file that cannot be read.
 pub fn trends(history: &Path) -> Result<Vec<Trend>, ReportError> {
     let read = files(history)?.into_iter().map(|(number, path)| Ok((number, Summary::load(&path)?)));
     Ok(trend::trends(read.collect::<Result<_, ReportError>>()?))
 }
 
-/// Refuses a folder that holds no history, or none that can be read.
+/// Checks that a folder contains a history.
 ///
 /// # Errors
-/// That one.
+/// A folder without a history, or with one that cannot be read.
 pub fn check(history: &Path) -> Result<(), ReportError> {
     if !trends(history)?.is_empty() {
         return Ok(());
@@ -50,7 +50,7 @@ pub fn check(history: &Path) -> Result<(), ReportError> {
     Err(ReportError::Content { path: history.into(), reason })
 }
 
-/// The trends of a history that a report shows, those of its own study first.
+/// Trends of a history for a report, beginning with those of the report's study.
 pub(crate) fn shown(history: &Path, source: &str) -> Result<Vec<Trend>, ReportError> {
     check(history)?;
     let mut found = trends(history)?;
@@ -58,15 +58,15 @@ pub(crate) fn shown(history: &Path, source: &str) -> Result<Vec<Trend>, ReportEr
     Ok(found)
 }
 
-/// Errors and times of trends over commits, as SVG.
+/// Draws errors and times of trends over commits as SVG.
 ///
 /// # Errors
-/// A drawing that can't be made.
+/// A figure that cannot be drawn.
 pub fn svg(trends: &[Trend]) -> Result<String, ReportError> {
     over_commits(trends).svg("history", TITLE)
 }
 
-/// The files of a history by their numbers; none of a folder that is not there yet.
+/// Files of a history with their numbers; empty for a folder that does not exist.
 fn files(history: &Path) -> Result<Vec<(u32, PathBuf)>, ReportError> {
     let unread = |source| ReportError::Io { path: history.into(), source };
     if !history.exists() {
@@ -81,7 +81,7 @@ fn files(history: &Path) -> Result<Vec<(u32, PathBuf)>, ReportError> {
             found.push((number, path));
         }
     }
-    // Two branches may have given the same number.
+    // Two branches may have used the same number.
     found.sort();
     Ok(found)
 }

@@ -1,4 +1,4 @@
-//! Runs paired although a stated setting is different: the setting is taken out of what names a run.
+//! Pairing of runs that differ in given settings, which are removed from their names.
 
 use std::collections::BTreeMap;
 
@@ -6,10 +6,10 @@ use crate::baseline::run_name;
 use crate::record::Record;
 use crate::run_set::RunSet;
 
-/// Takes a setting out of a record.
+/// Removes a setting from a record.
 type Clear = fn(&mut Record);
 
-/// Settings that can be stated, under the keys of scenes and records.
+/// Settings that can be given, by the keys of scenes and records.
 const SETTINGS: [(&str, Clear); 24] = [
     ("adapter", |r| r.adapter = None),
     ("basis", |r| r.basis = None),
@@ -40,7 +40,7 @@ const SETTINGS: [(&str, Clear); 24] = [
 /// Names the runs of both results by all but these settings.
 ///
 /// # Errors
-/// A word that is no setting; two runs of the same results that differ in nothing else.
+/// An unknown setting, or two runs of the same results that differ in nothing else.
 pub fn across(pair: &mut (RunSet, RunSet), settings: &[String]) -> Result<(), String> {
     let clears = settings.iter().map(|word| {
         SETTINGS.iter().find(|(name, _)| name == word).map(|(_, clear)| *clear).ok_or_else(|| {

@@ -1,27 +1,27 @@
-//! Robust means with their confidence: times have outliers, upwards by far more than downwards.
+//! Robust means with their confidence. Times have outliers, which are mostly upwards.
 
-/// A mean and how far it may be off.
+/// A mean with its uncertainty.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Estimate {
     pub(super) mean: f64,
     /// Standard error of the mean.
     pub(super) error: f64,
-    /// Degrees of freedom of that.
+    /// Degrees of freedom of the standard error.
     pub(super) freedom: usize,
 }
 
 impl Estimate {
-    /// Half width of the band in which the mean lies but for one in `1 / risk`.
+    /// Half width of the band that contains the mean with probability `1 - risk`.
     pub(super) fn band(&self, risk: f64) -> f64 {
         student(self.freedom, risk) * self.error
     }
 }
 
-/// Part of the values that is left out at either end.
+/// Fraction of the values trimmed at either end.
 const TRIMMED: f64 = 0.2;
 
-/// Mean of the values but for a fifth at either end, with its standard error (Tukey and McLaughlin 1963; Yuen 1974). `None` below
-/// four values.
+/// Mean of the values without a fifth at either end, with its standard error (Tukey and McLaughlin 1963; Yuen
+/// 1974). `None` for fewer than four values.
 pub(super) fn trimmed_mean(values: &[f64]) -> Option<Estimate> {
     let n = values.len();
     if n < 4 {
@@ -33,7 +33,7 @@ pub(super) fn trimmed_mean(values: &[f64]) -> Option<Estimate> {
     let (low, high) = (sorted[cut], sorted[n - 1 - cut]);
     let kept = n - 2 * cut;
     let mean = sorted[cut..n - cut].iter().sum::<f64>() / kept as f64;
-    // What is trimmed counts in the spread as the nearest value that is not.
+    // For the spread, a trimmed value is replaced by the nearest value that is kept.
     let winsorised = |v: &f64| v.clamp(low, high);
     let middle = sorted.iter().map(winsorised).sum::<f64>() / n as f64;
     let squares: f64 = sorted.iter().map(|v| (winsorised(v) - middle).powi(2)).sum();
@@ -41,7 +41,7 @@ pub(super) fn trimmed_mean(values: &[f64]) -> Option<Estimate> {
     Some(Estimate { mean, error, freedom: kept - 1 })
 }
 
-/// Median; 0 of nothing.
+/// Median; 0 for no values.
 pub(super) fn median(values: &[f64]) -> f64 {
     let mut sorted = values.to_vec();
     sorted.sort_unstable_by(f64::total_cmp);
@@ -52,23 +52,23 @@ pub(super) fn median(values: &[f64]) -> f64 {
     }
 }
 
-/// Standard deviation of the bulk of the values about 0: 1.4826 times the median of their sizes.
+/// Robust standard deviation of the values about 0: 1.4826 times the median of their absolute values.
 pub(super) fn scale(values: &[f64]) -> f64 {
     let sizes: Vec<f64> = values.iter().map(|v| v.abs()).collect();
     1.4826 * median(&sizes)
 }
 
-/// What Student's t of so many degrees of freedom exceeds, upwards or downwards, once in `1 / risk`.
+/// Two-sided quantile of Student's t, whose absolute value is exceeded with probability `risk`.
 pub(super) fn student(freedom: usize, risk: f64) -> f64 {
     let n = freedom.max(1) as f64;
-    // Gamma((n + 1) / 2) / Gamma(n / 2), from one degree of freedom on.
+    // Gamma((n + 1) / 2) / Gamma(n / 2), by recurrence from one degree of freedom.
     let mut ratio = 1.0 / std::f64::consts::PI.sqrt();
     for k in 1..freedom {
         ratio = 0.5 * k as f64 / ratio;
     }
     let density =
         |t: f64| ratio / (n * std::f64::consts::PI).sqrt() * (1.0 + t * t / n).powf(-0.5 * (n + 1.0));
-    // Both tails beyond t, by Simpson's rule from 0.
+    // Probability of both tails beyond t, by Simpson's rule from 0.
     let beyond = |t: f64| {
         let steps = 2000;
         let h = t / steps as f64;

@@ -1,9 +1,10 @@
-//! Times before and after as paired ratios, called only outside noise.
+//! Comparison of times before and after as paired ratios; only changes beyond noise are reported.
 //!
-//! A run's phase is paired with itself; its time is the shortest of its repeats, of the processors where that is known, which other
-//! programs disturb least. What all runs have in common is the machine's and the program's: it is called beyond what machines drift
-//! by, 2.2 % from run to run where nothing is known, and less the more pairs of results agree. What is left of each phase is
-//! compared with how much all of them scatter.
+//! A phase of a run is paired with itself. Its time is the shortest of its repeats, in CPU time if known,
+//! which other programs disturb least. The common ratio of all runs belongs to the machine and the program.
+//! It is reported if it exceeds the drift of machines, which is 2.2 % between results unless more pairs of
+//! results show a smaller drift. The remaining ratio of each phase is compared with the scatter of all
+//! phases.
 
 use std::collections::{BTreeMap, HashMap};
 
@@ -13,54 +14,56 @@ use super::statistics::{scale, student, trimmed_mean};
 use crate::record::Record;
 use crate::run_set::RunSet;
 
-/// Shorter times are those of the clock, s.
+/// Smallest time compared, s; shorter times are dominated by the clock.
 const SHORTEST: f64 = 20e-6;
-/// What a machine drifts by between two results (a standard deviation; 1.4 and 3.2 % over twenty runs beside two to eight other
-/// busy processes), and as how many observations that counts beside the pairs' own.
+/// Drift of a machine between two results (a standard deviation; 1.4 and 3.2 % over twenty runs, with two to
+/// eight other busy processes), and its weight as a number of observations in addition to the pairs' own.
 const DRIFT: f64 = 0.022;
 const DRIFT_WEIGHT: usize = 8;
-/// Chance of calling the whole, or a group, by mistake.
+/// Probability of reporting the whole, or a group, by mistake.
 const RISK: f64 = 0.025;
 const GROUP_RISK: f64 = 0.002;
-/// Smallest changes that matter: of the whole, and of a part of one pair of results or of several.
+/// Smallest relevant changes: of the whole, and of a part for one pair of results and for several.
 const WHOLE_LEAST: f64 = 0.02;
 const PART_LEAST: [f64; 2] = [0.05, 0.03];
-/// Standard deviations of the runs' scatter beyond which a group is called, and of the phases' beyond which one of them is: their
-/// tails are those of Student's t of three degrees of freedom, not Gauss's.
+/// Number of standard deviations of the runs' scatter beyond which a group is reported, and of the phases'
+/// scatter beyond which a single phase is. Their tails are those of Student's t with three degrees of
+/// freedom, not of a Gaussian.
 const GROUP_SIGMAS: f64 = 3.5;
 const SINGLE_SIGMAS: f64 = 6.0;
-/// Repeats of a phase that take less than this together (s) may all have met the same other program: of one pair of results they say nothing
-/// of that phase alone. On a machine with builds beside, 104 of 6218 phases were called by mistake, all of them shorter.
+/// Smallest total time of the repeats of a phase, s, for a report from a single pair of results. All repeats
+/// of a shorter phase may have been disturbed by the same other program. On a machine with concurrent builds,
+/// 104 of 6218 phases were reported by mistake, all of them shorter.
 const SPAN: f64 = 0.05;
-/// Fewest phases in a group, and fewest runs for anything to be said of times.
+/// Smallest number of phases in a group, and of runs for any report on times.
 const FEWEST: usize = 6;
-/// Phases of about the same time whose scatter is one.
+/// Number of phases of similar duration whose scatter is estimated together.
 const NEIGHBOURS: usize = 50;
 
-/// How times compare.
+/// Result of a comparison of times.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Times {
-    /// Pairs of results.
+    /// Number of pairs of results.
     pub pairs: usize,
-    /// Runs whose times are compared.
+    /// Number of runs whose times are compared.
     pub runs: usize,
-    /// All runs together; absent where they are too few.
+    /// Ratio of all runs together; absent if there are too few.
     pub whole: Option<Ratio>,
-    /// Phases, cases and methods, beside what all have in common.
+    /// Ratios of phases, cases and methods, relative to the common ratio.
     pub groups: Vec<Ratio>,
-    /// Single phases of runs that were tested, beside what all have in common.
+    /// Number of single phases of runs that were tested, relative to the common ratio.
     pub tested: usize,
-    /// What is outside noise.
+    /// Ratios that exceed noise.
     pub called: Vec<Ratio>,
 }
 
-/// What a ratio is of.
+/// Set of times that a ratio belongs to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Scope {
-    /// Everything.
+    /// All runs.
     Whole,
-    /// A phase, of all runs.
+    /// A phase of all runs.
     Phase,
     /// All runs of a case.
     Case,
@@ -70,20 +73,20 @@ pub enum Scope {
     Run,
 }
 
-/// A time after over the time before.
+/// Ratio of a time after to the time before.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Ratio {
-    /// What it is of.
+    /// Set of times of the ratio.
     pub scope: Scope,
-    /// Its name.
+    /// Name of this set.
     pub name: String,
-    /// Phases of runs that it is a mean of.
+    /// Number of phases of runs in the mean.
     pub count: usize,
-    /// After over before; but for the whole, over what all runs have in common.
+    /// Ratio after over before, relative to the common ratio except for the whole.
     pub ratio: f64,
-    /// The ratio is called above this, and below one over it.
+    /// Ratio above which, or below whose inverse, the change is reported.
     pub limit: f64,
-    /// Whether it is called.
+    /// Whether the change is reported.
     pub called: bool,
 }
 
@@ -107,11 +110,11 @@ struct Cell {
     method: String,
     phase: String,
     name: String,
-    /// Seconds before, in the first pair.
+    /// Time before in the first pair, s.
     seconds: f64,
-    /// Logarithms of after over before, one for each pair.
+    /// Logarithm of the ratio after over before, for each pair.
     logs: Vec<f64>,
-    /// Repeats before and after, one for each pair.
+    /// Times of the repeats before and after, for each pair, s.
     repeats: Vec<[Vec<f64>; 2]>,
 }
 
@@ -120,13 +123,15 @@ impl Cell {
         self.logs.iter().sum::<f64>() / self.logs.len() as f64
     }
 
-    /// Whether its repeats took long enough, or were repeated in other pairs, to distinguish it from what another program did meanwhile.
+    /// Whether the repeats took long enough, or exist in several pairs, to be distinguished from a
+    /// disturbance by another program.
     fn is_distinguished(&self) -> bool {
         let span = |times: &Vec<f64>| times.iter().sum::<f64>();
         self.repeats.len() > 1 || self.repeats.iter().flatten().all(|times| span(times) >= SPAN)
     }
 
-    /// Whether in every pair all repeats after are on one side of all repeats before, moved by what all have in common.
+    /// Whether in every pair all repeats after lie on one side of all repeats before, shifted by the common
+    /// ratio.
     fn is_apart(&self, common: &[f64], slower: bool) -> bool {
         let ends = |times: &[f64]| {
             times.iter().fold((f64::MAX, 0.0f64), |(low, high), &t| (low.min(t), high.max(t)))
@@ -139,7 +144,7 @@ impl Cell {
 }
 
 impl Times {
-    /// Of pairs of results, before and after.
+    /// Compares the times of pairs of results, before and after a change.
     pub(super) fn of(pairs: &[(RunSet, RunSet)]) -> Times {
         let cells = cells(pairs);
         let totals: Vec<&Cell> = cells.iter().filter(|cell| cell.phase == TOTAL).collect();
@@ -170,13 +175,13 @@ impl Times {
 
 const TOTAL: &str = "total";
 
-/// What all runs have in common in each pair.
+/// Logarithm of the common ratio of all runs, in each pair.
 fn common(totals: &[&Cell], pairs: usize) -> Vec<f64> {
     let of = |pair: usize| totals.iter().map(|cell| cell.logs[pair]).collect::<Vec<f64>>();
     (0..pairs).map(|pair| trimmed_mean(&of(pair)).map_or(0.0, |found| found.mean)).collect()
 }
 
-/// All runs: beyond what the machine drifts by, and beyond what the runs scatter by.
+/// Ratio of all runs, with a limit from the drift of the machine and the scatter of the runs.
 fn whole(totals: &[&Cell], common: &[f64], drift: f64) -> Ratio {
     let pairs = common.len();
     let own: f64 = common.iter().map(|c| (c - drift).powi(2)).sum();
@@ -189,7 +194,7 @@ fn whole(totals: &[&Cell], common: &[f64], drift: f64) -> Ratio {
     Ratio::new(Scope::Whole, "all runs", totals.len(), drift, limit)
 }
 
-/// Phases, cases and methods of six phases of runs or more, but for what all have in common.
+/// Ratios of phases, cases and methods with at least six phases of runs, relative to the common ratio.
 fn groups(cells: &[Cell], beside: &[f64], pairs: usize) -> Vec<Ratio> {
     let mut of_run: HashMap<&str, Vec<f64>> = HashMap::new();
     let mut groups: BTreeMap<(u8, &str), (Scope, Vec<usize>)> = BTreeMap::new();
@@ -209,7 +214,7 @@ fn groups(cells: &[Cell], beside: &[f64], pairs: usize) -> Vec<Ratio> {
         let mut runs: Vec<&str> = members.iter().map(|&at| cells[at].run.as_str()).collect();
         runs.sort_unstable();
         runs.dedup();
-        // Phases of one run are slow together: so many runs say less than so many phases.
+        // The phases of one run are correlated, so the number of runs decides, not the number of phases.
         let of_runs = GROUP_SIGMAS * run_scale / (runs.len() as f64).sqrt();
         let limit = least.max(found.band(GROUP_RISK)).max(of_runs);
         Some(Ratio::new(scope, name, values.len(), found.mean, limit))
@@ -217,7 +222,8 @@ fn groups(cells: &[Cell], beside: &[f64], pairs: usize) -> Vec<Ratio> {
     each.collect()
 }
 
-/// Single phases of runs: far beyond what those of about the same time scatter by, and with no repeat among those before.
+/// Single phases of runs that far exceed the scatter of phases of similar duration and whose repeats do not
+/// overlap with those before.
 fn singles(cells: &[Cell], beside: &[f64], common: &[f64]) -> Vec<Ratio> {
     let mut order: Vec<usize> = (0..cells.len()).collect();
     order.sort_by(|&a, &b| cells[a].seconds.total_cmp(&cells[b].seconds));
@@ -239,7 +245,7 @@ fn singles(cells: &[Cell], beside: &[f64], common: &[f64]) -> Vec<Ratio> {
     tested.map(one).collect()
 }
 
-/// The phases that all results have times of.
+/// Phases that have times in all results.
 fn cells(pairs: &[(RunSet, RunSet)]) -> Vec<Cell> {
     let timed: Vec<[BTreeMap<(&str, &str), Timed>; 2]> =
         pairs.iter().map(|(a, b)| [timed(&a.records), timed(&b.records)]).collect();
@@ -266,7 +272,7 @@ fn cells(pairs: &[(RunSet, RunSet)]) -> Vec<Cell> {
     first.iter().filter_map(cell).collect()
 }
 
-/// Case, method, what distinguishes the run from others of it, and phase.
+/// Name of a phase: case, method, size and Poisson's ratio of the run, and the phase.
 fn name(r: &Record) -> String {
     let mut name = format!("{} {}", r.case, r.method);
     if r.level > 0 {
@@ -275,7 +281,7 @@ fn name(r: &Record) -> String {
     format!("{name} {} nodes nu={} {}", r.nodes, r.poisson, r.phase)
 }
 
-/// Repeats of a phase.
+/// Times of the repeats of a phase, s.
 struct Timed<'a> {
     is: &'a Record,
     wall: Vec<f64>,
@@ -283,7 +289,7 @@ struct Timed<'a> {
 }
 
 impl Timed<'_> {
-    /// Those of the processors where they are known.
+    /// CPU times if known, otherwise wall times.
     fn best(&self) -> Vec<f64> {
         if self.cpu.is_empty() { self.wall.clone() } else { self.cpu.clone() }
     }

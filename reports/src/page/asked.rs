@@ -1,4 +1,4 @@
-//! A question to a case, in columns.
+//! View of a question put to a case, in columns.
 
 use serde::Serialize;
 
@@ -12,20 +12,20 @@ use crate::reference::Reference;
 pub(super) struct AskView {
     case: String,
     title: String,
-    /// What is asked for, such as `tool force`.
+    /// Name of the quantity, such as `tool force`.
     what: &'static str,
-    /// Whether the time is that of one solve in a loop prepared before.
+    /// Whether the time is that of one solve in a prepared loop.
     repeated: bool,
-    /// The axis of times.
+    /// Label of the time axis.
     time: String,
-    /// The error's axis.
+    /// Label of the error axis.
     error: String,
     scalar: bool,
     kernels: bool,
-    /// The reference of the runs and its own error, in words.
+    /// Description of the reference of the runs and its own error.
     reference: Option<String>,
     band: Option<f64>,
-    /// The page begins with the question that has most of it.
+    /// Sort key; the page begins with the question of the highest rank.
     rank: Rank,
     lines: Vec<LineView>,
 }
@@ -40,7 +40,7 @@ struct LineView {
     counts: Vec<f32>,
 }
 
-/// A reference with its warnings.
+/// Description of a reference with its warnings.
 fn described(reference: &Reference) -> String {
     let warnings = reference.warnings.iter().map(|text| format!(". Its warning: {text}"));
     std::iter::once(reference.sentence()).chain(warnings).collect()
@@ -76,7 +76,7 @@ impl AskView {
         }
     }
 
-    /// The labels of its lines.
+    /// Indices of the labels of the lines.
     pub(super) fn labels(&self) -> Vec<usize> {
         self.lines.iter().map(|line| line.label).collect()
     }

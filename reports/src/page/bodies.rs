@@ -1,4 +1,4 @@
-//! Bodies in three dimensions: an element of the page for each case, read when one is asked for.
+//! Bodies in three dimensions: one element of the page for each case, parsed on demand.
 
 use serde::Serialize;
 
@@ -7,12 +7,13 @@ use crate::error::ReportError;
 use crate::run_set::SurfaceField;
 use crate::select::Run;
 
-/// Draws them, and is evaluated when the first one is asked for.
+/// Script that draws the bodies, evaluated on first use.
 const SCRIPT: &str = include_str!("../../page/built/solid.js");
 
-/// Bytes for all bodies of a page: with these, the page of the whole verification stays below 8 MB.
+/// Bytes for all bodies of a page, which keep the page of the whole verification below 8 MB.
 const ROOM: usize = 3_400_000;
-/// A body of more than this part of the room is left out before load steps of others where a coarser one of its method is there.
+/// Fraction of the room above which a body with a coarser sibling of the same method is omitted, before load
+/// steps of other bodies are.
 const LARGE: f64 = 0.05;
 
 #[derive(Clone, Serialize)]
@@ -20,18 +21,18 @@ struct BodyView<'a> {
     case: &'a str,
     method: &'a str,
     title: &'a str,
-    /// The method of an earlier body with the same points and faces, which are not repeated.
+    /// Method of an earlier body with the same points and faces, which are not repeated.
     #[serde(skip_serializing_if = "Option::is_none")]
     like: Option<&'a str>,
-    /// The method of an earlier body with the same tools.
+    /// Method of an earlier body with the same tools.
     #[serde(skip_serializing_if = "Option::is_none")]
     tools_like: Option<&'a str>,
     #[serde(flatten)]
     body: Body,
-    /// Which of a method's sizes are of one kind.
+    /// Series of the method's sizes.
     #[serde(skip)]
     series: &'a str,
-    /// On the first body of a case: methods whose bodies have no room.
+    /// Methods whose bodies have no room; stored with the first body of a case.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     without: Vec<&'a str>,
 }
@@ -44,7 +45,7 @@ impl BodyView<'_> {
         fixed + tools + states.iter().map(of_state).sum::<usize>() + self.inside()
     }
 
-    /// The part of it that only a cut shows.
+    /// Size of the data that only a cut shows.
     fn inside(&self) -> usize {
         self.body.inside.as_ref().map_or(0, |inside| {
             let states = inside.states.iter().map(|s| s.u.len() + of_values(&s.values));
@@ -52,7 +53,7 @@ impl BodyView<'_> {
         })
     }
 
-    /// Its size with its last state alone.
+    /// Size with only the last state.
     fn least(&self) -> usize {
         let states = &self.body.states;
         self.size() - self.inside() - states[..states.len() - 1].iter().map(of_state).sum::<usize>()
@@ -71,7 +72,7 @@ fn of_faces(faces: &[Faces]) -> usize {
     faces.iter().map(|f| f.indices.len()).sum()
 }
 
-/// The elements; nothing for results without bodies.
+/// HTML elements of the bodies; empty for results without bodies.
 pub(super) fn elements(fields: &[SurfaceField], runs: &[Run]) -> Result<String, ReportError> {
     let view = |f: &'_ SurfaceField| f.body.clone().filter(|b| !b.states.is_empty());
     let mut bodies: Vec<BodyView> = fields
@@ -113,8 +114,8 @@ pub(super) fn elements(fields: &[SurfaceField], runs: &[Run]) -> Result<String, 
     Ok(out)
 }
 
-/// Methods on one mesh have one surface, and all methods of a scene its tools: only the first of them in a
-/// case keeps these.
+/// Removes repeated data. Methods on one mesh share a surface, and all methods of a scene share the tools:
+/// only the first body of a case keeps these.
 fn share(bodies: &mut [BodyView]) {
     for k in 1..bodies.len() {
         let (before, rest) = bodies.split_at_mut(k);
@@ -127,7 +128,7 @@ fn share(bodies: &mut [BodyView]) {
         if like.is_some() {
             own.body.points.clear();
             own.body.faces.clear();
-            // One surface, one mesh.
+            // The same surface implies the same mesh.
             if let Some(inside) = &mut own.body.inside {
                 inside.points.clear();
                 inside.cells.clear();
@@ -140,8 +141,9 @@ fn share(bodies: &mut [BodyView]) {
     }
 }
 
-/// Takes out large bodies that have a coarser sibling, then what only a cut shows of the largest, then states
-/// of the largest bodies, all but the last, until all have room; then the largest bodies.
+/// Reduces the bodies to the available room. Large bodies with a coarser sibling are removed first, then cut
+/// data of the largest bodies, then states of the largest bodies except the last, and finally the largest
+/// bodies.
 fn fit(bodies: &mut Vec<BodyView>, room: usize) {
     while bodies.iter().map(BodyView::size).sum::<usize>() > room {
         let others = |b: &BodyView, is: &dyn Fn(&BodyView) -> bool| {
@@ -212,12 +214,12 @@ mod tests {
             fit(&mut all, room);
             all.iter().map(|b| (b.method, b.body.states.len(), b.body.left_out)).collect()
         };
-        // Points and states take 160 and 1600 bytes each.
+        // Points take 160 bytes, and states 1600 bytes.
         assert_eq!(fitted(7040), [("small", 3, 0), ("large", 3, 0)]);
         assert_eq!(fitted(7039), [("small", 3, 0), ("large", 1, 2)]);
         assert_eq!(fitted(3839), [("small", 1, 2), ("large", 1, 2)]);
         assert_eq!(fitted(3000), [("small", 1, 2)]);
-        // A fine mesh is left out before load steps of a coarser one.
+        // A fine mesh is omitted before load steps of a coarser one.
         let mut all = vec![view("coarse", 10), view("fine", 100)];
         all.iter_mut().for_each(|b| b.series = "one");
         fit(&mut all, 3839);
@@ -259,7 +261,7 @@ mod tests {
         share(&mut all);
         let likes: Vec<_> = all.iter().map(|b| (b.like, b.body.points.is_empty())).collect();
         assert_eq!(likes, [(None, false), (None, false), (Some("tet4"), true), (None, false)]);
-        // A surface that another body needs stays.
+        // A surface that another body needs is kept.
         fit(&mut all, 700);
         assert_eq!(all.iter().map(|b| (b.case, b.method)).collect::<Vec<_>>(), [("a", "tet4"), ("a", "efg")]);
     }

@@ -1,4 +1,4 @@
-//! A study over commits, as the page draws it.
+//! View of a study over commits.
 
 use serde::Serialize;
 
@@ -6,10 +6,10 @@ use super::methods::Methods;
 use crate::commits::{Point, Step, Trend};
 use crate::record::Family;
 
-/// Changes of a kind that are named; the others are counted.
+/// Largest number of changes of a kind that are named; the others are counted.
 const NAMED: usize = 5;
 
-/// A study on one machine.
+/// View of a study on one machine.
 #[derive(Serialize)]
 pub(super) struct TrendView {
     label: usize,
@@ -22,14 +22,14 @@ struct CommitView {
     quiet: Option<bool>,
     runs: usize,
     seconds: f64,
-    /// Over the first commit's.
+    /// Ratio to the time of the first commit.
     time: Option<f64>,
     error: Option<f64>,
     errors_moved: bool,
     times_moved: bool,
-    /// How many errors and times are outside of noise; empty where none is.
+    /// Numbers of significant changes of errors and times; empty without any.
     moved: String,
-    /// Which, in words.
+    /// Descriptions of these changes.
     changes: Vec<String>,
 }
 

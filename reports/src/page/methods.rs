@@ -1,4 +1,4 @@
-//! The methods and runs that the page names, each once.
+//! Methods and runs that occur in the page, without duplicates.
 
 use std::collections::{BTreeMap, HashMap};
 
@@ -8,7 +8,7 @@ use crate::look::{Look, MARKERS, distinct};
 use crate::record::Family;
 use crate::select::{Run, by_material, labels};
 
-/// How a label looks.
+/// Appearance of a label.
 #[derive(Serialize)]
 pub(super) struct LookView {
     colour: String,
@@ -31,7 +31,7 @@ impl LookView {
     }
 }
 
-/// What is known of each run, a column for each.
+/// Data of the runs, one column per property.
 #[derive(Default, Serialize)]
 pub(super) struct RunColumns {
     id: Vec<String>,
@@ -49,11 +49,11 @@ pub(super) struct RunColumns {
     errors: BTreeMap<&'static str, Vec<Option<f32>>>,
 }
 
-/// Errors that a run is described by.
+/// Errors in the description of a run.
 const ERRORS: [&str; 7] =
     ["l2", "relative-rms", "energy", "pressure", "tool-force-error", "peak-error", "penetration"];
 
-/// Gathers what is named.
+/// Collector of labels and runs.
 pub(super) struct Methods {
     labels: Vec<(String, Family)>,
     runs: RunColumns,
@@ -61,7 +61,7 @@ pub(super) struct Methods {
 }
 
 impl Methods {
-    /// With the runs that may be named.
+    /// Creates a collector with the runs that may occur.
     pub(super) fn new(runs: &[Run]) -> Methods {
         let mut all = Methods { labels: Vec::new(), runs: RunColumns::default(), index: HashMap::new() };
         for group in by_material(runs) {
@@ -97,7 +97,7 @@ impl Methods {
         }
     }
 
-    /// The number of a label.
+    /// Index of a label, added if it is new.
     pub(super) fn label(&mut self, label: &str, family: Family) -> usize {
         self.labels.iter().position(|l| l.0 == label).unwrap_or_else(|| {
             self.labels.push((label.into(), family));
@@ -105,12 +105,12 @@ impl Methods {
         })
     }
 
-    /// The number of a run.
+    /// Index of a run.
     pub(super) fn run(&self, id: &str) -> Option<usize> {
         self.index.get(id).copied()
     }
 
-    /// Looks, labels and runs; labels of one of the `figures` look different from each other.
+    /// Returns looks, labels and runs. Labels that occur in one of the `figures` have distinct looks.
     pub(super) fn into_parts(
         self,
         figures: &[Vec<usize>],

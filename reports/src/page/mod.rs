@@ -1,4 +1,5 @@
-//! The one page of a report: a file that needs no network, its numbers in columns inside, drawn by the script of `reports/page`.
+//! The page of a report: a single file that needs no network, with its data in columns, drawn by the script
+//! of `reports/page`.
 
 mod asked;
 mod bodies;
@@ -29,12 +30,12 @@ use commits::TrendView;
 use methods::{LookView, Methods, RunColumns};
 use tabled::{MapView, TableView};
 
-/// Tells a page of ours from another one of its name.
+/// Title that identifies a page of this program.
 pub(crate) const TITLE: &str = "<title>tissuebench report</title>";
 
 const SKELETON: &str = include_str!("../../page/page.html");
 const STYLE: &str = include_str!("../../page/src/page.css");
-/// Built from the sources in `page/src`, with `npm run build`.
+/// Script built from the sources in `page/src` by `npm run build`.
 const SCRIPT: &str = include_str!("../../page/built/page.js");
 
 /// A drawn figure.
@@ -49,7 +50,7 @@ struct PageData<'a> {
     program: &'a Program,
     machine: &'a Machine,
     scenes: &'a [SceneHash],
-    /// The stored records, as the page finds them; empty where it lies elsewhere.
+    /// Path of the stored records for the page; empty if they are elsewhere.
     records: &'a str,
     counts: Counts,
     cases: Vec<CaseView>,
@@ -57,9 +58,9 @@ struct PageData<'a> {
     labels: Vec<String>,
     runs: RunColumns,
     deadlines: Vec<(&'static str, &'static str, f64)>,
-    /// The error that is asked for at first.
+    /// Error selected initially.
     wanted: f64,
-    /// Errors below it are drawn at it.
+    /// Smallest error drawn; smaller errors are drawn at this value.
     floor: f64,
     asks: Vec<AskView>,
     plots: Vec<PlotView>,
@@ -104,11 +105,11 @@ struct PlotView {
 #[derive(Serialize)]
 struct CurveView {
     label: usize,
-    /// Coordinates in turn: x, y, x, y.
+    /// Alternating coordinates: x, y, x, y.
     xy: Vec<f32>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
     band: Vec<(f32, f32, f32)>,
-    /// Of each point, or one for all.
+    /// Indices of the runs: one for each point, or one for all.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     runs: Vec<usize>,
 }
@@ -122,7 +123,7 @@ struct PictureView<'a> {
     svg: String,
 }
 
-/// The page's text.
+/// Text of the page.
 pub(crate) fn html(
     set: &RunSet,
     (runs, clouds): (&[Run], &[Clouds]),
@@ -169,7 +170,7 @@ pub(crate) fn html(
         findings: findings::all(set, runs, clouds).into_iter().map(|t| (t.title, t.sentences)).collect(),
     };
     let json = serde_json::to_string(&data).map_err(ReportError::Page)?;
-    // Nothing inside may end the element that it stands in.
+    // The data must not contain the end tag of their element.
     let json = json.replace('<', "\\u003c");
     let (head, rest) = SKELETON.split_once("{style}").unwrap_or((SKELETON, ""));
     let (middle, rest) = rest.split_once("{data}").unwrap_or((rest, ""));
@@ -183,7 +184,7 @@ fn views<'a>(figures: &'a [Drawn], methods: &mut Methods) -> (Vec<PlotView>, Vec
     let (mut plots, mut pictures) = (Vec::new(), Vec::new());
     for Drawn { figure, svg } in figures {
         match &figure.data {
-            // The page draws its fronts from the questions asked.
+            // The page draws its fronts from the data of the questions.
             Data::Plots(_) if figure.name.starts_with("efficiency") => {}
             Data::Plots(all) => plots.extend(all.iter().map(|plot| plotted(&figure.name, plot, methods))),
             Data::Rows(_) => {}
@@ -216,7 +217,8 @@ fn plotted(figure: &str, plot: &Plot, methods: &mut Methods) -> PlotView {
     }
 }
 
-/// A picture without its white sheet, its black ink that of the page: it is read on a dark one too.
+/// A picture without its white background and with the page's text colour as ink, which is legible on dark
+/// pages too.
 fn on_any_paper(svg: &str) -> String {
     svg.replacen("fill=\"#FFFFFF\"", "fill=\"none\"", 1).replace("#202020", "currentColor")
 }

@@ -1,4 +1,4 @@
-//! Tables and stability maps, in columns.
+//! Views of tables and stability maps, in columns.
 
 use serde::Serialize;
 
@@ -20,11 +20,11 @@ pub(super) struct TableView<'a> {
 struct ColumnView<'a> {
     head: &'a str,
     number: bool,
-    /// Each different text once.
+    /// Distinct texts.
     words: Vec<&'a str>,
-    /// Which of them, by row.
+    /// Index of the text in each row.
     rows: Vec<usize>,
-    /// Of a column of numbers: what is sorted by.
+    /// Sort keys of a column of numbers.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     values: Vec<Option<f64>>,
 }
@@ -56,10 +56,10 @@ impl<'a> TableView<'a> {
     }
 }
 
-/// `(method, value, verdict, error, why, class)`; the first two and the last by number.
+/// `(method, value, verdict, error, reason, class)`; method, value and class are indices.
 type Cell = (usize, usize, &'static str, Option<f64>, String, usize);
 
-/// How methods fare along an axis.
+/// View of a stability map along an axis.
 #[derive(Serialize)]
 pub(super) struct MapView<'a> {
     case: &'a str,
@@ -70,7 +70,7 @@ pub(super) struct MapView<'a> {
     wrong: f64,
     values: Vec<String>,
     methods: Vec<&'a str>,
-    /// Meaning of the colours.
+    /// Names of the colours' classes.
     classes: Vec<String>,
     cells: Vec<Cell>,
 }
