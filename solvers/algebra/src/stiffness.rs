@@ -139,7 +139,8 @@ impl Stiffness {
         }
     }
 
-    /// Runs `gather(i, slot, row)` for every block row. `slot[j]` is the position of column `j` in `row`.
+    /// Fills every block row by `gather(i, slot, row)`, where `row` are the blocks of node `i`. `slot[j]` is
+    /// the position of column `j` in `row`. The rows run in parallel.
     pub fn for_each_row(&mut self, gather: impl Fn(usize, &[u32], &mut [Matrix3]) + Sync) {
         let nodes = self.pattern.node_count();
         self.tasks(0..nodes).into_par_iter().for_each_init(
@@ -153,12 +154,13 @@ impl Stiffness {
         );
     }
 
-    /// Assembles all block rows from the entries `incidence` of a table. Several block rows visit the rows of
-    /// the table together, in tiles of `tile` rows, so that a tile stays in the cache.
+    /// Assembles all block rows from a table whose transpose is `incidence`. Several block rows traverse the
+    /// rows of the table together, in tiles of `tile` rows, so that a tile stays in the cache.
     ///
-    /// `gather(seen, slot, sums)` adds to sums that start as `zero`; `slot[j]` is the position of column `j`
-    /// in `sums`. After each of the `parts` of the table, `finish(part, node, slot, sums, blocks)` takes the
-    /// sums and leaves zeros.
+    /// `gather(entries, slot, sums)` adds the (row, entry) pairs of a node in one tile to `sums`, one sum per
+    /// column of the block row, which start as `zero`. `slot[j]` is the position of column `j` in `sums`.
+    /// After each of the `parts` of the table, `finish(part, node, slot, sums, blocks)` moves the sums to the
+    /// blocks and leaves zeros.
     pub fn by_tiles<S: Copy + Send + Sync>(
         &mut self,
         incidence: &Incidence,

@@ -56,8 +56,8 @@ impl Transfer for InverseDistance {
 }
 
 /// Builds the table of inverse-distance weighting, `u(x) = sum_i u_i / d_i^p / sum_i 1 / d_i^p` over the
-/// `neighbours` nearest nodes, with `d_i = |x - x_i|` and the `power` `p` (the paper's Eq. 5; Shepard 1968
-/// over all nodes).
+/// `neighbours` nearest nodes, with `d_i = |x - x_i|` and the `power` `p` (Eq. 5 of the paper on which this
+/// project is based; Shepard 1968 sums over all nodes).
 ///
 /// Weights are relative to the weight of the nearest node, `(d_min / d_i)^p`, so nothing overflows near a
 /// node. At a node the value is that of the node (or the mean of coincident nodes). The scheme is exact for

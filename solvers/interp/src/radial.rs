@@ -201,12 +201,13 @@ const LARGEST_MISS: f64 = 1e-6;
 /// width.
 const APART: f64 = 1e-2;
 
-/// Builds the table of radial basis functions, `u(x) = sum_i c_i phi(|x - x_i|) + d_0 + d . x` with
-/// `u(x_i) = u_i` and `sum_i c_i = sum_i c_i x_i = 0` (Wendland 2005, chapter 8).
+/// Builds the table of radial basis functions, `u(x) = sum_i c_i phi(|x - x_i|) + d_0 + d . x` with `u(x_i) =
+/// u_i` and `sum_i c_i = sum_i c_i x_i = 0` (Wendland 2005, chapter 8).
 ///
-/// The scheme is exact for linear fields with the polynomial `d`, and for no field without. It interpolates,
-/// and every row is full. Coordinates are shifted to the centre of the cloud and scaled by its half-extent.
-/// After one factorisation all targets are rows of two triangular solutions, 2 n^2 operations each.
+/// The scheme is exact for linear fields with the polynomial `d_0 + d . x`, and for no field without. It
+/// interpolates. Every row contains all nodes. Coordinates are shifted to the centre of the cloud and scaled
+/// by its half-extent. The matrix is factored once; each target then takes two triangular solutions, 2 n^2
+/// operations.
 ///
 /// # Errors
 /// Functions so wide that the system is singular to working precision, coincident nodes, a flat cloud, and

@@ -138,8 +138,8 @@ impl Scheme {
     /// gradients in closed form.
     ///
     /// # Errors
-    /// The errors of [`Scheme::rows`], and [`InterpError::NoGradient`] for schemes without gradients in
-    /// closed form or without gradients at the nodes.
+    /// The errors of [`Scheme::rows`], and [`InterpError::NoGradient`] for the other schemes: they have no
+    /// gradient in closed form, or none at the nodes.
     pub fn grad_rows(
         &self,
         nodes: &[Point3],

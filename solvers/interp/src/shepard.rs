@@ -50,11 +50,11 @@ impl Transfer for Shepard {
 }
 
 /// Builds the table of Shepard's method, `u(x) = sum_i w(d_i / R_i) u_i / sum_i w(d_i / R_i)` with the cubic
-/// spline `w` and the node's support radius `R_i`.
+/// spline `w`, the distance `d_i` of node `i` and the node's support radius `R_i`.
 ///
 /// The scheme is exact for constants, does not interpolate, and is smooth (C2). For a target outside all
-/// supports, all supports are enlarged to 1.25 times the relative distance of the first node. Such targets
-/// are counted in [`TransferInfo::fallbacks`].
+/// supports, all supports are enlarged by the factor `1.25 min_i(d_i / R_i)`. Such targets are counted in
+/// [`TransferInfo::fallbacks`].
 pub fn shepard(
     nodes: &[Point3],
     support: Support,

@@ -48,7 +48,7 @@ impl Prony {
         Ok(Prony { terms: terms.to_vec() })
     }
 
-    /// Terms `(g_i, tau_i)`.
+    /// Returns the terms `(g_i, tau_i)`: `g_i` dimensionless, `tau_i` in seconds.
     pub fn terms(&self) -> &[(f64, f64)] {
         &self.terms
     }

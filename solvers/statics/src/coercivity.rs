@@ -20,9 +20,12 @@ use crate::solve::Factored;
 const STEPS: usize = 12;
 
 impl Factored<'_> {
-    /// Returns the smallest stabilisation factor of Nitsche's method for which the form is definite,
-    /// `C = gamma (1 - alpha)^2` (dimensionless, at most the given `gamma`). The result is `None` without
-    /// Nitsche supports.
+    /// Returns the smallest stabilisation factor `gamma` of Nitsche's method for which the stiffness is
+    /// positive definite (dimensionless, at most the `gamma` in use). The result is `None` without Nitsche
+    /// supports.
+    ///
+    /// The factor is `C = gamma (1 - alpha)^2`, where `alpha` is the smallest eigenvalue of `K v = alpha M v`
+    /// and `M` is `K` without Nitsche's consistency terms.
     ///
     /// # Errors
     /// The same errors as those of a solution.

@@ -21,10 +21,10 @@ pub(crate) struct Block {
     pub pivots: Vec<usize>,
     /// The other degrees of freedom of the rows.
     pub others: Vec<usize>,
-    /// `W` (pivots, others), row by row.
+    /// Matrix `W` of `u_p = E g - W u_o`, (pivots, others), row by row.
     pub weights: Vec<f64>,
-    /// `E` (pivots, rows), row by row. `E` acts on the prescribed values, and its transpose on the forces on
-    /// the pivots, which gives the multipliers.
+    /// Matrix `E` of `u_p = E g - W u_o`, (pivots, rows), row by row. `E` acts on the prescribed values `g`.
+    /// Its transpose acts on the forces on the pivots, which gives the multipliers.
     pub inverse: Vec<f64>,
 }
 

@@ -60,7 +60,7 @@ struct Rows<R, W, L> {
 }
 
 impl GradTable {
-    /// Builds the table of the body's own quadrature; with a projection only the deviatoric part,
+    /// Builds the table of the body's own quadrature. With a projection it contains the deviatoric part only,
     /// `lambda' = -2 mu / 3`.
     pub fn points(body: &Body) -> GradTable {
         let moduli = body.materials.iter().map(|m| match body.dilation {
@@ -82,8 +82,9 @@ impl GradTable {
         GradTable::new(body.nodes.len(), &rows, &moduli.collect::<Vec<_>>())
     }
 
-    /// Builds the table of the dilation groups: `kappa V_a b_a b_a^T` is the same integrand with moduli (1,
-    /// 0) and weight `kappa V_a`.
+    /// Builds the table of the dilation groups, whose stiffness is `kappa V_a b_a b_a^T`; `None` without
+    /// groups. In the integrand of the points this is a row of gradients `b_a` with moduli `lambda = 1`, `mu
+    /// = 0` and weight `kappa V_a`.
     pub fn groups(body: &Body) -> Result<Option<GradTable>, SolveError> {
         let Some(groups) = body.dilation else { return Ok(None) };
         let averaged = averaged(body, groups)?;

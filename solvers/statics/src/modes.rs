@@ -81,9 +81,9 @@ pub fn modes(problem: &LinearProblem, mass: &Mass) -> Result<Modes, SolveError> 
 
 /// Computes at least the `count` lowest modes.
 ///
-/// Up to [`ALL_MODES_LIMIT`] unknowns all modes are computed. Larger systems use block Lanczos with the
-/// sparse factor of `A` ([`eigen::largest`]), whose time grows as that of one factorisation. Up to eight
-/// modes of the same frequency are found.
+/// Up to [`ALL_MODES_LIMIT`] unknowns all modes are computed. Larger systems use block Lanczos
+/// ([`eigen::largest`]) with the sparse factor of `A = K + s M`; the time grows as that of one factorisation.
+/// Of modes with the same frequency at most eight are found.
 ///
 /// # Errors
 /// The errors of [`modes`].

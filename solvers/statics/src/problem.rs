@@ -169,7 +169,7 @@ fn assemble_if<'a>(problem: &LinearProblem<'a>, holds: SupportCheck) -> Result<A
 }
 
 impl<'a> Assembled<'a> {
-    /// Stiffness of the free body plus the terms of weak supports, before any elimination.
+    /// Returns the stiffness with the terms of weak supports, before any degree of freedom is eliminated.
     pub fn stiffness(&self) -> &Stiffness {
         &self.stiffness
     }

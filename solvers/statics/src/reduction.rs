@@ -29,7 +29,8 @@ pub(crate) struct Reduction {
 }
 
 impl Reduction {
-    /// Removes the prescribed degrees of freedom and eliminates `rows`.
+    /// Builds `T` and `g` from the prescribed value of each degree of freedom (m) and the constraint `rows`
+    /// to be eliminated.
     pub fn new(prescribed: &[Option<f64>], rows: &[Row]) -> Result<Reduction, SolveError> {
         let rows: Vec<Row> = rows.iter().map(|row| row.without(prescribed)).collect();
         let (blocks, dropped) = blocks(&rows, prescribed.len())?;

@@ -11,10 +11,10 @@ use crate::pressure::not_definite;
 use crate::problem::Assembled;
 use crate::reduction::Reduction;
 
-/// Counters of conjugate gradients.
+/// Counters of a solve by conjugate gradients.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Iterated {
-    /// Number of iterations.
+    /// Number of conjugate-gradient iterations.
     pub count: usize,
     /// Matrix entries of all levels divided by those of the finest level.
     pub complexity: f64,
@@ -48,9 +48,9 @@ pub struct SolveInfo {
 pub struct Solution {
     /// Nodal parameters, m; displacements only for a basis with the Kronecker property.
     pub u: Vec<Vector3>,
-    /// One multiplier per constraint row: the force (N per unit of coefficient) of the row against the body,
-    /// `K u + sum_k lambda_k c_k = f`. The multiplier is zero for dropped rows and for rows without a free
-    /// term.
+    /// Lagrange multipliers `lambda_k` of `K u + sum_k lambda_k c_k = f`, one per constraint row, N per unit
+    /// of coefficient. Row `k` exerts the force `-lambda_k c_k` on the body. The multiplier is zero for
+    /// dropped rows and for rows without a free term.
     pub multipliers: Vec<f64>,
     /// Counters and accuracy of the solve.
     pub info: SolveInfo,

@@ -65,11 +65,12 @@ impl Tried {
 }
 
 impl Curvature {
-    /// Returns a shift s up to which `K + s D` is known not to be definite, negative if none is known.
+    /// Returns a shift s such that `K + t D` is known not to be positive definite for every `t < s`. A
+    /// negative shift means that nothing is known about K.
     ///
     /// `factor` belongs to a matrix near K and preconditions the search (locally optimal conjugate gradients,
     /// Knyazev 2001). With `sure` the search starts afresh and does not give up early. The shift is infinite
-    /// if `diagonal` has an entry that is not positive.
+    /// if `diagonal` (D) has an entry that is not positive.
     ///
     /// # Errors
     ///

@@ -15,11 +15,11 @@ use crate::AlgebraError;
 
 pub use super::lanczos::largest;
 
-/// Eigenvalues, largest first, with eigenvectors scaled to `x^T A x = 1`.
+/// Eigenvalues `theta` of `M x = theta A x`, largest first, with eigenvectors scaled to `x^T A x = 1`.
 pub struct Eigen {
     /// Eigenvalues `theta`, largest first.
     pub values: Vec<f64>,
-    /// Eigenvectors, one for each eigenvalue.
+    /// Eigenvectors with `x^T A x = 1`, one for each eigenvalue.
     pub vectors: Vec<Vec<f64>>,
 }
 

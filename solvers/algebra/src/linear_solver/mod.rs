@@ -340,8 +340,8 @@ impl Factorization {
         Ok(residual)
     }
 
-    /// Solves in place for a final answer. The answer is refused if it has no correct digits, but not for a
-    /// residual that rounding explains.
+    /// Solves in place for a final answer. A large residual alone is accepted if rounding explains it; an
+    /// answer without correct digits is refused.
     ///
     /// # Errors
     ///

@@ -99,16 +99,16 @@ impl Symmetric {
         Symmetric { offsets, rows, values, multipliers: self.multipliers, vertices: self.vertices.clone() }
     }
 
-    /// Sets the diagonal of the unknowns before the multipliers to its unshifted values `diagonal` times
-    /// `1 + shift`.
+    /// Sets each diagonal entry to `1 + shift` times its unshifted value in `diagonal`. The entries of the
+    /// multipliers stay as they are.
     pub fn shift(&mut self, diagonal: &[f64], shift: f64) {
         for (j, d) in diagonal.iter().enumerate().take(self.multipliers) {
             self.values[self.offsets[j + 1] - 1] = d * (1.0 + shift);
         }
     }
 
-    /// Computes `y -= A x`. The three columns of a node share the rows of other nodes and are multiplied
-    /// together, in the same order of sums as one by one.
+    /// Computes `y -= A x`. The three columns of a node have the same rows outside the node and are
+    /// multiplied together. The order of summation, and so every bit, is that of the separate columns.
     pub fn subtract_product(&self, x: &[f64], y: &mut [f64]) {
         for vertex in self.vertices.windows(2) {
             let (first, end) = (vertex[0], vertex[1]);

@@ -17,11 +17,11 @@ const JUDGED: usize = 3;
 
 /// Row and column that border a matrix, for a tool driven by force, whose displacement is unknown.
 pub struct Border {
-    /// Column, without its last entry.
+    /// Bordering column `C`, without the corner.
     pub column: Vec<f64>,
-    /// Row, without its last entry.
+    /// Bordering row `R`, without the corner.
     pub row: Vec<f64>,
-    /// Diagonal entry at which row and column end.
+    /// Entry on the diagonal, common to the bordering row and column.
     pub corner: f64,
 }
 
@@ -44,7 +44,8 @@ pub struct Unsymmetric {
 }
 
 impl Unsymmetric {
-    /// Builds the system. Entries of `extra` with the same row and column add up.
+    /// Builds `[S + U, C; R, D]` from the factored matrix `S`, the entries (row, column, value) of `U` in
+    /// `extra`, and the `borders`. Entries of `extra` with the same row and column add up.
     ///
     /// # Errors
     ///
@@ -101,7 +102,7 @@ impl Unsymmetric {
         Ok(())
     }
 
-    /// Returns the symmetric matrix and the unsymmetric entries, without borders.
+    /// Returns the symmetric matrix `S` and the unsymmetric entries `U`. The borders are dropped.
     pub fn into_parts(self) -> (Symmetric, Vec<(usize, usize, f64)>) {
         (self.symmetric.matrix, self.extra)
     }
@@ -140,7 +141,7 @@ impl Unsymmetric {
         Ok((count, solved))
     }
 
-    /// Solves in place to a relative residual of `goal`, or at worst ten times that, and returns the number
+    /// Solves in place to a relative residual of `goal`, or at worst ten times `goal`, and returns the number
     /// of iterations.
     ///
     /// If this fails with a factor in single precision, the matrix is factored in double precision. If that

@@ -159,13 +159,13 @@ impl<const B: usize> Operator<B> {
         }
     }
 
-    /// Part of a row before its diagonal, within its chunk.
+    /// Entries of row `i` before its diagonal and within its chunk.
     #[inline(always)]
     pub fn inside(&self, i: usize) -> Part<'_, B> {
         self.inside.row(i)
     }
 
-    /// Part of a row in other chunks.
+    /// Entries of row `i` in other chunks, before and after the diagonal.
     #[inline(always)]
     pub fn outside(&self, i: usize) -> Part<'_, B> {
         self.outside.row(i)
@@ -216,7 +216,8 @@ impl<const B: usize> Operator<B> {
         value
     }
 
-    /// Returns the product of the addition to the diagonal with `x`.
+    /// Returns row `i` of the product with `x` of the additions to the diagonal for couplings between chunks;
+    /// zero if there is one chunk.
     #[inline(always)]
     pub fn added_part(&self, i: usize, x: &Entry<B>) -> Entry<B> {
         self.added.get(i).map_or([0.0; B], |added| std::array::from_fn(|a| added[a] * x[a]))
@@ -233,7 +234,7 @@ impl<const B: usize> Operator<B> {
         parts.into_par_iter().for_each(|(chunk, part)| run(chunk, part));
     }
 
-    /// The same for two vectors.
+    /// Calls `run` for every chunk and its parts of two vectors, concurrently.
     pub fn each_chunk_of_two(
         &self,
         first: &mut [Entry<B>],

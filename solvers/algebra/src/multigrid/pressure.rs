@@ -31,9 +31,9 @@ pub struct PressureGroup {
     pub row: Vec<(u32, Vector3)>,
     /// Volume, m^3.
     pub volume: f64,
-    /// Part of the bulk modulus that the pressure replaces, Pa.
+    /// Part of the bulk modulus that the pressure carries instead of the stiffness, Pa.
     pub excess: f64,
-    /// Longitudinal (P-wave) modulus of the stiffness without that part, Pa.
+    /// Longitudinal (P-wave) modulus that remains in the stiffness, Pa.
     pub rest: f64,
 }
 

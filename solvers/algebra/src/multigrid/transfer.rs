@@ -190,8 +190,8 @@ fn prolong_lanes<const FMA: bool, const B: usize, const C: usize, W: Weight<B, C
 }
 
 impl<const B: usize> Transfer<Dense<B>> {
-    /// Builds the smoothed prolongation `P = (I - w D^-1 A) T` with `w = 4/3` over the largest eigenvalue of
-    /// `D^-1 A` (Vanek, Mandel and Brezina 1996).
+    /// Builds the smoothed prolongation `P = (I - w D^-1 A) T` from the prolongation `T` of the aggregates,
+    /// with `w = 4/3` over the largest eigenvalue of `D^-1 A` (Vanek, Mandel and Brezina 1996).
     pub fn smoothed(
         matrix: &Operator<B>,
         graph: &Graph,
@@ -290,8 +290,8 @@ fn in_rows<T: Send>(offsets: &[usize], entries: &mut [T], run: impl Fn(Range<usi
 }
 
 impl Transfer<Diagonal> {
-    /// Builds the prolongation of a nested mesh for degrees of freedom `3 node + axis` that are free on both
-    /// sides.
+    /// Builds the prolongation between nested meshes. It couples the degrees of freedom `3 node + axis` that
+    /// are free at the fine node and at the coarse node; `held` marks the constrained ones of the fine mesh.
     pub fn nested(coarser: &Coarser, held: &[bool]) -> Transfer<Diagonal> {
         let (mut offsets, mut columns, mut weights) = (vec![0], Vec::new(), Vec::new());
         for i in 0..coarser.rows.len() {

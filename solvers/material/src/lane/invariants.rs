@@ -16,7 +16,7 @@ pub struct Invariants {
     pub j: f64,
 }
 
-/// First row of the minors: that of `cof H`, and off the diagonal that of `cof H - H^T`.
+/// First row of the minors: the (1, 1) entry of `cof H`, and the (1, 2) and (1, 3) entries of `cof H - H^T`.
 pub type Minors = [f64; 3];
 
 /// Coefficients `a`, `b`, `c` of `w P = a H + b (cof H - H^T) + c I`. Every isotropic stress of this file has
@@ -42,15 +42,16 @@ impl Invariants {
         (Invariants::new(h[0] + h[4] + h[8], rest), [x, y, z])
     }
 
-    /// Returns the coefficients of `w/J (s J (F - F^-T) + v cof F)`, given `s w`, `s w/J` and `v w/J`, from
-    /// `J (F - F^-T) = J H - (cof H - H^T) + rest I`.
+    /// Returns the [`Coefficients`] of `w/J (s J (F - F^-T) + v cof F)`, with the arguments `stretch = s w`,
+    /// `shape = s w/J` and `volume = v w/J`. Uses `J (F - F^-T) = J H - (cof H - H^T) + rest I`.
     #[inline(always)]
     pub fn combined<const FMA: bool>(&self, stretch: f64, shape: f64, volume: f64) -> Coefficients {
         let m = madd::<FMA>;
         [stretch, volume - shape, m(shape, self.rest, m(volume, self.trace, volume))]
     }
 
-    /// Returns the coefficients of `w P = w/J (mu J (F - F^-T) + lambda ln(J) cof F)`.
+    /// Returns the [`Coefficients`] of the neo-Hookean stress `w P = w/J (mu J (F - F^-T) + lambda ln(J) cof
+    /// F)`, with moduli in Pa and the volume `w` of the point in m^3.
     #[inline(always)]
     pub fn stress<const FMA: bool>(&self, w: f64, mu: f64, lambda: f64) -> Coefficients {
         // The logarithm contains the same quotient, so a single division suffices.
@@ -58,8 +59,9 @@ impl Invariants {
         self.combined::<FMA>(w * mu, mu * per_j, lambda * ln_1p::<FMA>(self.j) * per_j)
     }
 
-    /// Returns `b = J^(-2/3) I1 / 3 - 1` and the stress `w mu J^(-2/3) (F - I1/3 F^-T)`: energy and stress of
-    /// a group's points except for their shared dilation.
+    /// Returns `b = J^(-2/3) I1 / 3 - 1` and the [`Coefficients`] of `w mu J^(-2/3) (F - I1/3 F^-T)`. These
+    /// are the isochoric energy (over `3/2 mu`) and stress of a point whose dilation is shared with a group;
+    /// [`pressed`] adds the dilation.
     #[inline(always)]
     pub fn isochoric<const FMA: bool>(&self, h: &[f64; 9], w_mu: f64) -> (f64, Coefficients) {
         let m = madd::<FMA>;

@@ -25,7 +25,8 @@ pub struct LaneStrain {
     pub h: [Lanes; 9],
     /// `tr H` and `II(H) + det H`; their sum is `J - 1`.
     pub invariants: [Lanes; 2],
-    /// First row of `cof H`; off the diagonal, of `cof H - H^T`.
+    /// First row of the minors of each point ([`Minors`]): (1, 1) of `cof H`, (1, 2) and (1, 3) of `cof H -
+    /// H^T`.
     pub minors: [Lanes; 3],
 }
 
@@ -34,7 +35,7 @@ impl LaneStrain {
     pub const ZERO: LaneStrain =
         LaneStrain { h: [[0.0; LANES]; 9], invariants: [[0.0; LANES]; 2], minors: [[0.0; LANES]; 3] };
 
-    /// Returns the gradient of a lane, row by row.
+    /// Returns the displacement gradient of a lane, row by row.
     #[inline(always)]
     pub fn lane(&self, l: usize) -> [f64; 9] {
         of_lane(&self.h, l)

@@ -103,7 +103,7 @@ impl Ogden {
         Ok(Ogden { terms: terms.to_vec(), bulk, series: series_of(terms) })
     }
 
-    /// Terms `(mu_p, alpha_p)`.
+    /// Returns the terms `(mu_p, alpha_p)`: `mu_p` in Pa, `alpha_p` dimensionless.
     pub fn terms(&self) -> &[(f64, f64)] {
         &self.terms
     }

@@ -3,15 +3,16 @@
 /// Energies since the start, J.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Energy {
-    /// Kinetic, `v . M v / 2`.
+    /// Kinetic energy `v . M v / 2` at the present time.
     pub kinetic: f64,
-    /// Strain energy. With relaxation: work of the internal forces, stored and dissipated.
+    /// Strain energy at the present time. With relaxation: work of the internal forces, stored and
+    /// dissipated.
     pub internal: f64,
     /// Work of loads, supports and tools on the body, by the trapezoidal rule from step to step.
     pub external: f64,
     /// Energy dissipated by the damping.
     pub damped: f64,
-    /// Kinetic and strain energy at the start.
+    /// Kinetic plus strain energy at time 0.
     pub start: f64,
 }
 

@@ -7,7 +7,7 @@ use shape::Vector3;
 use super::{Energy, Mass, Ramps, TimeError};
 use crate::{NewtonParams, StaticProblem, StaticWork, Step};
 
-/// A body driven in real time.
+/// A body whose loads, supports and tools follow functions of physical time.
 #[derive(Clone, Debug)]
 pub struct TimeProblem<'a> {
     /// The body with full loads, prescribed displacements and tools.
@@ -25,7 +25,7 @@ pub struct TimeProblem<'a> {
 pub struct Inertia<'a> {
     /// Mass matrix.
     pub mass: &'a Mass,
-    /// Damping `c M v`, `c` in 1/s.
+    /// Factor `c` of the mass-proportional damping force `c M v`, 1/s.
     pub damping: f64,
     /// Initial displacement, m; empty for zero. Constrained degrees of freedom take their prescribed values.
     pub displacement: &'a [Vector3],
@@ -48,7 +48,7 @@ pub struct TimeParams {
     /// Spectral radius at infinite frequency, 0 to 1. With 1 nothing is dissipated; with 0 unresolved
     /// frequencies vanish in one step. Contact needs a value below 1.
     pub rho_inf: f64,
-    /// Newton's method.
+    /// Parameters of Newton's method.
     pub newton: NewtonParams,
     /// Uzawa iterations of the augmented Lagrangian per step; 0 for a plain penalty.
     pub augmentations: usize,
@@ -69,7 +69,8 @@ pub struct Motion {
 /// A converged step.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TimeStep {
-    /// Step in time (s) with its iterations and tools. Its energy is that of the laws without relaxation.
+    /// Record of the step (its time in s, Newton iterations, tools). [`Step::energy`] is the strain energy of
+    /// the laws without relaxation.
     pub step: Step,
     /// Energy balance.
     pub energy: Energy,

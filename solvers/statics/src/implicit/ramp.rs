@@ -21,11 +21,11 @@ pub enum Ramp {
 /// Ramps of loads, supports and tools.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ramps {
-    /// Loads.
+    /// Ramp of the loads.
     pub loads: Ramp,
-    /// Prescribed displacements, of nodes and of surfaces constrained by penalty.
+    /// Ramp of the prescribed displacements, at nodes and on surfaces constrained by penalty.
     pub supports: Ramp,
-    /// Displacements and forces of tools.
+    /// Ramp of the tools' prescribed displacements and forces.
     pub tools: Ramp,
 }
 

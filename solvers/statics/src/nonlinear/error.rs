@@ -10,7 +10,7 @@ use crate::SolveError;
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[error("quadrature point {point} is inverted: J = {det:.3e}")]
 pub struct Inverted {
-    /// Quadrature point.
+    /// Index of the quadrature point.
     pub point: usize,
     /// Value of `J = det F` at the point.
     pub det: f64,

@@ -29,8 +29,8 @@ pub(crate) struct TimeTerms {
     pub relaxing: Option<Relaxing>,
 }
 
-/// Inertia and damping of one step of an implicit scheme: the force `carried - M r`, with
-/// `r = factor (u - from) + settled` in free degrees of freedom and `r = settled` in constrained ones, m/s^2.
+/// Inertia and damping of one step of an implicit scheme: the force `carried - M r`. In free degrees of
+/// freedom `r = factor (u - from) + settled`, in constrained ones `r = settled`, m/s^2.
 #[derive(Clone, Debug)]
 pub(crate) struct InertiaTerms {
     /// Derivative of `r` with respect to `u`, 1/s^2.
@@ -64,8 +64,11 @@ impl Ended {
 }
 
 impl InertiaTerms {
-    /// Adds the force to `out` and returns the norm of `M settled`, N. A residual is measured against this
-    /// norm, because the two parts of `r` cancel in free flight.
+    /// Adds the force `carried - M r` (N) at the nodal parameters `u` (m) to `out`. `prescribed` has one
+    /// entry per degree of freedom `3 node + axis`.
+    ///
+    /// Returns the norm of `M settled`, N. Residuals are measured against this norm, because the two terms of
+    /// `r` cancel in free flight.
     pub fn add_force(
         &self,
         mass: &SurfaceTable,

@@ -47,7 +47,7 @@ pub(crate) struct Internal {
     pub misfit: Vec<f64>,
     /// Strain energy, J; with a pressure field, the value of the saddle-point functional.
     pub energy: f64,
-    /// Point with the smallest J, and this J.
+    /// Index of the quadrature point with the smallest `J`, and this `J`.
     pub smallest: (usize, f64),
 }
 

@@ -107,7 +107,7 @@ impl Split {
         }
     }
 
-    /// Returns `psi`, J/m^3.
+    /// Returns the energy density `psi` of `law`, J/m^3.
     pub fn energy(&self, law: &Law) -> f64 {
         law.energy(&self.H_bar)
     }

@@ -51,7 +51,7 @@ pub struct StaticParams {
     /// travels too far in a step, the limit is a travel of an eighth of the tool's deepest allowed
     /// penetration, if that is less.
     pub smallest: f64,
-    /// Newton's method.
+    /// Parameters of Newton's method.
     pub newton: NewtonParams,
     /// Uzawa iterations of the augmented Lagrangian per step; 0 for a plain penalty.
     pub augmentations: usize,
@@ -142,12 +142,12 @@ pub struct Rest<'a> {
 }
 
 /// Solves a static problem in load steps. `observe` is called after every converged step with the step and
-/// the state at its end.
+/// the state at its end. A solution that ends early is returned as a [`StaticPath`] whose `failure` gives the
+/// reason.
 ///
 /// # Errors
-/// Errors of the problem itself. A rigid motion that neither supports nor, at the end, tools prevent is such
-/// an error, because its result is arbitrary. A solution that ends early is a [`StaticPath`] with its
-/// `failure`.
+/// Errors of the problem itself. One of these is a rigid motion prevented neither by supports nor, at the
+/// end, by tools, because its result is arbitrary.
 pub fn solve_static(
     problem: &StaticProblem,
     params: &StaticParams,

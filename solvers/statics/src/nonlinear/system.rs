@@ -45,7 +45,7 @@ impl SurfaceTable {
         SurfaceTable { rows: sorted, weights, of_node }
     }
 
-    /// Builds a table with one point in each node.
+    /// Builds a table with one point at each node: the shape value 1 and the given weight (kg for a mass).
     pub fn nodal(weights: Vec<f64>) -> SurfaceTable {
         let rows = Sorted::new((0..weights.len() as u32).map(|i| std::iter::once((i, 1.0))));
         let of_node = rows.incidence(weights.len());

@@ -17,8 +17,9 @@ const SHORTEST: f64 = 0.1;
 const QUICK: usize = 6;
 
 impl Newton<'_> {
-    /// Solves a step as [`Newton::step`] does. If that fails and force-driven tools do not touch yet, the
-    /// step is solved under displacement control.
+    /// Solves the step from `start` to `time` as [`Newton::step`] does, and returns the new state with the
+    /// record of the step. If that fails and the force-driven tools do not touch the body yet, the step is
+    /// solved under displacement control.
     pub fn find(
         &mut self,
         start: &State,
