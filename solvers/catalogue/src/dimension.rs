@@ -112,7 +112,7 @@ impl Dimension {
         }
     }
 
-    /// Returns the SI unit of the value inside the program, as printed in tables.
+    /// Returns the SI unit of values inside the program and in tables, such as `rad` for an angle.
     pub const fn si_unit(self) -> &'static str {
         match self {
             Dimension::Length => "m",
@@ -173,7 +173,8 @@ impl Dimension {
         Dimension::ALL.iter().copied().find(|d| d.exponents() == exponents)
     }
 
-    /// Returns the dimension of a quantity in `unit`, such as `kPa` ("" for a bare number).
+    /// Returns the dimension of a quantity in `unit`, such as `kPa` ("" for a bare number). Of several
+    /// dimensions with the same exponents, the first in [`Dimension::ALL`] is returned.
     pub fn of_unit(unit: &str) -> Option<Dimension> {
         Quantity::read(&format!("1 {unit}")).ok().and_then(|q| Dimension::of(q.exponents))
     }
@@ -215,7 +216,8 @@ impl Dimension {
         self.take(quantity, text)
     }
 
-    /// Returns the SI value of a quantity that must have this dimension. `text` is its wording in the file.
+    /// Returns the SI value of a quantity that must have this dimension. `text` is the quantity as written in
+    /// the file, for the error.
     ///
     /// # Errors
     ///

@@ -1,7 +1,8 @@
 //! Nearest known name of a mistyped name.
 
 /// Returns the known name nearest to `name`, counting insertions, deletions, substitutions and swaps (Damerau
-/// 1964). Of equally near names the first is returned. Returns `None` if no name is near enough.
+/// 1964). Of equally near names the first is returned. Returns `None` if every name needs more than one
+/// change plus one per three of its letters.
 pub fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     // The cost grows with the product of the lengths; no known name is half as long as this limit.
     let name: String = name.chars().take(80).collect();

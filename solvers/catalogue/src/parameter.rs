@@ -9,7 +9,7 @@ use crate::values::Value;
 pub struct Parameter {
     /// Name in files.
     pub name: &'static str,
-    /// Dimension; values are in its SI unit.
+    /// Dimension of the value, which is in the SI unit of that dimension.
     pub dimension: Dimension,
     /// Kind of value.
     pub kind: Kind,
@@ -17,7 +17,7 @@ pub struct Parameter {
     pub default: Option<f64>,
     /// Whether a value must be given.
     pub required: bool,
-    /// Accepted values, for a list those of every number.
+    /// Range of accepted values. It applies to each number of a list or vector.
     pub range: Range,
     /// Meaning, in a few words.
     pub meaning: &'static str,
@@ -56,13 +56,13 @@ pub enum Range {
 }
 
 impl Parameter {
-    /// Makes a number that must be given.
+    /// Makes a parameter for a number that must be given.
     pub const fn required(name: &'static str, dimension: Dimension, meaning: &'static str) -> Parameter {
         let (kind, range) = (Kind::Number, Range::Any);
         Parameter { name, dimension, kind, default: None, required: true, range, meaning }
     }
 
-    /// Makes a number with a default.
+    /// Makes a parameter for a number with a default, in the SI unit of its dimension.
     pub const fn default(
         name: &'static str,
         dimension: Dimension,
@@ -73,7 +73,7 @@ impl Parameter {
         Parameter { default: Some(default), required: false, ..parameter }
     }
 
-    /// Makes a number that may be absent.
+    /// Makes a parameter for a number that may be absent and has no default.
     pub const fn optional(name: &'static str, dimension: Dimension, meaning: &'static str) -> Parameter {
         Parameter { required: false, ..Parameter::required(name, dimension, meaning) }
     }
@@ -164,7 +164,7 @@ impl Range {
         }
     }
 
-    /// Describes the range in words.
+    /// Returns the range in words, such as `a value above zero`.
     pub fn text(self) -> String {
         match self {
             Range::Any => "any number".into(),

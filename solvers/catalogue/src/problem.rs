@@ -21,7 +21,7 @@ impl Problem {
         Problem { found: None, problem: problem.into(), help: None, parameter: None }
     }
 
-    /// Adds the value, clipped to one line of at most 80 characters.
+    /// Adds the value as written in the file, clipped as by [`clip`].
     pub fn found(mut self, found: impl fmt::Display) -> Problem {
         self.found = Some(clip(&found.to_string()));
         self
@@ -55,7 +55,7 @@ impl fmt::Display for Problem {
 
 impl std::error::Error for Problem {}
 
-/// Clips a text to one line of at most 80 characters.
+/// Joins a text to one line and clips the line after 80 characters, with `...` in place of the rest.
 pub fn clip(text: &str) -> String {
     let line = text.split_whitespace().collect::<Vec<_>>().join(" ");
     match line.char_indices().nth(80) {

@@ -99,10 +99,10 @@ const PLAIN: [Named; 9] = [
     ("mmHg", 0, 133.322_387_415, [-1, 1, -2, 0]),
 ];
 
-/// Word of a unit, for lists.
+/// Named unit without prefix, such as `Pa` or `min`, for lists of the known units.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct UnitWord {
-    /// The word.
+    /// Name of the unit, without prefix.
     pub name: &'static str,
     /// Whether the unit takes the prefixes G, M, k, h, c, m, u and n.
     pub prefixed: bool,
@@ -112,7 +112,7 @@ pub struct UnitWord {
     pub exponents: Exponents,
 }
 
-/// Iterates over every word of a unit.
+/// Iterates over all named units that a quantity may contain.
 pub fn units() -> impl Iterator<Item = UnitWord> {
     let word = |prefixed: bool| {
         move |&(name, ten, factor, exponents): &Named| UnitWord {

@@ -25,7 +25,7 @@ pub struct Values {
 }
 
 impl Values {
-    /// Starts without any given value.
+    /// Makes a set of values in which no parameter is given.
     pub fn new(parameters: &'static [Parameter]) -> Values {
         Values { parameters, given: vec![None; parameters.len()] }
     }
@@ -80,13 +80,13 @@ impl Values {
         self.get(name).ok_or_else(|| Problem::new(format!("{name} is missing")))
     }
 
-    /// Returns a given list or vector.
+    /// Returns a given list or vector; `None` if it is not given.
     pub fn list(&self, name: &str) -> Option<&[f64]> {
         self.value(name)
             .and_then(|value| if let Value::List(list) = value { Some(list.as_slice()) } else { None })
     }
 
-    /// Returns a given flag or its default.
+    /// Returns a given flag or its default; false if there is neither.
     pub fn flag(&self, name: &str) -> bool {
         match self.value(name) {
             Some(Value::Flag(flag)) => *flag,
@@ -94,7 +94,7 @@ impl Values {
         }
     }
 
-    /// Whether there is a parameter of that name.
+    /// Whether the entry has a parameter of that name.
     pub fn takes(&self, name: &str) -> bool {
         self.parameters.iter().any(|parameter| parameter.name == name)
     }

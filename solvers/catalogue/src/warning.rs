@@ -3,14 +3,14 @@
 
 use crate::Dimension;
 
-/// Kind of warning.
+/// Kind of warning, with the dimension of the value that is recorded with it.
 #[derive(Debug, PartialEq)]
 pub struct Warning {
     /// Code in files and tables.
     pub code: &'static str,
     /// Dimension of the recorded value.
     pub dimension: Dimension,
-    /// Meaning in one line, followed by the meaning of the value.
+    /// Meaning of the warning and, after a semicolon or colon, the meaning of the recorded value.
     pub meaning: &'static str,
 }
 

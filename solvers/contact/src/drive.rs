@@ -4,7 +4,8 @@ use shape::Vector3;
 
 use crate::{Contacts, Tool};
 
-/// Drive of a tool: the value at the end of the loading, approached in proportion to time.
+/// Drive of a tool: its displacement or its force at the end of the loading, approached in proportion to
+/// time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Drive {
     /// Displacement of the tool along its direction (closure), m.
@@ -33,11 +34,11 @@ pub struct ToolState {
     pub moment: Vector3,
     /// Number of surface points in contact.
     pub active: usize,
-    /// Effective number of points that carry the force, see [`Contacts::carriers`].
+    /// Effective number of points that carry the force, see [`Contacts::carriers`]; 0 without contact.
     pub carriers: f64,
     /// Undeformed area of the points in contact, m^2.
     pub area: f64,
-    /// Deepest penetration, m.
+    /// Deepest penetration, m; 0 if no point is inside the tool.
     pub penetration: f64,
 }
 

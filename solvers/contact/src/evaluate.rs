@@ -217,23 +217,24 @@ impl Contacts {
         &self.points
     }
 
-    /// Tractions on the tissue per undeformed area, Pa.
+    /// Tractions on the tissue per undeformed area, Pa, one vector per point in contact.
     pub fn tractions(&self) -> &[Vector3] {
         &self.tractions
     }
 
-    /// Contact tangents `dt/dx` (3, 3), Pa/m, unsymmetric in slip; empty from [`ContactSurface::tractions`].
+    /// Contact tangents `dt/dx` (3, 3), Pa/m, one per point in contact, unsymmetric in slip; empty from
+    /// [`ContactSurface::tractions`]. The derivative with respect to the tool's displacement is
     /// `dt/dclosure = -(dt/dx) along`.
     pub fn stiffness(&self) -> &[Matrix3] {
         &self.stiffness
     }
 
-    /// History to commit, see [`ContactHistory::commit`].
+    /// Friction histories to commit, one per point in contact, see [`ContactHistory::commit`].
     pub fn slip(&self) -> &[Slip] {
         &self.slip
     }
 
-    /// Normal pressures per undeformed area, Pa.
+    /// Normal pressures per undeformed area, Pa, one per point in contact; positive.
     pub fn pressures(&self) -> &[f64] {
         &self.pressures
     }
@@ -248,8 +249,8 @@ impl Contacts {
         self.moment
     }
 
-    /// Undeformed area of the points in contact, m^2: `sum_q w`. Each point is in contact or not, so the edge
-    /// of the contact is known to half a face's width.
+    /// Undeformed area of the points in contact, m^2: `sum_q w`. A point counts with its whole weight or not
+    /// at all, so the edge of the contact is known only to half the width of a face.
     pub fn area(&self) -> f64 {
         self.area
     }

@@ -36,17 +36,17 @@ impl ContactHistory {
         }
     }
 
-    /// Number of points.
+    /// Number of points of the surface.
     pub fn points(&self) -> usize {
         self.points
     }
 
-    /// Committed slip of one point.
+    /// Committed friction history of one point; [`Slip::NONE`] if none is stored.
     pub fn slip(&self, point: usize) -> Slip {
         self.slip.get(point).copied().unwrap_or(Slip::NONE)
     }
 
-    /// Multiplier of one point, Pa.
+    /// Multiplier of one point, Pa; 0 if the point did not touch at the last augmentation.
     pub fn multiplier(&self, point: usize) -> f64 {
         self.multiplier.get(point).copied().unwrap_or(0.0)
     }
@@ -79,8 +79,8 @@ impl ContactHistory {
         }
     }
 
-    /// Commits the slip of the points in contact after a converged step, and resets that of all others.
-    /// `contacts` is `None` if the tool was skipped.
+    /// Commits the slip of the points in contact after a converged step, and resets that of all others. Does
+    /// nothing without friction. `contacts` is `None` if no point was near the tool.
     pub fn commit(&mut self, contacts: Option<&Contacts>) {
         if self.slip.is_empty() {
             return;
@@ -97,8 +97,8 @@ impl ContactHistory {
         }
     }
 
-    /// Performs one Uzawa step after a converged solve: `l <- max(0, l - k_n g)` at every point, which is the
-    /// pressure just computed.
+    /// Performs one Uzawa step after a converged solve: `l <- max(0, l - k_n g)` at every point. The new
+    /// multiplier is the pressure just computed.
     ///
     /// Repeat solve and augmentation until [`Contacts::max_penetration`] is small enough, then commit.
     /// Friction is bounded by the augmented pressure and keeps its elastic stick.

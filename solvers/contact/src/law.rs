@@ -208,13 +208,14 @@ impl Slip {
 /// Response of a point in contact, in the tool's frame.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Response {
-    /// Pressure `p`, Pa.
+    /// Normal pressure `p`, per undeformed area, Pa.
     pub pressure: f64,
-    /// Traction `t`, Pa.
+    /// Traction `t` on the tissue, per undeformed area, Pa.
     pub traction: Vector3,
-    /// History to commit if the step converges here.
+    /// Friction history to commit if the step converges in this state.
     pub slip: Slip,
-    /// Frictional work since the last commit, J/m^2: `mu p (|e*| - mu p / k_t)` in slip.
+    /// Frictional work since the last commit, J/m^2: `mu p (|e*| - mu p / k_t)` with the trial slip `e*`
+    /// while the point slips, 0 while it sticks.
     pub dissipated: f64,
     /// Trial slip before projection, `v = e_n + c (x - x_n)`, m.
     drift: Vector3,

@@ -5,10 +5,11 @@ use shape::{Point3, PointRows, Vector3};
 
 use super::{ContactError, ContactSurface, Stand, Tool};
 
-/// Largest depth of a surface location in a tool without contact, relative to the distance to the nearest
-/// contact point, during the loading: points may be about to touch.
+/// Largest depth in a tool without contact that is accepted during the loading, when points may be about to
+/// touch. The depth is relative to the distance between the deepest surface location and the nearest contact
+/// point.
 pub const ON_THE_WAY: f64 = 0.5;
-/// The same at the end of the loading, when no contact can follow.
+/// Largest accepted depth as [`ON_THE_WAY`], at the end of the loading, when no contact can follow.
 const IN_THE_END: f64 = 0.01;
 /// Number of subdivisions of a triangle into four, to find its deepest location.
 const DIVISIONS: usize = 5;
@@ -22,11 +23,12 @@ pub struct Outline<'a> {
 }
 
 impl<'a> Outline<'a> {
-    /// Makes the outline from triangles between the points of a table.
+    /// Makes the outline from triangles. Their corners are indices of points of `rows`, and the shape
+    /// functions of `rows` move these points with the body.
     ///
     /// # Errors
     ///
-    /// [`ContactError::Length`] if a corner is not a point of the table.
+    /// [`ContactError::Length`] if a corner is not a point of `rows`.
     pub fn new(rows: &'a PointRows, triangles: &'a [[u32; 3]]) -> Result<Outline<'a>, ContactError> {
         let expected = rows.points().len();
         match triangles.iter().flatten().find(|&&k| k as usize >= expected) {
@@ -50,8 +52,9 @@ impl<'a> Outline<'a> {
 }
 
 impl ContactSurface<'_> {
-    /// Checks that no corner of the outline is too deep in a tool that touches no point. The check is for
-    /// reported states during the loading: a depth at which the next point may be about to touch is allowed.
+    /// Checks that no corner of the outline is too deep in a tool that touches no point. Use the check for
+    /// reported states during the loading. It accepts depths up to [`ON_THE_WAY`], at which the next point
+    /// may be about to touch. Without an outline the check passes.
     ///
     /// # Errors
     ///
@@ -69,8 +72,8 @@ impl ContactSurface<'_> {
         self.refuse(worst)
     }
 
-    /// Checks that no location of the outline is in a tool that touches no point, at the end of the loading,
-    /// when no further point can come into contact.
+    /// Checks at the end of the loading that no location of the outline is in a tool that touches no point.
+    /// No further point can come into contact then. Without an outline the check passes.
     ///
     /// # Errors
     ///

@@ -19,15 +19,16 @@ const UNSEEN: f64 = 0.08;
 /// State of a tool and a surface.
 #[derive(Clone, Copy, Debug)]
 pub struct Stand<'u> {
-    /// Closure, m.
+    /// Displacement of the tool along its direction (closure), m.
     pub closure: f64,
-    /// Nodal parameters, m.
+    /// Nodal displacements, or nodal parameters of a meshless basis, m, one vector per node.
     pub u: &'u [Vector3],
 }
 
 impl ContactSurface<'_> {
-    /// Checks as [`ContactSurface::check_passage`] for a tool that travels while the surface stays. Short
-    /// travels, within which no point can enter and leave the tool, cost nothing.
+    /// Checks as [`ContactSurface::check_passage`] for a tool that moves between two closures (m) while the
+    /// surface stays in the state `u` (m). A travel so short that no point can enter and leave the tool
+    /// passes at once.
     pub fn check_travel(
         &self,
         tool: &Tool,
@@ -41,8 +42,8 @@ impl ContactSurface<'_> {
         self.check_passage(tool, Stand { closure: from, u }, Stand { closure: to, u }, touches)
     }
 
-    /// Checks that no step from one state to another took the surface through the tool. `touches` states
-    /// whether the tool touches any point of the surface at the end.
+    /// Checks that the step from one state to another did not take the surface through the tool. `touches`
+    /// states whether the tool touches any point of the surface at the end.
     ///
     /// A point that goes deeper along its path than [`Tool::deepest`] has been jumped over: points that slide
     /// along a tool cut its corners by less. If nothing touches at the end, a much smaller depth is an error.

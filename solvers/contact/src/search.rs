@@ -48,7 +48,7 @@ struct List {
 }
 
 impl<'a> ContactSearch<'a> {
-    /// Prepares the search for the given number of tools.
+    /// Prepares a search for the contacts of a surface with a number of `tools`, which are numbered from 0.
     pub fn new(surface: &'a ContactSurface<'a>, tools: usize) -> ContactSearch<'a> {
         let mut nodes = surface.nodes.clone();
         nodes.sort_unstable();
@@ -67,7 +67,8 @@ impl<'a> ContactSearch<'a> {
         }
     }
 
-    /// Starts the search in the state `u` (m, one vector per node).
+    /// Starts the search of all tools in the state `u` (m, one vector per node). It is called once per state,
+    /// followed by [`SearchAt::tractions`] for each tool.
     pub fn at<'s>(&'s mut self, u: &'s [Vector3]) -> SearchAt<'s, 'a> {
         let moved = self.stretch * self.largest_change(u);
         SearchAt { search: self, u, moved }
@@ -110,8 +111,8 @@ pub struct SearchAt<'s, 'a> {
 }
 
 impl SearchAt<'_, '_> {
-    /// Evaluates as [`ContactSurface::tractions`], for the tool with this number. The number must be the same
-    /// in every state.
+    /// Evaluates as [`ContactSurface::tractions`], for the tool with this number (from 0). A tool must keep
+    /// its number in every state.
     ///
     /// # Errors
     ///

@@ -128,13 +128,14 @@ impl<'a> ContactSurface<'a> {
         Ok(near)
     }
 
-    /// Checks that a tool pushes into the body, not out of it with more than a tenth of its force: such a
-    /// tool has slipped through between points and lifts them from within.
+    /// Checks that no more than a tenth of a tool's force points out of the body. A tool above this limit has
+    /// slipped through between points and lifts them from within. `contacts` are those of one tool in the
+    /// state `u` (m).
     ///
-    /// The deformed normal `(x_b - x_a) x (x_c - x_a)` is computed from two neighbouring points, which
-    /// ignores any bending between them. A push that points out of the surface by less than 12 degrees is
-    /// therefore accepted, and so are a few points on a crease. Points at corners and on edges are not checked:
-    /// faces of every side meet there.
+    /// The deformed normal of a point, `(x_b - x_a) x (x_c - x_a)`, is computed from two neighbouring points,
+    /// which ignores any bending between them. Two cases are therefore accepted: a force that points out of
+    /// the surface by less than 12 degrees, and a few points on a crease. Points at corners and on edges are
+    /// not checked, because faces of different directions meet there.
     ///
     /// # Errors
     ///

@@ -23,11 +23,11 @@ pub struct PointContact {
     pub traction: Vector3,
     /// Tangent `dt/dx` (3, 3), Pa/m; unsymmetric in slip. `dt/dclosure = -(dt/dx) along`.
     pub stiffness: Matrix3,
-    /// History to commit if the step converges here.
+    /// Friction history to commit if the step converges in this state.
     pub slip: Slip,
     /// Signed distance, m; negative inside the tool.
     pub gap: f64,
-    /// Normal pressure, Pa.
+    /// Normal pressure per undeformed area, Pa; 0 without contact.
     pub pressure: f64,
     /// Frictional work since the last commit, J per undeformed m^2; never negative.
     pub dissipated: f64,
@@ -99,8 +99,8 @@ impl Tool {
         self.deepest
     }
 
-    /// Lowest and highest corner of a box along the world's axes that contains the tool; infinite for a
-    /// plate.
+    /// Lowest and highest corner (m) of a box along the world's axes that contains the tool at a closure (m);
+    /// infinite for a plate.
     pub fn bounds(&self, closure: f64) -> (Point3, Point3) {
         let place = self.place(closure);
         let (_, corner) = self.shape.bounds();
@@ -152,7 +152,8 @@ impl Tool {
         }
     }
 
-    /// Returns the signed distance of the current position `x` (m), m; negative inside.
+    /// Returns the signed distance (m) of the current position `x` (m) from the tool at a closure (m);
+    /// negative inside.
     pub fn gap(&self, closure: f64, x: &Point3) -> f64 {
         self.shape.foot(&self.local(closure, x)).0
     }

@@ -23,7 +23,7 @@ pub struct DynamicsParams {
 
 /// Degree of freedom with a prescribed displacement.
 pub struct Prescribed<'a> {
-    /// Node.
+    /// Index of the node.
     pub node: u32,
     /// Axis, 0 to 2.
     pub axis: u8,
@@ -31,8 +31,9 @@ pub struct Prescribed<'a> {
     pub motion: &'a (dyn Fn(f64) -> f64 + Sync),
 }
 
-/// External forces: `(t, u_n, v_(n-1/2), f)` adds nodal forces (N) to `f`, which starts from zero. The
-/// velocities lag by half a step.
+/// External forces, as a function `(t, u, v, f)` that adds nodal forces (N) to `f`, which starts from zero.
+/// Time `t` (s) and displacements `u` (m) are those of step n, and the velocities `v` (m/s) lag by half a
+/// step: `v_(n-1/2)`.
 pub type External<'a> = dyn FnMut(f64, &[Vector3], &[Vector3], &mut [Vector3]) + 'a;
 
 /// Energy balance at one step, J.
@@ -47,16 +48,16 @@ pub struct Balance {
     pub kinetic: f64,
     /// Strain energy.
     pub strain: f64,
-    /// Work of the external forces since the start, without that of tools.
+    /// Work of the external forces since the start. The work of the tools' drives is in `tools.work`.
     pub external: f64,
-    /// Work of the supports since the start.
+    /// Work of the prescribed displacements since the start.
     pub support: f64,
     /// Energy lost to damping since the start.
     pub damping: f64,
     /// Energies of the tools; zero without tools.
     pub tools: ToolEnergies,
-    /// Relative energy error: the change of the sum below since the start, over the largest of its terms so
-    /// far.
+    /// Relative energy error: the change of the sum below since the first recorded step, over the largest of
+    /// its terms so far (without `tools.kinetic` and `tools.damping`).
     ///
     /// The sum is
     /// `kinetic + strain + damping + tools.kinetic + tools.stored + tools.friction + tools.damping` less
@@ -239,12 +240,12 @@ impl<'a, 'b> Dynamics<'a, 'b> {
         })
     }
 
-    /// Displacements, m.
+    /// Current displacements, m, one vector per node.
     pub fn displacements(&self) -> &[Vector3] {
         &self.u
     }
 
-    /// Velocities half a step back, m/s; at the start the given velocities.
+    /// Velocities half a step before the current displacements, m/s; at the start the given velocities.
     pub fn velocities(&self) -> &[Vector3] {
         &self.v
     }
@@ -254,12 +255,13 @@ impl<'a, 'b> Dynamics<'a, 'b> {
         self.step
     }
 
-    /// Time, s.
+    /// Time of the current displacements, s; 0 at the start.
     pub fn time(&self) -> f64 {
         self.since.1 + (self.step - self.since.0) as f64 * self.params.dt
     }
 
-    /// Reaction (N) at each prescribed degree of freedom in the last completed step.
+    /// Forces of the supports on the body in the last completed step, N, one per prescribed degree of
+    /// freedom.
     pub fn reactions(&self) -> &[f64] {
         &self.reaction
     }

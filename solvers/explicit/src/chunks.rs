@@ -77,8 +77,8 @@ impl Border {
         self.offsets[chunk]..self.offsets[chunk + 1]
     }
 
-    /// Runs `work(chunk, a, b)` on every chunk with its part of two slot arrays. Returns true if every call
-    /// returned true.
+    /// Runs `work(chunk, a, b)` on every chunk, in parallel. `a` and `b` are arrays with one value per slot,
+    /// of which each call receives the slots of its chunk. Returns true if every call returned true.
     pub fn for_each<A: Send, B: Send>(
         &self,
         a: &mut [A],
@@ -122,7 +122,7 @@ impl Border {
         });
     }
 
-    /// Sums the slots to nodal forces, N.
+    /// Sums the slots of each node, and writes the nodal forces (N) to `f`.
     pub fn forces(&self, slots: &[Slot], f: &mut [Vector3]) {
         self.sum(|slot| slots[slot].0, |[x, y, z, _]| Vector3::new(x, y, z), f);
     }
@@ -168,9 +168,9 @@ pub(super) fn split(
 
 /// Run of items with its nodes.
 pub(super) struct ChunkNodes {
-    /// Items, by their number in the table.
+    /// Numbers of the items in the table: elements or quadrature points.
     pub items: Vec<u32>,
-    /// Distinct nodes.
+    /// Distinct nodes of the items, in the order of first use.
     pub nodes: Vec<u32>,
     /// Positions of each item's nodes among `nodes`.
     pub local: Vec<Vec<u32>>,

@@ -93,7 +93,8 @@ pub fn critical_step(
     critical_step_touching(force, mass, u, free, None, params)
 }
 
-/// Estimates the critical step as [`critical_step`], for the body with springs on its surface.
+/// Estimates the critical step as [`critical_step`], for the body with ground `springs` on its surface, which
+/// stand for possible contact; `None` for the body alone.
 ///
 /// # Errors
 ///

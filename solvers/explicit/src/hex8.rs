@@ -37,8 +37,8 @@ struct Chunk {
 }
 
 impl Hex8 {
-    /// Builds the kernel from rows laid out as trilinear hexahedra. Returns `None` for groups other than one
-    /// per element, or if a law changes within an element.
+    /// Builds the kernel for rows laid out as trilinear hexahedra. Returns `None` if the body has dilation
+    /// groups other than one per element, or if the law changes within an element.
     pub fn new(body: &ExplicitBody, laws: Vec<LaneLaw>) -> Option<Hex8> {
         let (volume, rows) = (body.volume, body.volume.rows());
         let count = rows.len() / 8;

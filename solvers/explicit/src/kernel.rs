@@ -55,6 +55,6 @@ impl Kernel {
 pub struct KernelInfo {
     /// The kernel.
     pub kernel: Kernel,
-    /// Instruction set of its lanes; `None` for the plain loop.
+    /// Instruction set that the kernel runs on; `None` for the plain loop, which has no vector code.
     pub path: Option<LanePath>,
 }

@@ -16,8 +16,8 @@ pub enum Lumping {
 }
 
 impl Lumping {
-    /// Returns diagonal scaling for tables of quadratic elements (all rows with 10 or all with 20 nodes), row
-    /// sums for all other tables.
+    /// Chooses the method of lumping for a table: [`Lumping::DiagonalScaling`] for quadratic elements (all
+    /// rows with 10 or all with 20 nodes), [`Lumping::RowSum`] for all others.
     pub fn for_table(volume: &VolumeRows) -> Lumping {
         match volume.rows().uniform_len() {
             Some(10 | 20) => Lumping::DiagonalScaling,

@@ -37,8 +37,9 @@ impl LaneLaw {
         body.laws.iter().map(law).collect()
     }
 
-    /// Returns the contribution of this law to a group of points per volume, Pa: `mu` and `lambda` of the
-    /// neo-Hookean form, and the factor of `(J - 1)^2 / 2`.
+    /// Returns the moduli with which this law contributes to the energy of a dilation group, Pa: `mu` and
+    /// `lambda` of the neo-Hookean form, and the factor of `(J - 1)^2 / 2`. Laws other than the neo-Hookean
+    /// have `mu = 0`, and the factor of `(ln J)^2 / 2` as `lambda`.
     pub fn of_group(&self) -> [f64; 3] {
         match self {
             LaneLaw::NeoHookean(moduli) => [moduli.mu, moduli.lambda, 0.0],

@@ -48,9 +48,11 @@ struct Constants {
 }
 
 impl Nodal {
-    /// Prepares the pass over nodes. Returns `None` unless the groups are those of [`DilationGroups::nodal`]
-    /// with four equal shares, divided by part if there are several parts. `chunks` has the distinct nodes of
-    /// every chunk; the points of a chunk belong to one part.
+    /// Prepares the pass over the nodes, which turns the sums of each dilation group into its common dilation
+    /// and pressure. The points of each of the `chunks` must belong to one part of the body.
+    ///
+    /// Returns `None` unless the groups are those of [`DilationGroups::nodal`], divided by part if there are
+    /// several parts, and every element gives each of its four nodes a share of 1/4.
     pub fn new(
         body: &ExplicitBody,
         groups: &DilationGroups,

@@ -25,17 +25,18 @@ impl Inertia {
 /// Sums over the free degrees of freedom, with velocities `v-` before and `v+` after the step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Sums {
-    /// Sum of `m v- v+`.
+    /// Sum of `m v- v+`, J: twice the kinetic energy at the whole step.
     pub kinetic: f64,
-    /// Sums of `m v- (v- + v+)` and `m v+ (v- + v+)`.
+    /// Sums of `m v- (v- + v+)` and `m v+ (v- + v+)`, J, for the energy lost to damping.
     pub lost: [f64; 2],
-    /// Sum of `v+ v+`.
+    /// Sum of `v+ v+`, m^2/s^2: finite only if every velocity is.
     pub moved: f64,
-    /// Sum of `v-` times the external forces of this step and the previous step.
+    /// Sum of `v- (f + f_before)`, W, with the external forces of this step and of the previous step. Half
+    /// the time step times this sum is the work of the external forces.
     pub work: f64,
 }
 
-/// Forces of every node, N.
+/// Forces of every node, N; `before` has the external forces of the previous step.
 #[derive(Clone, Copy)]
 pub(super) struct Forces<'a> {
     pub external: &'a [Vector3],

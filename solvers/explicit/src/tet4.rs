@@ -30,8 +30,8 @@ pub(super) struct Tet4 {
 }
 
 impl Tet4 {
-    /// Builds the kernel from rows laid out as linear tetrahedra. Returns `None` for groups other than one
-    /// per node and part with equal weights.
+    /// Builds the kernel for rows laid out as linear tetrahedra. Returns `None` if the body has dilation
+    /// groups that [`Nodal::new`] does not support.
     pub fn new(body: &ExplicitBody, laws: Vec<LaneLaw>) -> Option<Tet4> {
         let (volume, rows) = (body.volume, body.volume.rows());
         let mut order = locality_order(volume.points());

@@ -9,7 +9,9 @@ use shape::{Point3, Vector3};
 ///
 /// At t = 0 every tool is placed at its first contact with the body, with zero gap. A ramp over seconds would
 /// otherwise spend part of its time on the approach. From there a displacement grows in proportion to time,
-/// from that of first contact to the requested value, and a force grows from zero.
+/// from that of first contact to the requested value, and a force grows from zero. A tool that would not
+/// touch the body before it reaches its requested displacement, or a force-driven tool that would pass by,
+/// starts from displacement 0 instead.
 ///
 /// A force needs a mass to act on: `m d'' = F - F_contact - alpha m d'` along the direction, by central
 /// differences with the body's time step. The mass is a free parameter if a case gives none. It adds its
@@ -20,7 +22,7 @@ use shape::{Point3, Vector3};
 pub struct MovingTool<'a> {
     /// The tool.
     pub tool: &'a Tool,
-    /// Displacement or force at the end of the ramp.
+    /// Displacement (m) or force (N) along the tool's direction at the end of the ramp.
     pub drive: Drive,
     /// Length of the ramp, s; the drive is constant afterwards.
     pub over: f64,
@@ -33,7 +35,7 @@ pub struct MovingTool<'a> {
 /// Tool at a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ToolMotion {
-    /// Displacement and forces.
+    /// Displacement, force and contact of the tool.
     pub state: ToolState,
     /// Speed along its direction over the previous step, m/s.
     pub speed: f64,
@@ -42,8 +44,8 @@ pub struct ToolMotion {
 /// Energies of all tools since the start, J.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ToolEnergies {
-    /// Work of the drives: of a force along its path, or against the contact force of a displacement-driven
-    /// tool.
+    /// Work of the drives: of the drive force along the tool's path, or, for a displacement-driven tool, the
+    /// work against its contact force.
     pub work: f64,
     /// Kinetic energy of tools with a mass.
     pub kinetic: f64,

@@ -322,30 +322,30 @@ metrics! {
         "seconds for all phases but reading files";
 }
 
-/// [`RMS`] along x, y and z, and of the magnitude.
+/// Four parts of [`RMS`]: along x, y and z, and of the magnitude.
 pub static RMS_PARTS: [&Metric; 4] = [&RMS_X, &RMS_Y, &RMS_Z, &RMS];
 
-/// [`INTEGRATION_RMS`] along x, y and z, and of the magnitude.
+/// Four parts of [`INTEGRATION_RMS`]: along x, y and z, and of the magnitude.
 pub static INTEGRATION_RMS_PARTS: [&Metric; 4] =
     [&INTEGRATION_RMS_X, &INTEGRATION_RMS_Y, &INTEGRATION_RMS_Z, &INTEGRATION_RMS];
 
-/// [`DISCRETISATION_RMS`] along x, y and z, and of the magnitude.
+/// Four parts of [`DISCRETISATION_RMS`]: along x, y and z, and of the magnitude.
 pub static DISCRETISATION_RMS_PARTS: [&Metric; 4] =
     [&DISCRETISATION_RMS_X, &DISCRETISATION_RMS_Y, &DISCRETISATION_RMS_Z, &DISCRETISATION_RMS];
 
-/// Force of a support along x, y and z.
+/// Metrics of the force of a support along x, y and z.
 pub static REACTION_PARTS: [&Metric; 3] = [&REACTION_X, &REACTION_Y, &REACTION_Z];
 
-/// Mean displacement of a face along x, y and z.
+/// Metrics of the mean displacement of a face along x, y and z.
 pub static MEAN_PARTS: [&Metric; 3] = [&MEAN_X, &MEAN_Y, &MEAN_Z];
 
-/// [`BESIDE_RMS`] along x, y and z, and of the magnitude.
+/// Four parts of [`BESIDE_RMS`]: along x, y and z, and of the magnitude.
 pub static BESIDE_RMS_PARTS: [&Metric; 4] = [&BESIDE_RMS_X, &BESIDE_RMS_Y, &BESIDE_RMS_Z, &BESIDE_RMS];
 
-/// [`TRANSFER_ONLY_RMS`] along x, y and z, and of the magnitude.
+/// Four parts of [`TRANSFER_ONLY_RMS`]: along x, y and z, and of the magnitude.
 pub static TRANSFER_ONLY_RMS_PARTS: [&Metric; 4] =
     [&TRANSFER_ONLY_RMS_X, &TRANSFER_ONLY_RMS_Y, &TRANSFER_ONLY_RMS_Z, &TRANSFER_ONLY_RMS];
 
-/// [`BESIDE_TRANSFER_RMS`] along x, y and z, and of the magnitude.
+/// Four parts of [`BESIDE_TRANSFER_RMS`]: along x, y and z, and of the magnitude.
 pub static BESIDE_TRANSFER_RMS_PARTS: [&Metric; 4] =
     [&BESIDE_TRANSFER_RMS_X, &BESIDE_TRANSFER_RMS_Y, &BESIDE_TRANSFER_RMS_Z, &BESIDE_TRANSFER_RMS];

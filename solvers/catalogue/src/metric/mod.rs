@@ -17,9 +17,9 @@ pub struct Metric {
     pub label: &'static str,
     /// Dimension of the value.
     pub dimension: Dimension,
-    /// Kind of number.
+    /// Kind of number, such as an error, a cost or a count.
     pub kind: Kind,
-    /// Requirements on a scene.
+    /// Requirement that a scene must meet for this metric.
     pub needs: Needs,
     /// Meaning, in one phrase.
     pub meaning: &'static str,
@@ -110,7 +110,8 @@ impl Metric {
     }
 }
 
-/// Returns the metric with that name; for `tool-force-2`, which belongs to the second tool, `tool-force`.
+/// Returns the metric with that name. A name may end in the number of a tool, a support or a face, from 2:
+/// `tool-force-2` returns the metric `tool-force`.
 pub fn find(name: &str) -> Option<&'static Metric> {
     let named = |name: &str| METRICS.iter().copied().find(|metric| metric.name == name);
     named(name).or_else(|| {
