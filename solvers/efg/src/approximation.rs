@@ -31,8 +31,8 @@ const UNITY: Unity = Unity::Within(1e-8);
 /// do not determine the basis at a point, these remedies are tried in order, and each is counted in
 /// [`MlsInfo`]:
 ///
-/// - At that point all supports are enlarged (to 1.4 times the `2m`-th neighbour's relative distance, at most
-///   3 times).
+/// - All supports are enlarged at that point by a common factor of at most 3: 1.4 times the relative distance
+///   `|x - x_I| / R_I` of the `2m`-th nearest node, with `m` the number of basis terms.
 /// - The quadratic block is regularised.
 /// - The quadratic basis is replaced by the linear basis.
 ///

@@ -55,8 +55,8 @@ impl CellRows {
         Ok((rows, info))
     }
 
-    /// Computes the rows of the cells, and values at further points (m), each given with a cell that contains
-    /// the point.
+    /// Computes the rows of all cells and, in the same call, shape values at the points of `beside`. Each of
+    /// these has a position (m) and a cell that contains it.
     pub fn with<const P: usize>(
         approximation: &Approximation,
         mesh: &Mesh,
@@ -247,7 +247,8 @@ impl<const P: usize> Sum<P> {
         }
     }
 
-    /// Appends the rows of the cell's points, with ascending nodes, and resets the sums.
+    /// Appends the accumulated sums as the rows of the cell's points, with ascending nodes, and resets them.
+    /// `basis` holds the values of the gradients' basis at each point ([`volume_basis`]).
     pub fn drain_into(&mut self, basis: &[[f64; P]; P], rows: &mut RowList) {
         self.touched.sort_unstable();
         for (q, basis) in basis.iter().enumerate() {
@@ -278,7 +279,7 @@ impl Sum<1> {
         }
     }
 
-    /// Adds the values at one of the further points.
+    /// Adds the shape values at one of the further points, given by its index.
     pub fn add_values(&mut self, beside: &Beside, point: usize) {
         self.add_inner(&beside.at, beside.first + point, 0, &[Vector3::zeros()]);
     }

@@ -66,7 +66,8 @@ pub(crate) struct Layer {
 }
 
 /// Returns the node positions (m) of a cloud that is [coupled](crate::Approximation::coupled) to finite
-/// elements: the kept nodes of the cloud (at which the hats sum to less than one half), then the vertices.
+/// elements. The nodes of the cloud come first, except those at which the hat functions of the vertices sum
+/// to one half or more; the vertices follow.
 pub fn coupled_nodes(nodes: &[Point3], background: &Mesh, vertices: &[u32]) -> Result<Vec<Point3>, EfgError> {
     let kept = Coupling::new(background, vertices)?.kept(nodes)?;
     let of_cloud = kept.into_iter().map(|(n, _)| nodes[n]);
@@ -79,7 +80,7 @@ impl Layer {
         self.count == 0
     }
 
-    /// Whether nothing is left to the cloud: all corners of the cell are finite-element nodes.
+    /// Whether all corners of the cell are finite-element nodes, which leaves nothing to the cloud.
     pub fn is_full(&self) -> bool {
         self.count == 4
     }
@@ -108,7 +109,8 @@ impl Coupling {
         Ok(Coupling { locator: Locator::new(background)?, regions, corners })
     }
 
-    /// Returns the indices of the kept nodes of a cloud, with their regions.
+    /// Returns the indices of the cloud's nodes that are kept, because the hats sum to less than one half
+    /// there, with their regions.
     pub fn kept(&self, nodes: &[Point3]) -> Result<Vec<(usize, u16)>, EfgError> {
         let mut layers = Vec::new();
         self.layers(nodes, &mut layers)?;

@@ -171,8 +171,9 @@ impl Gaps {
         Ok(self.locator.locate(points)?.into_iter().map(|place| place.cell).collect())
     }
 
-    /// Appends the detour of every node of the last row, and removes the nodes whose supports no longer cover
-    /// the point. `relative` is the straight distance divided by the support radius.
+    /// Removes the nodes of the last row whose supports no longer cover the point `x`, and appends the detour
+    /// of every remaining node to `detours`. `relative` returns the straight distance of a node from the
+    /// point, relative to the extent of its support in this direction.
     pub fn cut(
         &self,
         x: &Point3,

@@ -11,9 +11,9 @@ const MOST_POINTS: f64 = 2e7;
 /// Result of clipping a grid by the body.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GridInfo {
-    /// Grid cells along each axis.
+    /// Number of grid cells along each axis.
     pub cells: [usize; 3],
-    /// Size of a cell, m.
+    /// Size of a cell along each axis, m.
     pub size: [f64; 3],
     /// Number of points kept, i.e. inside the body.
     pub kept: usize,

@@ -73,9 +73,10 @@ struct State {
 /// Failure of the search for `lambda`.
 #[derive(Debug)]
 pub(crate) struct NoPoint {
-    /// Number of steps taken.
+    /// Number of Newton steps taken.
     pub iterations: usize,
-    /// Distance of the neighbours' mean from the point, m.
+    /// Smallest distance of the point from a weighted mean of the neighbours, m; zero if the mean reached the
+    /// point but the gradients failed.
     pub gap: f64,
 }
 

@@ -94,9 +94,9 @@ pub fn node_smoothed_rows(
 /// 1 / h = sum_K b_K a_K,    a_K = A_K / ((1 - stabilisation) V_K)
 /// ```
 ///
-/// A Nitsche support with `beta = gamma (lambda + 2 mu) / h` is definite for every `gamma > 1`, as with
-/// [`crate::smoothed_trace`]. This follows from `h (sum_K b_K f_K)^2 <= sum_K b_K f_K^2 / a_K` by Cauchy and
-/// Schwarz, with equality for `f = a`, because over the facets `b_K` sums to `A_K`.
+/// Nitsche's method with the penalty `beta = gamma (lambda + 2 mu) / h` is definite for every `gamma > 1`, as
+/// with [`crate::smoothed_trace`]. This follows from `h (sum_K b_K f_K)^2 <= sum_K b_K f_K^2 / a_K` by Cauchy
+/// and Schwarz, with equality for `f = a`, because over the facets `b_K` sums to `A_K`.
 pub fn node_smoothed_trace(
     background: &Mesh,
     facets: &[Facet],

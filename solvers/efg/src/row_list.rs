@@ -43,8 +43,8 @@ impl RowList {
         }
     }
 
-    /// Reserves room for the given numbers of further entries, without spare room: a table grows only at its
-    /// end.
+    /// Reserves room for exactly these numbers of further entries. Spare room would be wasted, because a
+    /// table outgrows its estimated size only near its end.
     pub fn reserve(&mut self, entries: usize, grads: usize) {
         self.nodes.reserve_exact(entries);
         self.values.reserve_exact(entries);
@@ -66,15 +66,17 @@ impl RowList {
         self.offsets.push(self.nodes.len());
     }
 
-    /// Ends the last row at an earlier entry.
+    /// Drops the nodes from entry `end` on, counted over all rows, and ends the last row there. The row must
+    /// not have values yet.
     pub fn shorten_last(&mut self, end: usize) {
         self.nodes.truncate(end);
         self.offsets.pop();
         self.close();
     }
 
-    /// Estimates the entries of a table with `rows` rows from the sampled rows. The estimate includes a
-    /// margin of two standard errors for row lengths that scatter by a third: 0.5 % of a large table.
+    /// Estimates the number of entries of a table with `rows` rows from the rows of this list, which are a
+    /// sample of the table. The estimate includes a margin of two standard errors, for row lengths with a
+    /// standard deviation of a third of their mean. For a large table the margin is 0.5 %.
     pub fn expected_entries(&self, rows: usize) -> usize {
         let sampled = (self.offsets.len() - 1).max(1) as f64;
         let margin = 1.0 + 2.0 / (3.0 * sampled.sqrt());

@@ -58,12 +58,12 @@ impl Smoothing {
 /// incompressibility unless the dilation is projected. Sources: Chen, Wu, Yoon and You (2001), smoothing on
 /// the background's cells; Duan, Li, Zhang and Belytschko (2012), doi:10.1002/nme.4325, to second order.
 ///
-/// `Linear` is variationally consistent integration in its symmetric form. The product of two linear fields
-/// has the degree that four points integrate, so its four moments are the conditions
+/// `Linear` is the symmetric form of variationally consistent integration. The four points integrate the
+/// product of two linear fields exactly. The four moments are therefore the conditions
 /// `sum_g w_g (phi_I,a q + phi_I q,a) = integral_faces phi_I q n_a` for q in {1, x, y, z}, solved for the
 /// four corrected derivatives. The form of Chen, Hillman and Rueter (2013), doi:10.1002/nme.4512, corrects
-/// only the test functions. Its stiffness is not symmetric, there is no strain energy as needed for dilation,
-/// Nitsche's supports and large strain, and every point needs two tables.
+/// only the test functions. Its stiffness is not symmetric, and every point needs two tables. It has no
+/// strain energy, which dilation, Nitsche's supports and large strain require.
 pub fn smoothed_rows(
     approximation: &Approximation,
     background: &Mesh,
@@ -80,13 +80,13 @@ pub fn smoothed_rows(
 }
 
 /// Expresses the smoothed gradients of [`smoothed_rows`] at the points of [`crate::flux_rows`] on the same
-/// facets: the gradients of the cell behind the facet, as combinations of its own integration points. The
-/// lengths are `h = V / (c A)` with `A` (m^2) the area of all listed facets of the cell and `c` = 1 for
-/// constant, 8/3 for linear gradients.
+/// facets. Each row combines the integration points of the cell behind the facet. The lengths are
+/// `h = V / (c A)` with `V` (m^3) the volume of the cell, `A` (m^2) the area of all its listed facets, and
+/// `c` = 1 for constant, 8/3 for linear gradients.
 ///
-/// A Nitsche support with `beta = gamma (lambda + 2 mu) / h` is then definite for every `gamma > 1`, for any
-/// overlap of supports and any Poisson's ratio. With gradients of the shape functions themselves no such
-/// factor is known, because smoothing averages a part of them out.
+/// Nitsche's method with the penalty `beta = gamma (lambda + 2 mu) / h` is then definite for every
+/// `gamma > 1`, for any overlap of supports and any Poisson's ratio. No such factor is known for gradients of
+/// the shape functions themselves, because smoothing averages a part of them out of the energy.
 pub fn smoothed_trace(
     background: &Mesh,
     facets: &[Facet],

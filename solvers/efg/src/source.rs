@@ -138,14 +138,16 @@ pub struct CloudSource {
 }
 
 impl CloudSource {
-    /// Builds the shape functions and their supports.
+    /// Builds the shape functions of a cloud, their supports and their integration over a background of tet4.
     ///
-    /// Moving least squares have supports adapted to the cells of `followed` if it is given. The background
-    /// vertices in `coupled` become finite-element nodes. With `by_region`, nodes contribute only in their
-    /// own region, and the vertices of borders between regions also become finite-element nodes.
+    /// If `followed` is given, moving least squares have ellipsoidal supports adapted to its cells. If
+    /// `coupled` is given, these background vertices (ascending) become finite-element nodes. With
+    /// `by_region` in addition, nodes contribute only in their own region, and the vertices of borders
+    /// between regions also become finite-element nodes. Without `coupled`, `by_region` has no effect.
     ///
     /// # Errors
-    /// The errors of [`Approximation::new`] and [`Approximation::coupled`].
+    /// Invalid supports, and the errors of [`Approximation::new`], [`Approximation::maximum_entropy`],
+    /// [`Approximation::within`] and [`Approximation::coupled`].
     pub fn new(
         functions: Functions,
         cloud: &Cloud,

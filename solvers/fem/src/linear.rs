@@ -5,8 +5,9 @@ use shape::{Coarser, Rows, Unity};
 
 use crate::FemError;
 
-/// Returns the corners of all cells with the values of their linear functions at every node: 1 at a corner,
-/// 1/2 at the middle of an edge. Returns `None` for a mesh of linear cells alone.
+/// Returns the linear mesh of a mesh with quadratic cells, or `None` for a mesh of linear cells alone. Its
+/// nodes are the corners of all cells. The linear function of a corner is 1 at the corner and 1/2 at the
+/// mid-edge nodes of its edges.
 ///
 /// # Errors
 ///

@@ -19,7 +19,7 @@ pub struct Outside {
 }
 
 impl Outside {
-    /// Returns the farthest point and its distance, m.
+    /// Returns the index and the distance (m) of the farthest point, or `None` if no point is outside.
     pub fn farthest(&self) -> Option<(usize, f64)> {
         self.points.iter().copied().max_by(|a, b| a.1.total_cmp(&b.1))
     }
@@ -30,7 +30,8 @@ impl Outside {
 ///
 /// # Errors
 ///
-/// [`FemError::Outside`] with the distance, if a point is outside by more than rounding.
+/// [`FemError::Outside`] with the distance, if a point is outside by more than rounding, and
+/// [`FemError::NotFinite`] if a point has a coordinate that is not finite.
 pub fn point_rows(mesh: &Mesh, points: &[Point3]) -> Result<PointRows, FemError> {
     values(mesh, points, &inside(mesh, points)?)
 }

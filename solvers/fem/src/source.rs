@@ -14,14 +14,14 @@ use crate::{
     nearest_grad_rows, nearest_point_rows, outline_rows, pressure_rows, regions, surface_rows, volume_rows,
 };
 
-/// Elements of a mesh, whose nodes are the nodes of the method.
+/// Finite elements of a mesh as a source of tables. The nodes of the mesh are the nodes of the method.
 pub struct Elements {
     mesh: Arc<Mesh>,
     rule: VolumeRule,
 }
 
 impl Elements {
-    /// Makes a source from the cells of a mesh with their quadrature.
+    /// Builds a source from a mesh and the quadrature of its cells.
     pub fn new(mesh: Arc<Mesh>, rule: VolumeRule) -> Elements {
         Elements { mesh, rule }
     }

@@ -21,8 +21,8 @@ pub fn surface_rows(mesh: &Mesh, facets: &[Facet], rule: &SurfaceRule) -> Result
     divided_surface_rows(mesh, facets, rule, &[])
 }
 
-/// Returns rows as [`surface_rows`], with points on parts of the facets: `parts` for each facet, or empty for
-/// whole facets.
+/// Returns rows as [`surface_rows`], with the points on equal parts of each facet. `parts` holds the division
+/// of each facet, or is empty for whole facets.
 ///
 /// # Errors
 ///

@@ -111,8 +111,8 @@ pub fn element_dilation(mesh: &Mesh, rule: &VolumeRule) -> Result<DilationGroups
 ///
 /// These are the linear (tet4, hex8) shape values of each cell's corners at the points of [`volume_rows`]
 /// with the same rule. Their nodes are the corner nodes only, numbered in the order of the mesh. A corner
-/// between several materials has a pressure in each; `alike` gives the material of each region, and is empty
-/// if all regions have the same material.
+/// between several materials counts as one node per material. `alike` holds the material of each region, or
+/// is empty if all regions have the same material.
 ///
 /// # Errors
 ///

@@ -229,7 +229,9 @@ impl Locator {
         self.frames[cell].slopes()
     }
 
-    /// Locates points as the function [`locate`] does.
+    /// Returns the location of each point (m) among the tetrahedra. A point in several cells is assigned to
+    /// the cell with the lowest number. A point outside all cells is assigned to the closest cell and has a
+    /// positive distance.
     ///
     /// # Errors
     /// A point that is not finite.

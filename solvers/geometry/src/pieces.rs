@@ -41,7 +41,7 @@ impl Sets {
     }
 }
 
-/// Number of pieces of a mesh, which share no nodes.
+/// Number of connected pieces of a mesh. Cells of different pieces share no node.
 pub fn count(mesh: &Mesh) -> usize {
     let mut sets = Sets::pieces(mesh);
     let mut roots: Vec<u32> = (0..mesh.cell_count()).map(|cell| sets.of(mesh.cell(cell)[0])).collect();

@@ -16,12 +16,12 @@ pub struct InvertedElement {
     pub cells: usize,
 }
 
-/// An extreme value and the element it occurs in.
+/// Extreme value of a quality measure and its cell.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Extreme {
     /// Cell index.
     pub element: usize,
-    /// The value there.
+    /// The extreme value, in the unit of the measure.
     pub value: f64,
 }
 
@@ -34,7 +34,7 @@ pub struct Quality {
     pub min_volume: Extreme,
     /// Largest cell volume (m^3).
     pub max_volume: Extreme,
-    /// Smallest `det J` (m^3) over all nodes and quadrature points.
+    /// Smallest `det J` (m^3) over all nodes and over the points of a rule that integrates `det J` exactly.
     pub min_det_j: Extreme,
     /// Smallest ratio of lowest to highest `det J` within a cell; 1 for every straight tetrahedron.
     pub min_det_ratio: Extreme,
@@ -43,8 +43,8 @@ pub struct Quality {
     pub min_dihedral: Extreme,
     /// Largest such angle (degrees).
     pub max_dihedral: Extreme,
-    /// Largest aspect: longest edge times surface over volume, scaled to 1 for the regular tetrahedron and
-    /// the cube.
+    /// Largest aspect ratio: longest edge times surface over volume, scaled to 1 for the regular tetrahedron
+    /// and the cube.
     pub max_aspect: Extreme,
 }
 
@@ -103,7 +103,7 @@ pub fn check(mesh: &Mesh) -> Result<Quality, InvertedElement> {
     }
 }
 
-/// Longest edge times surface over volume, scaled to 1 for the regular tetrahedron and the cube.
+/// Aspect ratio as in [`Quality::max_aspect`].
 fn aspect(kind: CellKind, points: &[Point3], volume: f64) -> f64 {
     let regular = if kind.is_tet() { 6.0 * 6f64.sqrt() } else { 6.0 };
     longest_edge(kind, points) * surface(kind, points) / volume / regular
@@ -114,7 +114,8 @@ fn aspect(kind: CellKind, points: &[Point3], volume: f64) -> f64 {
 pub struct CellShape {
     /// Volume (m^3), negative if the cell is inverted.
     pub volume: f64,
-    /// Aspect, as [`Quality::max_aspect`]; infinite if the volume is not positive.
+    /// Aspect ratio: longest edge times surface over volume, scaled to 1 for the regular tetrahedron and the
+    /// cube; infinite if the volume is not positive.
     pub aspect: f64,
     /// Smallest and largest angle (degrees) between two faces.
     pub angles: [f64; 2],

@@ -9,7 +9,7 @@ use kiddo::{ImmutableKdTree, SquaredEuclidean};
 
 use crate::Point3;
 
-/// Search structure over a set of points.
+/// Search structure over a fixed set of points, for the nearest points and for all points within a radius.
 pub struct Search {
     tree: ImmutableKdTree<f64, 3>,
     points: Vec<[f64; 3]>,

@@ -26,7 +26,12 @@ pub struct DilationGroups {
 }
 
 impl DilationGroups {
-    /// Builds the groups from checked arrays: `offsets` (groups + 1), `points` and `shares` (one per entry).
+    /// Checks the arrays and builds groups over `point_count` quadrature points: `offsets` (groups + 1),
+    /// `points` and `shares` (one per entry).
+    ///
+    /// # Errors
+    /// Arrays of unequal length, broken offsets, an empty group, a point out of range, or a point whose
+    /// shares do not sum to one.
     pub fn new(
         point_count: usize,
         offsets: Vec<usize>,
@@ -88,7 +93,8 @@ impl DilationGroups {
         self.point_count
     }
 
-    /// Part of each point as given to [`DilationGroups::by_part`]; empty if there is a single part.
+    /// Part of each quadrature point, such as its material, as given to [`DilationGroups::by_part`]; empty if
+    /// there is a single part.
     pub fn parts(&self) -> &[u16] {
         &self.parts
     }

@@ -3,7 +3,7 @@
 /// A prescribed nodal parameter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FixedDof {
-    /// Node.
+    /// Index of the node.
     pub node: u32,
     /// Axis: 0, 1, 2 for x, y, z.
     pub axis: u8,

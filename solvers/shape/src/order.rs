@@ -2,9 +2,9 @@
 
 use crate::Point3;
 
-/// Returns the indices of `points` along a Morton curve (the interleaved bits of the three coordinates, 21
-/// per axis); ties keep their order. Nodes and elements numbered in this way are read from the cache; random
-/// numbering takes 3 times as long.
+/// Returns the indices of `points` in their order along a Morton curve (the interleaved bits of the three
+/// coordinates, 21 per axis); ties keep their order. Loops over nodes and elements numbered in this order
+/// find their data in the processor's cache. With random numbering they take 3 times as long.
 pub fn locality_order(points: &[Point3]) -> Vec<u32> {
     let mut low = [f64::INFINITY; 3];
     let mut high = [f64::NEG_INFINITY; 3];

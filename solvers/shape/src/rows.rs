@@ -89,7 +89,12 @@ pub struct Rows {
 }
 
 impl Rows {
-    /// Builds rows from checked arrays: `offsets` (rows + 1), `nodes` and `values` (one per entry).
+    /// Checks the arrays and builds rows over `node_count` nodes: `offsets` (rows + 1), `nodes` and `values`
+    /// (one per entry).
+    ///
+    /// # Errors
+    /// Arrays of unequal length, broken offsets, a node out of range, a value that is not finite, or a row
+    /// whose sum violates `unity`.
     pub fn new(
         node_count: usize,
         offsets: Vec<usize>,

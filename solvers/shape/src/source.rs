@@ -91,7 +91,7 @@ pub trait RowSource: Send + Sync {
     /// They form no quadrature but describe the position of the boundary.
     fn outline(&self, facets: &[Facet]) -> Result<PointRows, SourceError>;
 
-    /// Computes shape values and gradients on facets, for weak supports.
+    /// Computes shape values and gradients on facets, for essential conditions by Nitsche's method.
     fn flux(&self, facets: &[Facet]) -> Result<FluxRows, SourceError>;
 
     /// Expresses gradients smoothed over cells on facets; `None` if the gradients are those of the shape

@@ -18,10 +18,17 @@ pub struct TraceRows {
 }
 
 impl TraceRows {
-    /// Builds a trace from checked arrays: `offsets` (surface points + 1), volume `points` and `coefficients`
-    /// (one per entry; the coefficients of a row sum to one), and `lengths` (m, one per surface point). The
-    /// lengths must satisfy `sum_s w_s h_s f(x_s)^2 <= sum_q w_q f(x_q)^2` for every `f` on the volume's
-    /// points; this is not checked.
+    /// Checks the arrays and builds a trace over `point_count` volume points: `offsets` (surface points + 1),
+    /// volume `points` and `coefficients` (one per entry), and `lengths` (m, one per surface point). The
+    /// coefficients of a row sum to one.
+    ///
+    /// The lengths `h_s` must satisfy `sum_s w_s h_s f(x_s)^2 <= sum_q w_q f(x_q)^2` for every `f` on the
+    /// volume's points, with the weights `w_s` (m^2) and `w_q` (m^3) of the surface and the volume. This
+    /// condition is not checked.
+    ///
+    /// # Errors
+    /// Arrays of unequal length, broken offsets, an empty row, a point out of range, a row that does not sum
+    /// to one, or a length that is not positive.
     pub fn new(
         point_count: usize,
         offsets: Vec<usize>,
@@ -86,7 +93,7 @@ impl TraceRows {
         (&self.points[range.clone()], &self.coefficients[range])
     }
 
-    /// Lengths, m, one per surface point.
+    /// Lengths `h_s` (m), one per surface point, that bound fields on the surface ([`TraceRows::new`]).
     pub fn lengths(&self) -> &[f64] {
         &self.lengths
     }

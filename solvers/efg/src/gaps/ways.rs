@@ -83,7 +83,7 @@ impl Ways {
     }
 
     /// Finds the shortest paths from a point in the cell with these corners, up to length `farthest`
-    /// (Dijkstra 1959).
+    /// (Dijkstra 1959). `length` returns the length of a link, in metres or relative to a support.
     pub fn walk(
         &mut self,
         graph: &Graph,
@@ -116,7 +116,8 @@ impl Ways {
         }
     }
 
-    /// Returns the length of the path to a vertex; infinite if no path is short enough.
+    /// Returns the length of the shortest path of the last [`Ways::walk`] to a vertex, in the unit of its
+    /// `length`. The length is infinite if there is no path up to its `farthest`.
     pub fn to(&self, vertex: u32) -> f64 {
         self.lengths[vertex as usize]
     }

@@ -105,7 +105,7 @@ pub fn cloud(
     generate(shape, n, seed, finest, |p| target_size(refinements, p))
 }
 
-/// Generates a cloud as [`cloud`] does, with the relative spacing given by `sizes`.
+/// Generates a cloud of exactly `n` nodes as [`cloud`] does, graded by `sizes` instead of by refinements.
 ///
 /// # Errors
 /// `n` out of range, or a body without an inside.

@@ -92,9 +92,10 @@ struct Columns {
 
 const NAMES: [&str; 3] = ["x", "y", "z"];
 
-/// Reads a file of positions. `unit` is the number of metres per unit of the file. Blank lines and lines that
-/// start with `#` are skipped. A first line without any number holds column names: only the columns x, y and
-/// z are read, in any order.
+/// Reads a file of positions, one per line, with values separated by commas. `unit` is the number of metres
+/// per unit of the file; the positions returned are in metres. Blank lines and lines that start with `#` are
+/// skipped. A first line without any number holds column names: only the columns x, y and z are read, in any
+/// order.
 ///
 /// # Errors
 /// A file that cannot be read, a line that is not a position, or a file without positions.

@@ -5,7 +5,7 @@ use crate::{Cloud, Point3, Search, SearchError};
 /// Largest growth of the spacing per distance. Over a support of three spacings the spacing at most doubles.
 const GROWTH: f64 = 0.3;
 
-/// Spacing as a function of position, relative to the coarsest.
+/// Graded node spacing as a function of position, as a fraction of the coarsest spacing.
 pub struct Sizes {
     search: Search,
     nodes: Vec<Point3>,
@@ -51,12 +51,12 @@ impl Sizes {
         })
     }
 
-    /// Finest over coarsest spacing.
+    /// Ratio of the finest to the coarsest spacing.
     pub fn finest(&self) -> f64 {
         self.bounds[0] / self.bounds[1]
     }
 
-    /// Spacing at a point, relative to the coarsest.
+    /// Spacing at a point (m) as a fraction of the coarsest spacing, from [`Sizes::finest`] to 1.
     pub fn at(&self, p: &Point3) -> f64 {
         let near = self.search.nearest_one(p);
         let grown = self.sizes[near] + GROWTH * (p - self.nodes[near]).norm();

@@ -14,11 +14,11 @@ pub struct LeftOut {
     pub place: Place,
     /// Name of the part, such as a keyword or an array.
     pub what: String,
-    /// Consequence of the omission.
+    /// Category of the part, by the consequence of its omission.
     pub kind: Kind,
 }
 
-/// Consequence of an omitted part.
+/// Category of an omitted or changed part, by the consequence for the result.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Kind {
     /// The part joins or supports parts of the body, so its omission changes the result.

@@ -70,8 +70,8 @@ pub fn read(file: &Path, unit: f64) -> Result<Mesh, FileError> {
     Ok(read_bytes(&bytes(file)?, file, unit)?.0)
 }
 
-/// Reads a mesh as [`read`] does, from memory. Also returns the row of every cell; `file` is the name used in
-/// errors.
+/// Reads a mesh as [`read`] does, from memory. Also returns the place and element number of every cell in the
+/// file. `file` is the name used in errors.
 ///
 /// # Errors
 /// As for [`read`].

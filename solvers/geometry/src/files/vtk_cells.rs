@@ -89,7 +89,7 @@ pub(super) fn lost(array: &Array, of_cells: bool, taken: bool) -> LeftOut {
 
 /// Cells of a grid.
 pub(super) struct Cells {
-    /// Index of the grid's first point.
+    /// Number of points in the preceding grids of the file, from which the indices in `list` count.
     pub first: u64,
     pub types: Vec<i64>,
     /// End of the points of each cell in `list`.
@@ -98,7 +98,7 @@ pub(super) struct Cells {
     /// Region numbers and surface numbers of the cells.
     pub regions: Option<Vec<i64>>,
     pub surfaces: Option<Vec<i64>>,
-    /// Groups of cells across the regions: a positive number for each member.
+    /// Named groups of cells that may cross regions. Each has one number per cell, positive for its members.
     pub further: Vec<(String, Vec<i64>)>,
 }
 

@@ -75,9 +75,10 @@ impl Drawn {
     }
 }
 
-/// Meshes the half z >= 0 of the kidney, graded towards the surface and towards the edges of a jaw of 10 x 20
-/// mm on the z axis. `n` is about half the number of cells across the jaw. Facet groups: "surface", and
-/// "symmetry" at z = 0.
+/// Meshes the half z >= 0 of the kidney for compression by a jaw, which is centred on the z axis and measures
+/// 10 mm along x and 20 mm along y. Cells are graded towards the surface and towards the edges of the jaw;
+/// `drawn` is the strength of the grading. `n` is about half the number of cells across the jaw in each
+/// direction. Facet groups: "surface", and "symmetry" at z = 0.
 ///
 /// # Errors
 /// `n` out of range, or inverted cells.

@@ -8,8 +8,8 @@ use crate::{CellKind, Facet, Mesh};
 const HEX: CellKind = CellKind::Hex8;
 const TET: CellKind = CellKind::Tet4;
 
-/// Whether every cell can be converted to `kind`. Any cell can become straight-edged tet4; linear cells can
-/// become quadratic cells of the same shape, and hexahedra tet10.
+/// Whether every cell can be converted to `kind`. Any cell can become straight-edged tet4. In addition, tet4
+/// can become tet10, and hex8 can become hex20 or tet10.
 pub fn is_convertible(mesh: &Mesh, kind: CellKind) -> bool {
     let all = |kinds: &[CellKind]| (0..mesh.cell_count()).all(|c| kinds.contains(&mesh.kind(c)));
     all(&[kind])
@@ -21,7 +21,8 @@ pub fn is_convertible(mesh: &Mesh, kind: CellKind) -> bool {
         }
 }
 
-/// Returns the same body in cells of `kind`, or `None` if they cannot be converted ([`is_convertible`]).
+/// Converts a mesh to cells of `kind`, or returns `None` if a cell cannot be converted ([`is_convertible`]).
+/// New nodes lie halfway along their edges.
 pub fn converted(mesh: Mesh, kind: CellKind) -> Option<Mesh> {
     is_convertible(&mesh, kind).then(|| match kind {
         _ if mesh.uniform_kind() == Some(kind) => mesh,

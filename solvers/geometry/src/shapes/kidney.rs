@@ -11,11 +11,11 @@ use crate::{Point3, Vector3};
 pub struct Kidney;
 
 impl Kidney {
-    /// Half width along x, in metres; also the bend `k`.
+    /// Half width `a` of the kidney along x, in metres; also the bend `k`.
     pub const A: f64 = 0.16 / 9.0;
-    /// Half length along y, in metres.
+    /// Half length `b` of the kidney along y, in metres.
     pub const B: f64 = 0.0375;
-    /// Half thickness along z, in metres.
+    /// Half thickness `c` of the kidney along z, in metres.
     pub const C: f64 = 0.015;
 
     /// Image (m) of a point of the unit ball.

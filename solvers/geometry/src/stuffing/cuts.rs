@@ -18,7 +18,7 @@ const CHUNK: usize = 32;
 pub(super) struct Cuts {
     /// Points of the lattice, followed by the cuts.
     pub points: Vec<Point3>,
-    /// Sides of the lattice points.
+    /// Side of the surface on which each lattice point lies.
     pub sides: Vec<Side>,
     /// Index of each cut among the points, by the ends of its edge (inside, outside).
     pub nodes: HashMap<[u32; 2], u32>,

@@ -12,8 +12,9 @@ use super::octree::{Cube, Octree, State, middle};
 #[derive(Default)]
 pub(super) struct Lattice {
     pub points: Vec<[i32; 3]>,
-    /// Tetrahedra between two smallest cubes: two centres, then two corners. The first and the last edge are
-    /// as long as a cube, the others shorter.
+    /// Tetrahedra between two smallest cubes, as indices into `points`: the centres of both cubes, then two
+    /// corners of their common face. The edge between the centres and the edge between the corners are as
+    /// long as the edge of a cube; the other four edges are shorter.
     pub regular: Vec<[u32; 4]>,
     /// All other tetrahedra.
     pub coarse: Vec<[u32; 4]>,

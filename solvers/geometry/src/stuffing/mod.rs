@@ -42,7 +42,8 @@ const MOST: f64 = 2e7;
 pub struct Stuffing {
     /// Mean edge length at the surface, m.
     pub spacing: f64,
-    /// Largest number of doublings of the cell size towards the inside; 0 gives cells of one size.
+    /// Largest number of doublings of the cell size towards the inside; 0 gives cells of one size. Numbers
+    /// above [`LARGEST`] count as [`LARGEST`].
     pub doublings: u32,
 }
 

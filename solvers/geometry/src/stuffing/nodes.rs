@@ -32,9 +32,9 @@ const WHOLE: f64 = 0.75;
 /// filled the body.
 const HOPELESS: [f64; 2] = [2e5, 16.0];
 
-/// Fills a surface with about `nodes` nodes, with `doublings` as in [`Stuffing`]. Returns the mesh and its
-/// spacing (m). Of the meshes tried, the mesh with the ratio of its nodes to `nodes` closest to 1 is chosen.
-/// A larger request never gives fewer nodes.
+/// Fills a surface with tetrahedra that have about `nodes` nodes, with `doublings` as in [`Stuffing`].
+/// Returns the mesh and its spacing (m). Several spacings are tried; the mesh returned has the ratio of its
+/// number of nodes to `nodes` closest to 1. A larger request never gives fewer nodes.
 ///
 /// # Errors
 /// As for [`stuff`].

@@ -9,7 +9,7 @@ const FEWEST: usize = 8;
 /// Tetrahedra of the parts that are kept.
 pub(super) struct Parts {
     pub tets: Vec<[u32; 4]>,
-    /// Part of each tetrahedron.
+    /// Number of the face-connected part to which each tetrahedron belongs. Numbers may have gaps.
     pub part: Vec<u32>,
     /// Number of parts that are omitted.
     pub left_out: usize,

@@ -14,9 +14,9 @@ use crate::CellKind;
 /// line.
 const MOST: usize = 1 << 23;
 
-/// An instance: a part placed in the assembly.
+/// An instance of an Abaqus assembly: a part placed in it.
 pub(super) struct Placed<'a> {
-    /// Name of the instance.
+    /// Name of the instance in the assembly.
     pub name: &'a str,
     pub part: &'a Scope,
     pub first_node: u32,

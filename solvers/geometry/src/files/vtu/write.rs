@@ -79,10 +79,10 @@ enum Data<'a> {
     Real(&'a Values),
 }
 
-/// Named values at the points or in the cells of a file.
+/// A data array of a file, with values at its points or in its cells.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Values {
-    /// Name of the quantity.
+    /// Name of the array in the file.
     pub name: &'static str,
     /// Number of components per point or cell; six are a symmetric tensor: xx, yy, zz, xy, yz, xz.
     pub components: usize,
