@@ -78,7 +78,7 @@ impl Parameter {
         Parameter { required: false, ..Parameter::required(name, dimension, meaning) }
     }
 
-    /// Returns the parameter as optional, for several alternative ways to give a value.
+    /// Returns the parameter as optional, for a value that can be given by one of several parameters.
     pub const fn may_be_absent(self) -> Parameter {
         Parameter { required: false, ..self }
     }

@@ -27,7 +27,7 @@ impl Problem {
         self
     }
 
-    /// Names the parameter of an entry.
+    /// Sets the parameter of the entry in which the error was found.
     pub fn of(mut self, parameter: &'static str) -> Problem {
         self.parameter = Some(parameter);
         self

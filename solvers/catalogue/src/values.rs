@@ -61,7 +61,7 @@ impl Values {
         self.value(name).is_some()
     }
 
-    /// Returns a given number or its default; `None` for an optional parameter that is not given.
+    /// Returns a given number or its default; `None` if there is neither, or no parameter of that name.
     pub fn get(&self, name: &str) -> Option<f64> {
         let index = self.parameters.iter().position(|parameter| parameter.name == name)?;
         match &self.given[index] {

@@ -6,7 +6,7 @@ use crate::Dimension;
 /// Kind of warning, with the dimension of the value that is recorded with it.
 #[derive(Debug, PartialEq)]
 pub struct Warning {
-    /// Code in files and tables.
+    /// Code that names the warning in files and tables, such as `few-digits`.
     pub code: &'static str,
     /// Dimension of the recorded value.
     pub dimension: Dimension,

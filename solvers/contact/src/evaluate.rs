@@ -212,7 +212,7 @@ impl Contacts {
         }
     }
 
-    /// Points in contact, ascending. All arrays below are in this order.
+    /// Indices of the points in contact, ascending. All other arrays of the contacts are in this order.
     pub fn points(&self) -> &[u32] {
         &self.points
     }

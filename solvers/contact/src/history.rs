@@ -23,7 +23,8 @@ pub struct ContactHistory {
 }
 
 impl ContactHistory {
-    /// Starts a history in which no point has touched. Without friction no slip is stored.
+    /// Starts a history for a surface with a number of `points`, none of which has touched. Without friction
+    /// no slip is stored.
     pub fn new(tool: &Tool, points: usize) -> ContactHistory {
         let kept = if tool.law().friction() > 0.0 { points } else { 0 };
         ContactHistory {

@@ -34,7 +34,7 @@ pub struct PointContact {
 }
 
 impl Tool {
-    /// Makes a tool. `at` is the position of the shape's origin at closure 0 (m). `rotation` (3, 3) maps the
+    /// Makes a tool. `at` (m) is the position of the shape's origin at closure 0. `rotation` (3, 3) maps the
     /// shape's axes to the world's. `along` is the unit direction of motion.
     ///
     /// # Errors
@@ -112,8 +112,8 @@ impl Tool {
         (place - half, place + half)
     }
 
-    /// Half of the smallest breadth across the direction of motion, m; infinite for a plate. The tool fits
-    /// between points that leave more space.
+    /// Half of the smallest breadth across the direction of motion, m; infinite for a plate. The tool can
+    /// slip between contact points whose spacing exceeds the whole breadth.
     pub fn half_breadth(&self) -> f64 {
         if self.shape.is_endless() {
             return f64::INFINITY;

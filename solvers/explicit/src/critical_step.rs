@@ -5,7 +5,7 @@ use shape::SurfaceRows;
 use super::{ExplicitError, InternalForce};
 use shape::{Matrix3, Vector3};
 
-/// Parameters of the estimate.
+/// Parameters for the estimate of the critical step by the Lanczos method.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LanczosParams {
     /// Number of Lanczos steps; 15 find the largest eigenvalue to a few per cent, from below.

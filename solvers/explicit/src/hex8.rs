@@ -32,7 +32,7 @@ pub(super) struct Hex8 {
 
 struct Chunk {
     blocks: Vec<Block>,
-    /// Runs of blocks with one region: end of the run, and region index.
+    /// Consecutive blocks of one region: index after the last block, and region index.
     runs: Vec<(usize, u16)>,
 }
 

@@ -44,7 +44,7 @@ impl Kernel {
         }
     }
 
-    /// Whether the kernel runs in lanes and on all threads.
+    /// Whether the kernel uses vector code and all threads.
     pub fn is_parallel(self) -> bool {
         self != Kernel::Plain
     }

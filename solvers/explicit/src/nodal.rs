@@ -119,7 +119,8 @@ impl Nodal {
         tasks.for_each(|(constants, closed)| close(path, constants, closed));
     }
 
-    /// Returns `J_a^(2/3)` and `p_a` of each group, the slots to fill with them, and the group of each slot.
+    /// Returns three parts for the second pass: the pair `J_a^(2/3)`, `p_a` of each dilation group; the
+    /// slots, into which the caller copies the pairs; and the assignment that gives the group of each slot.
     pub fn closed<'a>(
         &'a mut self,
         of_nodes: &'a Border,

@@ -14,7 +14,7 @@ pub struct PressingTool<'a> {
     pub drive: Drive,
     /// Displacement at the start, m; under displacement control, that of the drive from the first step on.
     pub closure: f64,
-    /// History of its contact.
+    /// Friction history of the contact at the start.
     pub history: ContactHistory,
 }
 

@@ -74,14 +74,16 @@ pub fn relax(
 }
 
 /// Finds the static displacements (m) under `load` and pressing tools, with `fixed` degrees of freedom, from
-/// `start`. `mass` (kg) may be any positive mass.
+/// the displacements `start` (m). `mass` (kg, one value per node) may be any positive mass.
 ///
-/// With `k = 2 / (omega_min dt)`, `R = (k - 1) / (k + 1)` and `s = (1 + R) dt / 2`:
-/// `u_(n+1) = u_n + R^2 (u_n - u_(n-1)) + s^2 M^-1 (f_ext - f_int)`. `omega_min^2` is the Rayleigh quotient
-/// `du . df / du . M du` of the last step, with `f` the internal less the contact forces. The relaxation
-/// stops when `max |du| rho / (1 - rho)`, `rho = R + 0.2 (1 - R)`, stays below the tolerance. This is the
-/// remainder of a geometric series of steps. Source: Joldes, Wittek & Miller, Comput. Methods Appl. Mech.
-/// Engrg. 200 (2011).
+/// The time step `dt` is the critical step. With `k = 2 / (omega_min dt)`, `R = (k - 1) / (k + 1)` and
+/// `s = (1 + R) dt / 2`, a step is `u_(n+1) = u_n + R^2 (u_n - u_(n-1)) + s^2 M^-1 (f_ext - f)`, with `f` the
+/// internal less the contact forces. `omega_min^2` is the Rayleigh quotient `du . df / du . M du` of the last
+/// step. The error is estimated by the remainder of a geometric series of steps, `max |du| rho / (1 - rho)`
+/// with `rho = R + 0.2 (1 - R)`. The relaxation stops when this error, relative to the largest displacement,
+/// has stayed below the tolerance for 10 steps.
+///
+/// Source: Joldes, Wittek & Miller, Comput. Methods Appl. Mech. Engrg. 200 (2011).
 ///
 /// # Errors
 ///

@@ -48,7 +48,8 @@ struct Batch {
 }
 
 impl Ragged {
-    /// Builds the kernel. Returns `None` if a chunk has more nodes than 16 bits can number.
+    /// Builds the kernel for rows of any length. Returns `None` if a chunk has more nodes than 16 bits can
+    /// number.
     pub fn new(body: &ExplicitBody, laws: Vec<LaneLaw>) -> Option<Ragged> {
         let rows = body.volume.rows();
         let order = locality_order(body.volume.points());

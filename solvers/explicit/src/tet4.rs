@@ -103,7 +103,7 @@ impl Tet4 {
 /// Blocks of one chunk, by law.
 pub(super) struct Chunk {
     pub blocks: Vec<Block>,
-    /// Runs of blocks with one region: end of the run, and region index.
+    /// Consecutive blocks of one region: index after the last block, and region index.
     pub runs: Vec<(usize, u16)>,
 }
 

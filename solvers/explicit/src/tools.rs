@@ -41,19 +41,20 @@ pub struct ToolMotion {
     pub speed: f64,
 }
 
-/// Energies of all tools since the start, J.
+/// Energies of all tools, J. Work and losses are sums since the start.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ToolEnergies {
     /// Work of the drives: of the drive force along the tool's path, or, for a displacement-driven tool, the
     /// work against its contact force.
     pub work: f64,
-    /// Kinetic energy of tools with a mass.
+    /// Kinetic energy of the force-driven tools at the last step.
     pub kinetic: f64,
-    /// Energy stored in penalty and stick: `sum_q w (p^2 / (2 k_n) + k_t |e|^2 / 2)`.
+    /// Energy stored in the contact at the last step, `sum_q w (p^2 / (2 k_n) + k_t |e|^2 / 2)`, with the
+    /// pressure `p` and the elastic slip `e` of each point.
     pub stored: f64,
     /// Energy lost to friction.
     pub friction: f64,
-    /// Energy lost to the damping of tools with a mass.
+    /// Energy lost to the damping of force-driven tools.
     pub damping: f64,
 }
 

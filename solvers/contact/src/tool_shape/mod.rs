@@ -86,7 +86,8 @@ macro_rules! tool_shapes {
                 }
             }
 
-            /// Returns signed distance and gradient only.
+            /// Returns the signed distance (m, negative inside) and its unit gradient at the position `p`
+            /// (m).
             #[inline]
             pub fn foot(&self, p: &Vector3) -> (f64, Vector3) {
                 match self {
@@ -94,7 +95,7 @@ macro_rules! tool_shapes {
                 }
             }
 
-            /// Returns the Hessian only (3, 3), 1/m.
+            /// Returns the Hessian of the distance (3, 3), 1/m, at the position `p` (m).
             #[inline]
             pub fn hessian(&self, p: &Vector3) -> Matrix3 {
                 match self {
@@ -136,14 +137,14 @@ pub struct Distance {
 }
 
 impl ToolShape {
-    /// Returns signed distance, gradient and Hessian at `p`, all in the tool's frame.
+    /// Returns signed distance, gradient and Hessian at the position `p` (m), all in the tool's frame.
     pub fn distance(&self, p: &Vector3) -> Distance {
         let (value, gradient) = self.foot(p);
         Distance { value, gradient, hessian: self.hessian(p) }
     }
 
-    /// Returns the lowest and highest corner of a box (tool's frame) that contains the tool; infinite for a
-    /// half space, except at its face.
+    /// Returns the lowest and highest corner (m) of a box that contains the tool, in the tool's frame. The
+    /// box of a half space is infinite, but ends at the face `z = 0`.
     pub fn bounds(&self) -> (Point3, Point3) {
         let half = self.shape().half_extents();
         let low = if self.is_endless() { Vector3::repeat(f64::NEG_INFINITY) } else { -half };
