@@ -201,8 +201,8 @@ const LARGEST_MISS: f64 = 1e-6;
 /// width.
 const APART: f64 = 1e-2;
 
-/// Builds the table of radial basis functions, `u(x) = sum_i c_i phi(|x - x_i|) + d_0 + d . x` with `u(x_i) =
-/// u_i` and `sum_i c_i = sum_i c_i x_i = 0` (Wendland 2005, chapter 8).
+/// Builds the table of radial basis functions, `u(x) = sum_i c_i phi(|x - x_i|) + d_0 + d . x` with
+/// `u(x_i) = u_i` and `sum_i c_i = sum_i c_i x_i = 0` (Wendland 2005, chapter 8).
 ///
 /// The scheme is exact for linear fields with the polynomial `d_0 + d . x`, and for no field without. It
 /// interpolates. Every row contains all nodes. Coordinates are shifted to the centre of the cloud and scaled

@@ -4,9 +4,9 @@
 //! many groups. For a separable law it needs a single tangent instead of one per group: 83 nodes with 960
 //! points have 26 000 pairs of point and group.
 
-/// Functions `A` (dimensionless) and `U` (J/m^3) of a separable law, `psi(F, theta) = A(theta) psi(F, 1) +
-/// U(theta)`, at one dilation `theta`. Each array has the value and the first and second derivative with
-/// respect to `theta`.
+/// Functions `A` (dimensionless) and `U` (J/m^3) of a separable law,
+/// `psi(F, theta) = A(theta) psi(F, 1) + U(theta)`, at one dilation `theta`. Each array has the value and the
+/// first and second derivative with respect to `theta`.
 #[derive(Clone, Copy, Debug)]
 #[allow(missing_docs)]
 pub struct Separated {

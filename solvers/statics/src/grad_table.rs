@@ -83,8 +83,8 @@ impl GradTable {
     }
 
     /// Builds the table of the dilation groups, whose stiffness is `kappa V_a b_a b_a^T`; `None` without
-    /// groups. In the integrand of the points this is a row of gradients `b_a` with moduli `lambda = 1`, `mu
-    /// = 0` and weight `kappa V_a`.
+    /// groups. In the integrand of the points this is a row of gradients `b_a` with moduli `lambda = 1`,
+    /// `mu = 0` and weight `kappa V_a`.
     pub fn groups(body: &Body) -> Result<Option<GradTable>, SolveError> {
         let Some(groups) = body.dilation else { return Ok(None) };
         let averaged = averaged(body, groups)?;

@@ -44,8 +44,8 @@ pub fn stiffness(body: &Body) -> DMatrix<f64> {
     K
 }
 
-/// Returns the tangent `K_ij = sum_q g_i . A(H) . g_j dv` at nodal parameters `u` (m), with `H = sum_i u_i
-/// g_i^T` and `A = dP/dF`. The projection of the volume change (`solid.dilation`) is ignored.
+/// Returns the tangent `K_ij = sum_q g_i . A(H) . g_j dv` at nodal parameters `u` (m), with
+/// `H = sum_i u_i g_i^T` and `A = dP/dF`. The projection of the volume change (`solid.dilation`) is ignored.
 pub fn tangent(solid: &Solid, u: &[Vector3]) -> DMatrix<f64> {
     let mut K = zeros(u.len());
     for (q, &dv) in solid.volume.weights().iter().enumerate() {

@@ -50,8 +50,9 @@ impl Invariants {
         [stretch, volume - shape, m(shape, self.rest, m(volume, self.trace, volume))]
     }
 
-    /// Returns the [`Coefficients`] of the neo-Hookean stress `w P = w/J (mu J (F - F^-T) + lambda ln(J) cof
-    /// F)`, with moduli in Pa and the volume `w` of the point in m^3.
+    /// Returns the [`Coefficients`] of the neo-Hookean stress
+    /// `w P = w/J (mu J (F - F^-T) + lambda ln(J) cof F)`, with moduli in Pa and the volume `w` of the point
+    /// in m^3.
     #[inline(always)]
     pub fn stress<const FMA: bool>(&self, w: f64, mu: f64, lambda: f64) -> Coefficients {
         // The logarithm contains the same quotient, so a single division suffices.

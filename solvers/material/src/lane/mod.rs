@@ -25,8 +25,8 @@ pub struct LaneStrain {
     pub h: [Lanes; 9],
     /// `tr H` and `II(H) + det H`; their sum is `J - 1`.
     pub invariants: [Lanes; 2],
-    /// First row of the minors of each point ([`Minors`]): (1, 1) of `cof H`, (1, 2) and (1, 3) of `cof H -
-    /// H^T`.
+    /// First row of the minors of each point ([`Minors`]): (1, 1) of `cof H`, (1, 2) and (1, 3) of
+    /// `cof H - H^T`.
     pub minors: [Lanes; 3],
 }
 

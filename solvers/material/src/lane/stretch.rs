@@ -51,8 +51,8 @@ impl Stretch {
     }
 
     /// Returns `dev (e g(e))` for a traceless `e` with `e^3 = a e + b I` and the power series `g`
-    /// (coefficients `g_0, g_1, ...`). `e`, its `square` and the result are three numbers `x0 I + x1 X + x2
-    /// X^2` each.
+    /// (coefficients `g_0, g_1, ...`). `e`, its `square` and the result are three numbers
+    /// `x0 I + x1 X + x2 X^2` each.
     #[inline(always)]
     pub fn series<const FMA: bool, const N: usize>(
         &self,
@@ -64,8 +64,8 @@ impl Stretch {
         in_powers_of_x::<FMA>(e, square, deviator_of::<FMA>(a, horner::<FMA, N>(g, a, b)))
     }
 
-    /// Returns `P = F C^-1 tau` of a lane, row by row, Pa. The argument `tau` has the three numbers `x0 I +
-    /// x1 X + x2 X^2` of the Kirchhoff stress in the reference frame (`tau` shares the axes of `C`).
+    /// Returns `P = F C^-1 tau` of a lane, row by row, Pa. The argument `tau` has the three numbers
+    /// `x0 I + x1 X + x2 X^2` of the Kirchhoff stress in the reference frame (`tau` shares the axes of `C`).
     #[inline(always)]
     pub fn stress<const FMA: bool>(&self, h: &[f64; 9], tau: &[f64; 3], l: usize) -> [f64; 9] {
         first_piola::<FMA>(self, h, &over_c::<FMA>(self.a[l], self.b[l], self.scale[l], tau), l)
