@@ -14,8 +14,8 @@ pub(super) struct Principal {
     strain: [f64; 3],
     /// Squared stretches `c_a = 1 + 2 strain_a`.
     square: [f64; 3],
-    /// Logarithmic stretches `e_a = ln(c_a) / 2`; NaN for `J <= 0`, which cannot be recognised from `C`
-    /// alone.
+    /// Logarithmic principal stretches `e_a = ln(c_a) / 2`, with the eigenvalues `c_a` of `C`. They are NaN
+    /// for `J <= 0`, which cannot be recognised from `C` alone.
     pub log: [f64; 3],
     /// `J - 1`.
     pub j: f64,

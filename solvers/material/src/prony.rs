@@ -90,14 +90,16 @@ impl PronyStep {
         self.relaxed + self.terms.iter().map(|(_, gain)| gain).sum::<f64>()
     }
 
-    /// Returns the part of `S` at the end of the step that is known at its start, Pa.
+    /// Returns the part of `S` at the end of the step that is known at its start, Pa, from `S0` (`old`) and
+    /// the `h_i` (`history`) at the start.
     pub fn carried(&self, old: &Matrix3, history: &[Matrix3]) -> Matrix3 {
         assert_eq!(history.len(), self.terms.len(), "one tensor for each term");
         let sum = |sum, (&(decay, gain), h): (&(f64, f64), &Matrix3)| sum + h * decay - old * gain;
         self.terms.iter().zip(history).fold(Matrix3::zeros(), sum)
     }
 
-    /// Updates the `h_i` from the start of the step to its end.
+    /// Updates the `h_i` (`history`, Pa) from the start of the step to its end, given `S0` at the start
+    /// (`old`) and the end (`new`), Pa.
     pub fn advance(&self, old: &Matrix3, new: &Matrix3, history: &mut [Matrix3]) {
         assert_eq!(history.len(), self.terms.len(), "one tensor for each term");
         for (&(decay, gain), h) in self.terms.iter().zip(history) {

@@ -9,7 +9,7 @@ use crate::body::check_len;
 /// One linear equation between nodal parameters.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ConstraintRow {
-    /// (node, axis, coefficient) terms; a repeated (node, axis) adds up.
+    /// Terms (node, axis, coefficient) of the left-hand side. Coefficients of a repeated (node, axis) add up.
     pub terms: Vec<(u32, u8, f64)>,
     /// Right-hand side: metres times the unit of the coefficients.
     pub value: f64,
@@ -70,12 +70,14 @@ pub(crate) struct Row {
 }
 
 impl Row {
-    /// Returns the sum of the terms with prescribed values.
+    /// Returns the contribution of the prescribed degrees of freedom to the row, `sum c u` over them.
+    /// `prescribed` has one entry per degree of freedom `3 node + axis`, m.
     pub fn held_part(&self, prescribed: &[Option<f64>]) -> f64 {
         self.terms.iter().filter_map(|&(dof, c)| prescribed[dof].map(|v| c * v)).sum()
     }
 
-    /// Returns the row over the degrees of freedom that are not prescribed.
+    /// Returns the row over the free degrees of freedom; the contribution of the prescribed ones moves to the
+    /// value.
     pub fn without(&self, prescribed: &[Option<f64>]) -> Row {
         let terms = self.terms.iter().filter(|t| prescribed[t.0].is_none()).copied().collect();
         Row { terms, value: self.value - self.held_part(prescribed) }

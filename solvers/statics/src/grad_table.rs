@@ -223,7 +223,8 @@ impl GradTable {
         (gradients * self.weights.len() / self.nodes.len().max(1)).max(1)
     }
 
-    /// Returns the bundles of each law that has any, in order, with its lambda and mu, Pa.
+    /// Returns the range of bundles of each law, with its lambda and mu, Pa, in order. Laws without bundles
+    /// are left out.
     pub fn laws(&self) -> &[(Range<usize>, (f64, f64))] {
         &self.laws
     }

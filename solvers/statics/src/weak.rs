@@ -43,8 +43,8 @@ pub struct WeakSupport<'a> {
     pub region: &'a [u16],
     /// Nitsche's method or penalty.
     pub method: Weak,
-    /// Length scale of the discretisation at the surface, m. With a trace, Nitsche's `h` is the length of the
-    /// trace instead.
+    /// Length scale `h` of the discretisation at the surface, m. If `trace` is given, Nitsche's method takes
+    /// the length that the trace gives at each point instead.
     pub h: f64,
     /// Source of Nitsche's traction: the body's own quadrature points, with their projected dilation if there
     /// is one. Without a trace the traction follows from the gradients of `flux` by the plain law.
@@ -224,8 +224,9 @@ impl WeakTable {
         });
     }
 
-    /// Adds `integral of (t_a(u) v_a + u_a t_a(v))`, the terms that the bilinear form subtracts from a
-    /// positive form.
+    /// Adds to `force` (N) the consistency terms of Nitsche's method at nodal parameters `u` (m),
+    /// `integral of (t_a(u) v_a + u_a t_a(v))`, with the positive sign. [`WeakTable::add_stiffness`]
+    /// subtracts these terms, so the sum of both is the positive part of the form.
     pub fn add_consistency(&self, incidence: &Incidence, u: &[Vector3], force: &mut [Vector3]) {
         let at = |q: usize| {
             let range = self.offsets[q]..self.offsets[q + 1];

@@ -322,9 +322,10 @@ fn refined(
 }
 
 impl Factorization {
-    /// Solves in place for a step of an iteration, and returns the relative residual.
+    /// Solves in place for a step of an outer iteration (such as Newton's), and returns the relative
+    /// residual.
     ///
-    /// A step must follow its right-hand side, so a large residual is refused. A residual that rounding
+    /// A step must solve its own system accurately, so a large residual is refused. A residual that rounding
     /// explains may be larger: near a singular matrix a step is many times longer than its right-hand side.
     ///
     /// # Errors

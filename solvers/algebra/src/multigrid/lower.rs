@@ -80,13 +80,15 @@ pub(super) struct Lower<const B: usize> {
 }
 
 impl<const B: usize> Lower<B> {
-    /// Returns zeros on this pattern.
+    /// Returns a zero matrix on the pattern `offsets`, `columns` (lower triangle, the diagonal last in each
+    /// row). `unit` is the stiffness that [`Lower::fill_empty`] gives to empty diagonal entries.
     pub fn zeros(offsets: Vec<usize>, columns: Vec<u32>, unit: f64) -> Lower<B> {
         let blocks = vec![[[0.0; B]; B]; columns.len()];
         Lower { offsets, columns, blocks, unit }
     }
 
-    /// Gives the stiffness `unit` to degrees of freedom that no function of the finer level sees.
+    /// Gives the stiffness `unit` to degrees of freedom of the coarse level to which no degree of freedom of
+    /// the finer level contributes.
     pub fn fill_empty(&mut self) {
         for end in &self.offsets[1..] {
             let diagonal = &mut self.blocks[end - 1];

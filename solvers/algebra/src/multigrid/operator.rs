@@ -147,7 +147,8 @@ impl<const B: usize> Operator<B> {
         self.nodes() + 2 * self.inside.columns.len() + self.outside.columns.len()
     }
 
-    /// Returns the block at a position of a row of the lower triangle from which the operator was built.
+    /// Returns the block at index `place` of row `row` of the lower triangle (ascending columns, the diagonal
+    /// last).
     #[inline(always)]
     pub fn of_lower(&self, row: usize, place: usize) -> &[[f32; B]; B] {
         let (columns, blocks) = self.outside(row);

@@ -33,7 +33,7 @@ pub struct PressureGroup {
     pub volume: f64,
     /// Part of the bulk modulus that the pressure carries instead of the stiffness, Pa.
     pub excess: f64,
-    /// Longitudinal (P-wave) modulus that remains in the stiffness, Pa.
+    /// Longitudinal (P-wave) modulus of the stiffness without the part `excess`, Pa.
     pub rest: f64,
 }
 

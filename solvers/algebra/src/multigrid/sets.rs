@@ -9,7 +9,8 @@ pub(super) struct Sets {
 }
 
 impl Sets {
-    /// Builds for each row the union of the numbers that `visit` shows, all below `count`.
+    /// Builds for each row `i` the union of several lists of numbers below `count`. `visit(i, add)` calls
+    /// `add` with each list of the row.
     pub fn unions(rows: usize, count: usize, visit: impl Fn(usize, &mut dyn FnMut(&[u32])) + Sync) -> Sets {
         const PART: usize = 512;
         let parts: Vec<(Vec<u32>, Vec<usize>)> = (0..rows.div_ceil(PART))
@@ -51,7 +52,8 @@ impl Sets {
         &self.members[self.offsets[i]..self.offsets[i + 1]]
     }
 
-    /// Returns for each of `count` numbers the rows that contain it.
+    /// Returns for each number below `count` the rows that contain the number, ascending. `row(i)` gives the
+    /// numbers of row `i`, `rows` the number of rows.
     pub fn transposed<'a>(rows: usize, count: usize, row: impl Fn(usize) -> &'a [u32]) -> Sets {
         let mut offsets = vec![0; count + 1];
         for i in 0..rows {

@@ -78,16 +78,17 @@ impl Invariants {
     }
 }
 
-/// Returns the stress of a point with a shared dilation: `S` times the isochoric stress plus `w p cof F`,
-/// where `S = sum share J_a^(2/3)` and `p = sum share p_a` are sums over the groups of the point.
+/// Returns the [`Coefficients`] of the stress of a point with a shared dilation: `s` times the isochoric
+/// stress plus `w p cof F`. Both `s = sum share J_a^(2/3)` and `p = sum share p_a` (Pa) are sums over the
+/// groups of the point. `trace` is `tr H`, and `wp = w p`.
 #[inline(always)]
 pub fn pressed<const FMA: bool>([a, b, c]: Coefficients, trace: f64, s: f64, wp: f64) -> Coefficients {
     let m = madd::<FMA>;
     [s * a, m(s, b, wp), m(s, c, m(wp, trace, wp))]
 }
 
-/// Returns `w P` row by row. The minors are those of the invariants, which saves six of 36 products: 0.99 of
-/// the time of hex8 (0.98 with mean dilation).
+/// Returns `w P` row by row, from `H`, its minors and the coefficients. The minors are those of the
+/// invariants, which saves six of 36 products: 0.99 of the time of hex8 (0.98 with mean dilation).
 #[inline(always)]
 pub fn piola<const FMA: bool>(h: &[f64; 9], [x, y, z]: Minors, [a, b, c]: Coefficients) -> [f64; 9] {
     let m = madd::<FMA>;
@@ -107,7 +108,8 @@ pub fn piola<const FMA: bool>(h: &[f64; 9], [x, y, z]: Minors, [a, b, c]: Coeffi
     ]
 }
 
-/// Adds `c cof F` to a stress.
+/// Adds `c cof F` to the stress `p`, row by row. The minors are those of the invariants, and `trace` is
+/// `tr H`.
 #[inline(always)]
 pub fn add_cofactor<const FMA: bool>(h: &[f64; 9], [x, y, z]: Minors, trace: f64, c: f64, p: &mut [f64; 9]) {
     let m = madd::<FMA>;

@@ -43,8 +43,8 @@ impl Stretch {
         out
     }
 
-    /// Returns `dev ln C` of a lane, twice the isochoric logarithmic strain, from the coefficients of its
-    /// series.
+    /// Returns `dev ln C` of a lane, twice the isochoric logarithmic strain, as three numbers
+    /// `x0 I + x1 X + x2 X^2`. `g` are the coefficients of `ln(1 + x) = x (g_0 + g_1 x + ...)`.
     #[inline(always)]
     pub fn logarithm<const FMA: bool, const N: usize>(&self, g: &[f64; N], l: usize) -> [f64; 3] {
         deviator_of::<FMA>(self.a[l], horner::<FMA, N>(g, self.a[l], self.b[l]))

@@ -44,13 +44,14 @@ impl Scheme {
 }
 
 impl Update {
-    /// Returns `a_n+1` from the displacement increment of the step.
+    /// Returns the acceleration `a_n+1` (m/s^2) from the displacement increment `gain` of the step (m), the
+    /// velocity `v_n` (m/s) and the acceleration `a_n`.
     pub fn acceleration(&self, gain: &Vector3, v: &Vector3, a: &Vector3) -> Vector3 {
         let (beta, dt) = (self.scheme.beta, self.dt);
         (gain / dt - v) / (beta * dt) - a * (0.5 / beta - 1.0)
     }
 
-    /// Returns `v_n+1` from both accelerations.
+    /// Returns the velocity `v_n+1` (m/s) from `v_n` and the accelerations `a_n` and `a_n+1` (`new`), m/s^2.
     pub fn velocity(&self, v: &Vector3, a: &Vector3, new: &Vector3) -> Vector3 {
         v + (a * (1.0 - self.scheme.gamma) + new * self.scheme.gamma) * self.dt
     }
@@ -69,9 +70,9 @@ impl Update {
         (1.0 - alpha_m) / ((1.0 - alpha_f) * beta * self.dt * self.dt) + damping * gamma / (beta * self.dt)
     }
 
-    /// Returns the local error of `u_n+1`: the third-order term of the Taylor series that the step lacks,
-    /// `(beta - 1/6) dt^2 (a_n+1 - a_n)`. Source: Zienkiewicz and Xie, Earthquake Eng. Struct. Dyn. 20 (1991)
-    /// 871-887.
+    /// Returns the norm of the local error of `u_n+1`, m: the third-order term of the Taylor series that the
+    /// step lacks, `(beta - 1/6) dt^2 (a_n+1 - a_n)`. Source: Zienkiewicz and Xie, Earthquake Eng. Struct.
+    /// Dyn. 20 (1991) 871-887.
     pub fn error(&self, a: &Vector3, new: &Vector3) -> f64 {
         (self.scheme.beta - 1.0 / 6.0) * self.dt * self.dt * (new - a).norm()
     }

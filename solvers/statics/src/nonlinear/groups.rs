@@ -8,7 +8,7 @@ use shape::{DilationGroups, Rows};
 
 use super::{Inverted, Solid};
 
-/// The transpose of the groups: for each point its triples (group, place in the flat pair list, share).
+/// Transpose of the groups: for each point its (group, share) pairs, in one flat list.
 pub(crate) struct Pairs {
     offsets: Vec<usize>,
     /// Pairs (group, share), point by point.
@@ -66,7 +66,8 @@ impl Pairs {
         &self.of_point[self.offsets[q]..self.offsets[q + 1]]
     }
 
-    /// Returns the places of a group's entries in the pair list.
+    /// Returns the indices of a group's entries in the flat list of (group, share) pairs, in the order of the
+    /// group's points.
     pub fn places(&self, group: usize) -> &[usize] {
         &self.place[self.group_offsets[group]..self.group_offsets[group + 1]]
     }

@@ -52,7 +52,7 @@ pub(crate) fn add_dilation_hessian(small_strain: bool, H: &Matrix3, factor: f64,
 const PERMUTATIONS: [(usize, usize, usize, f64); 6] =
     [(0, 1, 2, 1.0), (1, 2, 0, 1.0), (2, 0, 1, 1.0), (0, 2, 1, -1.0), (2, 1, 0, -1.0), (1, 0, 2, -1.0)];
 
-/// Energy and first derivatives of `psi(F, theta)`.
+/// First derivatives of `psi(F, theta)`.
 pub(crate) struct First {
     /// `d psi / dF` (3, 3), Pa, which contains no pressure.
     pub by_F: Matrix3,
@@ -112,7 +112,7 @@ impl Split {
         law.energy(&self.H_bar)
     }
 
-    /// Returns the first derivatives.
+    /// Returns the first derivatives of `psi(F, theta)` for `law`.
     pub fn first(&self, law: &Law) -> First {
         self.first_of(&law.stress(&self.H_bar))
     }
@@ -122,7 +122,7 @@ impl Split {
         First { by_F: P * self.scale - self.T * (s / 3.0), by_theta: s / (3.0 * self.theta) }
     }
 
-    /// Returns the first and second derivatives.
+    /// Returns the first and second derivatives of `psi(F, theta)` for `law`.
     pub fn second(&self, law: &Law) -> (First, Second) {
         let (P, A) = law.stress_and_tangent(&self.H_bar);
         let Y = unflat(&(A * flat(&self.F_bar)));

@@ -11,7 +11,8 @@ use crate::nonlinear::statics::{StaticProblem, Step};
 const SHORTEST: f64 = 0.125;
 
 impl Newton<'_> {
-    /// Returns the converged step from `start`, or an error if a tool has jumped over the surface.
+    /// Returns `reached`, the result of a converged step from `start`, or an error if a tool has jumped over
+    /// the surface in this step.
     pub fn checked(&self, start: &State, reached: (State, Step)) -> Result<(State, Step), StaticError> {
         let (state, step) = &reached;
         self.each_tool(|surface, k, tool| {
