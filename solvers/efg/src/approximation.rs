@@ -90,7 +90,11 @@ struct Chunk {
 }
 
 impl Approximation {
-    /// Builds moving least squares from checked positions (m) and support radii (m), one per node.
+    /// Builds moving least squares from positions (m) and support radii (m), one per node.
+    ///
+    /// # Errors
+    /// Lists of unequal length, fewer nodes than the basis has terms, a position that is not finite, or a
+    /// radius that is not a positive number.
     pub fn new(
         nodes: Vec<Point3>,
         radii: Vec<f64>,
@@ -102,8 +106,11 @@ impl Approximation {
     }
 
     /// Builds local maximum-entropy functions from positions and spacings `h` (m), one per node, and the
-    /// locality `gamma`, usually 0.6 to 4. A larger `gamma` makes the functions narrower; they approach
-    /// linear interpolation.
+    /// dimensionless locality `gamma = beta h^2`, usually 0.6 to 4. A larger `gamma` makes the functions
+    /// narrower; they approach linear interpolation.
+    ///
+    /// # Errors
+    /// A `gamma` that is not a positive number, and the errors of [`Approximation::new`].
     pub fn maximum_entropy(
         nodes: Vec<Point3>,
         spacing: &[f64],
@@ -170,6 +177,9 @@ impl Approximation {
     /// Regularises the quadratic block of the moment matrix at every point by `mu` times the sum of the
     /// weights (modified moving least squares; Joldes et al. 2015). Linear fields stay exact, quadratic
     /// fields nearly so. The setting has no effect on the linear basis and on maximum entropy.
+    ///
+    /// # Errors
+    /// A `mu` outside 0 to 1.
     pub fn regularised(self, mu: f64) -> Result<Approximation, EfgError> {
         if !(0.0..=1.0).contains(&mu) {
             let what = "regularisation";

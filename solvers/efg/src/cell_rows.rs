@@ -271,7 +271,7 @@ impl<const P: usize> Sum<P> {
 }
 
 impl Sum<1> {
-    /// Adds the constant gradients of a cell times `share`.
+    /// Adds the constant gradients of a cell, multiplied by its fraction `share` of the volume.
     pub fn add_share(&mut self, cells: &CellRows, cell: usize, share: f64) {
         for i in cells.rows.range(cell) {
             self.touch(cells.rows.nodes[i]);

@@ -58,8 +58,8 @@ struct Cut {
     at: [f64; 4],
 }
 
-/// Detour from a node to a point (path through the body minus straight distance) relative to the node's
-/// support radius, and its gradient (1/m).
+/// Detour from a node to a point, relative to the extent of the node's support, and its gradient (1/m). The
+/// detour is added to the relative straight distance.
 #[derive(Clone, Copy, Default)]
 pub(crate) struct Detour {
     pub(crate) longer: f64,
@@ -144,7 +144,7 @@ impl Gaps {
         (centre, corners.iter().map(|p| (p - centre).norm()).fold(0.0, f64::max))
     }
 
-    /// Returns the gaps for some of the nodes, given in ascending order.
+    /// Restricts the gaps to the nodes in `kept` (ascending), which are renumbered in this order.
     pub fn of_nodes(mut self, kept: impl Iterator<Item = usize>) -> Gaps {
         let mut number = vec![u32::MAX; self.homes.len()];
         let homes = kept.enumerate().map(|(new, old)| {
@@ -163,7 +163,8 @@ impl Gaps {
         Gaps { offsets, cuts, ..self }
     }
 
-    /// Returns the cell of each point; for a node its own cell.
+    /// Returns the cell of each point, or the closest cell. If the points are the nodes, these are the cells
+    /// to which the nodes were assigned.
     pub fn cells(&self, points: &[Point3], nodes: &[Point3]) -> Result<Vec<u32>, EfgError> {
         if points == &nodes[..self.homes.len()] {
             return Ok(self.homes.clone());
@@ -210,7 +211,9 @@ impl Gaps {
         rows.shorten_last(n);
     }
 
-    /// Returns the detours from a point in a cell to all nodes, m; infinite beyond `farthest` (m).
+    /// Returns the detours (m) from a point in a cell to all nodes: the length of the path minus the straight
+    /// distance. A detour is zero if the path is at most 1.5 times as long as the straight distance. It is
+    /// infinite if no path of up to 1.5 times `farthest` (m) reaches a corner of the node's cell.
     pub fn detours(&self, x: &Point3, cell: u32, nodes: &[Point3], farthest: f64) -> Vec<f64> {
         let mut ways = Ways::new(self.graph.vertices());
         let length = |a: &Point3, b: &Point3| (a - b).norm();

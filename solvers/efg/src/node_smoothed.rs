@@ -31,11 +31,11 @@ const CHUNK: usize = 64;
 /// energy 0.62); both errors decrease with the square of the spacing.
 ///
 /// With `stabilisation` above 0 the points of [`crate::smoothed_rows`] come first, with weights
-/// `stabilisation V_c`. For a quadratic energy `W` the sum is the energy of the mean plus
-/// `stabilisation sum_c V_c / 4 sum_K W(grad~|c - grad~(x_K))`, the form of Puso, Chen, Zywicz and Elmer with
-/// the tissue's own moduli. A value of 0.05 damps the oscillation (0.24) but not the softness (14 %). Near
-/// incompressibility this part locks like the cells (tip displacement 47 % too small at 0.4999), unless the
-/// dilation is averaged over nodes.
+/// `stabilisation V_c`. For a quadratic energy density `W`, the total energy is that of the mean gradients
+/// plus `stabilisation sum_c V_c / 4 sum_K W(grad~|c - grad~(x_K))`. This is the form of Puso, Chen, Zywicz
+/// and Elmer with the tissue's own moduli. A value of 0.05 reduces the oscillation (error in energy 0.24) but
+/// hardly the softness (14 %). Near incompressibility the added part locks like the cells (tip displacement
+/// 47 % too small at a Poisson's ratio of 0.4999), unless the dilation is averaged over nodes.
 ///
 /// Every sum over the body equals that of cell smoothing. With [`crate::surface_rows`] at the same
 /// `face_points`, linear patch tests therefore pass to rounding; quadratic patch tests do not. Sources: Chen,
@@ -87,16 +87,16 @@ pub fn node_smoothed_rows(
 /// Expresses the gradients of [`node_smoothed_rows`] at the points of [`crate::flux_rows`] on the same
 /// facets: the gradients of the three vertices, interpolated linearly.
 ///
-/// With the linear functions `b_K` of the vertices and `A_K` (m^2), a third of the area of all listed facets
-/// around `K`, the lengths are
+/// Let `b_K` be the linear function of vertex `K`, and `A_K` (m^2) a third of the area of all listed facets
+/// around `K`. The lengths are
 ///
 /// ```text
 /// 1 / h = sum_K b_K a_K,    a_K = A_K / ((1 - stabilisation) V_K)
 /// ```
 ///
 /// Nitsche's method with the penalty `beta = gamma (lambda + 2 mu) / h` is definite for every `gamma > 1`, as
-/// with [`crate::smoothed_trace`]. This follows from `h (sum_K b_K f_K)^2 <= sum_K b_K f_K^2 / a_K` by Cauchy
-/// and Schwarz, with equality for `f = a`, because over the facets `b_K` sums to `A_K`.
+/// with [`crate::smoothed_trace`]. This follows from `h (sum_K b_K f_K)^2 <= sum_K b_K f_K^2 / a_K` (Cauchy
+/// and Schwarz, with equality for `f = a`), because the integral of `b_K` over the facets is `A_K`.
 pub fn node_smoothed_trace(
     background: &Mesh,
     facets: &[Facet],

@@ -12,8 +12,9 @@ use shape::{Matrix3, Point3, Vector3, VolumeRows};
 /// Coefficients of a linear field of displacement gradients: 1, x, y, z by the nine components.
 type Fit = SMatrix<f64, 4, 9>;
 
-/// Returns the estimated error of the displacement gradient at each node: the root mean square over the
-/// points in its support, for nodal parameters `u` (m).
+/// Returns the estimated error (dimensionless) of the displacement gradient at each node, for nodal
+/// parameters `u` (m) and node positions `nodes` (m). The error is the difference between the gradients and a
+/// smoother field fitted to them, as the root mean square over the quadrature points in the node's support.
 pub fn gradient_error(volume: &VolumeRows, u: &[Vector3], nodes: &[Point3]) -> Vec<f64> {
     let gradients: Vec<Matrix3> = volume.at().displacement_gradients(u);
     let points = volume.points();

@@ -127,7 +127,7 @@ const CONTACT_POINTS: usize = 3;
 /// nearest one in a cell where its own neighbours do not determine the functions.
 const BEYOND: f64 = 0.5;
 
-/// Shape functions over a background of linear tetrahedra.
+/// A cloud as a source of tables: its shape functions over a background of linear tetrahedra.
 pub struct CloudSource {
     approximation: Approximation,
     /// Number of nodes of the cloud; `spacing` is their mean spacing, m.
@@ -138,7 +138,8 @@ pub struct CloudSource {
 }
 
 impl CloudSource {
-    /// Builds the shape functions of a cloud, their supports and their integration over a background of tet4.
+    /// Builds the shape functions of a cloud and their supports over a background of tet4. `integration`
+    /// selects the quadrature.
     ///
     /// If `followed` is given, moving least squares have ellipsoidal supports adapted to its cells. If
     /// `coupled` is given, these background vertices (ascending) become finite-element nodes. With

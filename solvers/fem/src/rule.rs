@@ -27,8 +27,8 @@ impl VolumeRule {
     /// represent: tet4 14 points (degree 5), tet10 24 (degree 6), hex8 3 x 3 x 3, hex20 4 x 4 x 4.
     pub const FINE: VolumeRule = VolumeRule { tet4: 14, tet10: 24, hex8: 3, hex20: 4 };
 
-    /// Returns the rule with another number for one kind: `points` per cell (tets) or along each axis
-    /// (hexahedra).
+    /// Returns the rule with another number of points for one kind of cell: `points` per cell (tets) or along
+    /// each axis (hexahedra).
     ///
     /// # Errors
     ///
@@ -87,8 +87,8 @@ impl SurfaceRule {
     /// (degree 8), quad4 4 x 4, quad8 5 x 5.
     pub const FINE: SurfaceRule = SurfaceRule { tri3: 7, tri6: 16, quad4: 4, quad8: 5 };
 
-    /// Returns the rule with another number for one kind: `points` per face (triangles) or along each axis
-    /// (quadrilaterals).
+    /// Returns the rule with another number of points for one kind of face: `points` per face (triangles) or
+    /// along each axis (quadrilaterals).
     ///
     /// # Errors
     ///

@@ -128,7 +128,7 @@ struct Closest {
 }
 
 impl Locator {
-    /// Sorts the cells of a mesh into bins.
+    /// Builds the search structure from the cells of a mesh.
     ///
     /// # Errors
     /// A cell that is not a tetrahedron or has no volume.

@@ -25,7 +25,7 @@ pub struct Extreme {
     pub value: f64,
 }
 
-/// Result of [`check`].
+/// Volume and extreme quality measures of a mesh ([`check`]).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Quality {
     /// Volume of the whole mesh (m^3), curved cells included.
@@ -109,7 +109,7 @@ fn aspect(kind: CellKind, points: &[Point3], volume: f64) -> f64 {
     longest_edge(kind, points) * surface(kind, points) / volume / regular
 }
 
-/// Shape of one cell.
+/// Volume, aspect ratio and angles of one cell.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CellShape {
     /// Volume (m^3), negative if the cell is inverted.

@@ -2,11 +2,12 @@
 
 use crate::Rows;
 
-/// Functions of some of a method's nodes, interpolated at all of its nodes: the linear mesh under a quadratic
-/// mesh.
+/// Interpolation from some of a method's nodes to all of its nodes, such as from the linear mesh under a
+/// quadratic mesh.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Coarser {
-    /// For each node of the method, the coarser nodes in ascending order and the values of their functions.
+    /// For each node of the method, the coarser nodes in ascending order and the values of their functions at
+    /// the node.
     pub rows: Rows,
     /// Node of the method that coincides with each coarser node.
     pub places: Vec<u32>,

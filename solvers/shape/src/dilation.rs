@@ -176,6 +176,9 @@ impl DilationGroups {
     ///
     /// The shares of a cloud can be negative. A piece of a divided group with almost no volume is omitted,
     /// and its points are divided among their other groups.
+    ///
+    /// # Errors
+    /// A list whose length is not the number of points, or a point of which every piece is omitted.
     pub fn by_part(&self, parts: &[u16], weights: &[f64]) -> Result<DilationGroups, ShapeError> {
         for (what, found) in [("parts of points", parts.len()), ("weights", weights.len())] {
             if found != self.point_count {

@@ -42,6 +42,9 @@ pub struct PointRows {
 
 impl PointRows {
     /// Builds the table from positions (m) and one row per point.
+    ///
+    /// # Errors
+    /// A number of rows that is not that of the points, or a position that is not finite.
     pub fn new(points: Vec<Point3>, rows: Rows) -> Result<PointRows, ShapeError> {
         check_len("points", points.len(), rows.len())?;
         check_points(&points)?;
@@ -69,6 +72,9 @@ pub struct GradRows {
 
 impl GradRows {
     /// Builds the table from positions (m), one row per point, and one gradient (1/m) per row entry.
+    ///
+    /// # Errors
+    /// Lists of unequal length, or a position or gradient that is not finite.
     pub fn new(points: Vec<Point3>, rows: Rows, grads: Vec<Vector3>) -> Result<GradRows, ShapeError> {
         check_len("points", points.len(), rows.len())?;
         check_len("gradients", grads.len(), rows.nodes().len())?;
@@ -142,7 +148,7 @@ impl GradRows {
     }
 }
 
-/// Known structure of the rows of a volume quadrature, by which kernels are selected.
+/// Known structure of the rows of a volume quadrature, which selects the kernels for internal forces.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Layout {
     /// No known structure.
@@ -165,13 +171,16 @@ pub struct VolumeRows {
 
 impl VolumeRows {
     /// Builds the quadrature from rows with one positive weight (m^3) each.
+    ///
+    /// # Errors
+    /// A number of weights that is not that of the rows, or a weight that is not positive.
     pub fn new(at: GradRows, weights: Vec<f64>) -> Result<VolumeRows, ShapeError> {
         check_len("weights", weights.len(), at.rows.len())?;
         check_weights(&weights)?;
         Ok(VolumeRows { at, weights, layout: Layout::General })
     }
 
-    /// Declares the known structure of the rows.
+    /// Declares the known structure of the rows. Only their lengths and number are checked.
     ///
     /// # Errors
     /// Rows whose length or number does not suit the layout.
@@ -237,6 +246,9 @@ pub struct SurfaceRows {
 
 impl SurfaceRows {
     /// Builds the quadrature from rows with one positive weight (m^2) and one unit normal each.
+    ///
+    /// # Errors
+    /// Lists of unequal length, a weight that is not positive, or a normal that is not of unit length.
     pub fn new(at: PointRows, weights: Vec<f64>, normals: Vec<Vector3>) -> Result<SurfaceRows, ShapeError> {
         check_len("weights", weights.len(), at.rows.len())?;
         check_len("normals", normals.len(), at.rows.len())?;
@@ -276,6 +288,9 @@ pub struct FluxRows {
 
 impl FluxRows {
     /// Builds the quadrature from rows with one positive weight (m^2) and one unit normal each.
+    ///
+    /// # Errors
+    /// Lists of unequal length, a weight that is not positive, or a normal that is not of unit length.
     pub fn new(at: GradRows, weights: Vec<f64>, normals: Vec<Vector3>) -> Result<FluxRows, ShapeError> {
         check_len("weights", weights.len(), at.rows.len())?;
         check_len("normals", normals.len(), at.rows.len())?;

@@ -60,12 +60,12 @@ pub fn included(file: &Path) -> Vec<PathBuf> {
 /// Reads a mesh file; its content, not its name, determines the format. `unit` is the length of the file's
 /// unit in metres (0.001 for millimetres).
 ///
-/// Points, lines and parts of a file that do not belong to a mesh are skipped, and so are nodes that only
-/// these or sets use. Nodes and cells keep the order of the file.
+/// Points, lines and parts of a file that do not belong to a mesh are skipped. Nodes that only these or sets
+/// use are dropped; a node that nothing uses is an error. Nodes and cells keep the order of the file.
 ///
 /// # Errors
-/// A file in none of the formats, with a violation of its format or without a valid mesh. The error has the
-/// line or byte and the number of the node or element in the file.
+/// A file in none of the formats, with a violation of its format, with an unused node or without a valid
+/// mesh. The error has the line or byte and the number of the node or element in the file.
 pub fn read(file: &Path, unit: f64) -> Result<Mesh, FileError> {
     Ok(read_bytes(&bytes(file)?, file, unit)?.0)
 }

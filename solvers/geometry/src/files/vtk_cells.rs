@@ -30,7 +30,7 @@ const ORDER: [usize; 20] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15
 #[derive(Clone)]
 pub(super) struct Array {
     pub name: String,
-    /// Place of the numbers.
+    /// Place of the array in the file.
     pub place: Place,
     pub values: Vec<f64>,
 }
@@ -95,8 +95,9 @@ pub(super) struct Cells {
     /// End of the points of each cell in `list`.
     pub ends: Vec<usize>,
     pub list: Vec<i64>,
-    /// Region numbers and surface numbers of the cells.
+    /// Region number of each cell.
     pub regions: Option<Vec<i64>>,
+    /// Surface number of each cell; negative for none.
     pub surfaces: Option<Vec<i64>>,
     /// Named groups of cells that may cross regions. Each has one number per cell, positive for its members.
     pub further: Vec<(String, Vec<i64>)>,

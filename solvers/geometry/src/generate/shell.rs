@@ -14,10 +14,11 @@ pub enum ShellExtent {
 
 /// Meshes the shell between the radii `inner` and `outer` (m) around the origin.
 ///
-/// `cells = [around, through]` are the hexahedra along each edge of the six cube faces projected to the
-/// sphere (for an octant: along each half edge, on three quarter faces), and through the thickness. `grading`
-/// is the ratio of the outermost to the innermost interval (1: uniform). Facet groups: "inner", "outer", and
-/// the cuts of an octant. Quadratic nodes lie exactly on the two spheres.
+/// The shell consists of the six faces of a cube projected to the sphere. `cells = [around, through]` are the
+/// numbers of hexahedra along each edge of a face and through the thickness. An octant consists of three
+/// quarter faces, with `around` hexahedra along each half edge. `grading` is the ratio of the outermost to
+/// the innermost interval (1: uniform). Facet groups: "inner", "outer", and the cuts of an octant. Quadratic
+/// nodes lie exactly on the two spheres.
 ///
 /// # Errors
 /// A radius, grading or number of cells out of range.

@@ -83,8 +83,8 @@ pub enum StuffingError {
     },
 }
 
-/// Estimates the number of nodes of cells of uniform size, with `spacing` in m, in a volume (m^3) within an
-/// area (m^2).
+/// Estimates the number of nodes of a mesh with cells of uniform size, in a body with this volume (m^3) and
+/// surface area (m^2). `spacing` (m) is the mean edge length.
 pub fn expected_nodes(volume: f64, area: f64, spacing: f64) -> f64 {
     let edge = spacing / MEAN_EDGE;
     // Two nodes per cube, and half a layer at the surface.

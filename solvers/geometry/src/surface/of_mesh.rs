@@ -7,15 +7,16 @@ use crate::{FaceKind, Facet, Mesh};
 pub struct BoundaryFaces {
     /// Surface of the boundary.
     pub surface: Surface,
-    /// Face of each triangle.
+    /// Face of the mesh to which each triangle belongs.
     pub faces: Vec<Facet>,
 }
 
 impl BoundaryFaces {
-    /// Triangulates the faces that belong to only one cell.
+    /// Builds the surface from the faces that belong to only one cell, each divided into triangles through
+    /// its nodes.
     ///
     /// # Errors
-    /// A boundary that branches or crosses itself. Triangles are numbered by the faces of the boundary, with
+    /// A boundary that branches or crosses itself. The error counts the faces of the boundary from 1 and has
     /// positions in metres.
     pub fn new(mesh: &Mesh) -> Result<BoundaryFaces, SurfaceProblem> {
         let boundary = mesh.boundary();
