@@ -1,4 +1,4 @@
-//! What is kept of results: small enough for a repository, enough for noise to be told from a step.
+//! Summary of results: small enough for a repository, with enough data to distinguish a step from noise.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -17,22 +17,22 @@ use crate::store::write_text;
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Summary {
-    /// Name of the study's or scene's file.
+    /// File name of the study or scene.
     pub source: String,
-    /// Label given when they were added, such as a version; empty if none was given.
+    /// Label given when the results were added, such as a version; empty without one.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub label: String,
-    /// Checks that did not hold.
+    /// Number of checks that did not hold.
     pub checks_failed: usize,
-    /// The program.
+    /// Program that computed the results.
     pub program: Program,
-    /// The machine.
+    /// Machine that ran the program.
     pub machine: Machine,
-    /// The runs by case, method, settings and size.
+    /// Runs by case, method, settings and size.
     pub runs: BTreeMap<String, RunNumbers>,
 }
 
-/// One run in short.
+/// Summary of one run.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RunNumbers {
@@ -40,21 +40,21 @@ pub struct RunNumbers {
     pub case: String,
     /// Method id.
     pub method: String,
-    /// Nodes.
+    /// Number of nodes.
     pub nodes: u64,
     /// Refinement level.
     pub level: u32,
     /// Poisson's ratio.
     pub poisson: f64,
-    /// Errors at the end, SI, by quantity.
+    /// Errors at the end by quantity, SI.
     #[serde(default)]
     pub errors: BTreeMap<String, f64>,
-    /// Seconds of each repeat by phase: of the processors where they are known, by the clock otherwise.
+    /// Times of each repeat by phase, s: CPU time if known, otherwise wall time.
     #[serde(default)]
     pub seconds: BTreeMap<String, Vec<f64>>,
 }
 
-/// Digits that are kept of an error, and of a time.
+/// Number of digits kept of an error, and of a time.
 const ERROR_DIGITS: usize = 9;
 const TIME_DIGITS: usize = 4;
 
@@ -63,7 +63,7 @@ fn rounded(value: f64, digits: usize) -> f64 {
 }
 
 impl Summary {
-    /// Of results.
+    /// Summarises the results of a run set.
     pub fn of(set: &RunSet) -> Summary {
         let mut runs: BTreeMap<String, RunNumbers> = BTreeMap::new();
         let mut wall: BTreeMap<(String, String), Vec<f64>> = BTreeMap::new();
@@ -162,14 +162,14 @@ impl Summary {
         RunSet { records: records.collect(), ..RunSet::default() }
     }
 
-    /// Seconds of a run: the shortest of its repeats.
+    /// Time of a run, s: its shortest repeat.
     pub(super) fn total(&self, run: &str) -> Option<f64> {
         let times = self.runs.get(run)?.seconds.get("total")?;
         times.iter().copied().reduce(f64::min)
     }
 }
 
-/// Whether it is a distance from what is right.
+/// Whether the quantity measures a deviation from the correct result.
 fn is_error(quantity: &str) -> bool {
     metric::find(quantity).is_some_and(|metric| metric.lower_is_better() && metric.kind != metric::Kind::Cost)
 }

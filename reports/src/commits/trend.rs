@@ -1,4 +1,4 @@
-//! Accuracy and time from commit to commit, and the steps that are no noise.
+//! Trends of accuracy and time over commits, and the steps that exceed noise.
 
 use std::fmt;
 
@@ -7,58 +7,59 @@ use serde::Serialize;
 use super::Summary;
 use crate::compare::{Comparison, Ratio};
 
-/// Relative change from which on an error has changed: below it are the last bits of another compiler.
+/// Relative change of an error that counts. Smaller changes may be the last bits of another compiler.
 const TOLERANCE: f64 = 1e-6;
-/// Of the case's scale, dimensionless or in metres: an error below is zero but for rounding, whatever it changes to.
+/// Error below which the result is zero up to rounding, dimensionless or in m; its changes do not count.
 const ROUNDING: f64 = 1e-10;
 
-/// A study on one machine over commits.
+/// Results of a study on one machine over commits.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Trend {
-    /// Name of the study's or scene's file.
+    /// File name of the study or scene.
     pub source: String,
-    /// Processor and threads.
+    /// Processor and number of threads.
     pub machine: String,
-    /// The commits, oldest first.
+    /// Points of the commits, oldest first.
     pub points: Vec<Point>,
 }
 
-/// The results of one commit; those that were added one after the other count together.
+/// Results of one commit; consecutive results of the same commit are combined.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Point {
     /// Number of the first file.
     pub number: u32,
-    /// The commit, with `+` where the source was changed since.
+    /// The commit, with `+` appended if the source was changed since.
     pub commit: String,
-    /// Label given when the results were added; empty if none was given.
+    /// Label given when the results were added; empty without one.
     pub label: String,
-    /// Results added.
+    /// Number of results added.
     pub results: usize,
-    /// Whether the machine was quiet at the start of each; `None` where that is not known.
+    /// Whether the machine was quiet at the start of each result; `None` if unknown.
     pub quiet: Option<bool>,
-    /// Runs.
+    /// Number of runs.
     pub runs: usize,
-    /// Checks that did not hold.
+    /// Number of checks that did not hold.
     pub checks_failed: usize,
-    /// Processor seconds of one pass over all runs, each at its shortest.
+    /// CPU time of one pass over all runs, s, with the shortest repeat of each.
     pub seconds: f64,
-    /// The same over those of the first commit, of the runs that both have.
+    /// Ratio of the CPU time to that of the first commit, for the runs that both have.
     pub seconds_ratio: Option<f64>,
-    /// Geometric mean of all errors over those of the first commit, where both have them.
+    /// Geometric mean of the ratios of all errors to those of the first commit, for the errors that both
+    /// have.
     pub error_ratio: Option<f64>,
-    /// What changed since the commit before; `None` of the first.
+    /// Changes since the previous commit; `None` for the first.
     pub step: Option<Step>,
 }
 
 impl Trend {
-    /// Its name in a legend.
+    /// Name in a legend.
     pub fn label(&self) -> String {
         format!("{}, {}", self.source, self.machine)
     }
 }
 
 impl Point {
-    /// The label, or the commit in twelve digits with its `+`.
+    /// The label, or else the first twelve digits of the commit and its `+`.
     pub fn name(&self) -> String {
         if !self.label.is_empty() {
             return self.label.clone();
@@ -66,17 +67,17 @@ impl Point {
         self.commit.chars().take(12).chain(self.commit.chars().skip(12).filter(|c| *c == '+')).collect()
     }
 
-    /// Whether an error is outside of noise since the commit before.
+    /// Whether an error has changed significantly since the previous commit.
     pub fn errors_moved(&self) -> bool {
         self.step.as_ref().is_some_and(|step| !step.worse.is_empty() || !step.better.is_empty())
     }
 
-    /// Whether a time is.
+    /// Whether a time has changed significantly since the previous commit.
     pub fn times_moved(&self) -> bool {
         self.step.as_ref().is_some_and(|step| !step.called.is_empty())
     }
 
-    /// How many errors and times are outside of noise, such as `2 errors worse, 1 time faster`; empty where none is.
+    /// Numbers of significant changes, such as `2 errors worse, 1 time faster`; empty without any.
     pub fn moved(&self) -> String {
         let Some(step) = &self.step else { return String::new() };
         let slower = step.called.iter().filter(|ratio| ratio.ratio > 1.0).count();
@@ -94,33 +95,33 @@ impl Point {
     }
 }
 
-/// What changed from one commit to the next.
+/// Changes from one commit to the next.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Step {
-    /// Errors that have grown, the most first.
+    /// Errors that have increased, the largest increase first.
     pub worse: Vec<ErrorStep>,
-    /// Errors that have shrunk, the most first.
+    /// Errors that have decreased, the largest decrease first.
     pub better: Vec<ErrorStep>,
-    /// Runs that are no more, and those that are new.
+    /// Number of runs that no longer exist.
     pub lost: usize,
-    /// See there.
+    /// Number of new runs.
     pub new: usize,
-    /// All times after over before, with the limit of noise; `None` of too few runs.
+    /// Ratio of all times after to before, with the limit of noise; `None` for too few runs.
     pub times: Option<Ratio>,
-    /// Every time that is outside of noise: of all, of phases, cases, methods and runs.
+    /// Significant changes of times: of all runs, and of phases, cases, methods and single runs.
     pub called: Vec<Ratio>,
 }
 
-/// An error that has changed.
+/// A change of an error.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ErrorStep {
-    /// The run.
+    /// Name of the run.
     pub run: String,
-    /// Which error.
+    /// Name of the error.
     pub quantity: String,
-    /// Before, SI.
+    /// Value before, SI.
     pub before: f64,
-    /// After, SI.
+    /// Value after, SI.
     pub after: f64,
 }
 
@@ -131,7 +132,7 @@ impl fmt::Display for ErrorStep {
 }
 
 impl Step {
-    /// Whether anything is outside of noise.
+    /// Whether any change is significant.
     pub fn is_marked(&self) -> bool {
         !self.worse.is_empty() || !self.better.is_empty() || !self.called.is_empty()
     }
@@ -182,7 +183,7 @@ pub(super) fn trends(all: Vec<(u32, Summary)>) -> Vec<Trend> {
         });
         let commits = &mut found[at].2;
         match commits.last_mut() {
-            // Of a changed source nobody knows whether it is the same.
+            // Two results of changed sources need not be of the same source.
             Some(last)
                 if !summary.program.dirty
                     && last.commit == summary.program.revision()
@@ -202,7 +203,7 @@ pub(super) fn trends(all: Vec<(u32, Summary)>) -> Vec<Trend> {
         .collect()
 }
 
-/// The results of one commit, added one after the other.
+/// Consecutive results of one commit.
 struct Added {
     number: u32,
     commit: String,
@@ -239,7 +240,7 @@ fn points(commits: &[Added]) -> Vec<Point> {
     commits.iter().enumerate().filter_map(point).collect()
 }
 
-/// Seconds of a run, the shortest of all results of a commit.
+/// Time of a run, s: the shortest of all results of a commit.
 fn shortest(added: &Added, run: &str) -> Option<f64> {
     added.results.iter().filter_map(|result| result.total(run)).reduce(f64::min)
 }

@@ -11,32 +11,32 @@ use crate::run_set::RunSet;
 /// How numbers compare.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Numbers {
-    /// Relative difference from which on a number has changed.
+    /// Relative difference above which a number has changed.
     pub tolerance: f64,
-    /// Numbers compared.
+    /// Number of values compared.
     pub compared: usize,
-    /// Runs that only the results before have.
+    /// Runs that exist only in the results before.
     pub only_before: Vec<String>,
-    /// Runs that only the results after have.
+    /// Runs that exist only in the results after.
     pub only_after: Vec<String>,
-    /// Numbers that have changed, the largest change first.
+    /// Changed numbers, the largest change first.
     pub changes: Vec<NumberChange>,
 }
 
-/// A number that has changed.
+/// A changed number.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct NumberChange {
-    /// The run: case, method, settings and size.
+    /// Name of the run: case, method, settings and size.
     pub run: String,
-    /// The quantity with its unit; of a history the step that changed most stands for all.
+    /// Quantity with its unit; a history is represented by the step with the largest change.
     pub quantity: String,
-    /// Before, SI; absent where only the results after have it.
+    /// Value before, SI; absent if it exists only after.
     pub before: Option<f64>,
-    /// After, SI; absent where only the results before have it.
+    /// Value after, SI; absent if it exists only before.
     pub after: Option<f64>,
-    /// Difference over the larger of the two; 1 where one is absent.
+    /// Difference over the larger of the two; 1 if either is absent.
     pub relative: f64,
-    /// `better` or `worse` of errors, `differs` of results, which are neither.
+    /// `better` or `worse` for errors, `differs` for other results.
     pub verdict: &'static str,
 }
 
@@ -72,7 +72,7 @@ impl Numbers {
     }
 }
 
-/// Below this share of the largest number of the same unit in a run, a number is rounding.
+/// Fraction of the largest number of the same unit in a run below which a number is rounding.
 const ROUNDING: f64 = 1e-9;
 
 /// The largest change among the steps of a quantity, if one is beyond the tolerance.

@@ -2,7 +2,7 @@
 
 use super::*;
 
-/// Numbers in (0, 1) of a seed (SplitMix64).
+/// Pseudo-random numbers in (0, 1) from a seed (SplitMix64).
 struct Random(u64);
 
 impl Random {
@@ -14,7 +14,7 @@ impl Random {
         ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64 + 1e-17
     }
 
-    /// Student's t of three degrees of freedom: the tails of times on a busy machine.
+    /// Student's t with three degrees of freedom, whose tails are like those of times on a busy machine.
     fn noise(&mut self) -> f64 {
         let mut normal =
             || (-2.0 * self.unit().ln()).sqrt() * (2.0 * std::f64::consts::PI * self.unit()).cos();
@@ -27,8 +27,9 @@ const METHODS: [&str; 9] =
     ["tet4", "tet4-mean", "tet10", "hex8", "hex8-mean", "hex20", "efg", "efg-83", "mixed"];
 const PHASES: [&str; 4] = ["prepare", "assemble", "factor", "solve"];
 
-/// Results of three cases by nine methods on two levels: a drift of 1.5 %, scatter of 3 % of each run and of each phase, of 2 % of each of
-/// three repeats; `slower` says how much a case, method and phase takes longer.
+/// Results of three cases with nine methods on two levels. Times have a drift of 1.5 %, a scatter of 3 % of
+/// each run and of each phase, and of 2 % of each of three repeats. `slower` returns a factor for a case,
+/// method and phase.
 fn results(seed: u64, slower: impl Fn(&str, &str, &str) -> f64) -> RunSet {
     let mut random = Random(seed);
     let mut records = Vec::new();
@@ -88,7 +89,7 @@ fn of_a_hundred_metrics_at_most_one_is_called_by_mistake() {
             wholes += usize::from(times.whole.unwrap().called);
         }
         assert!(tested > 2000 && 100 * called <= tested, "{called} of {tested} with {pairs} pairs");
-        // Once in forty, of 19, 17 and 11 comparisons that share results.
+        // One in forty, of 19, 17 and 11 comparisons that share results.
         assert!(wholes <= 2, "{wholes}");
     }
 }
@@ -121,7 +122,8 @@ fn one_phase_of_one_run_that_takes_twice_as_long_is_called() {
     assert_eq!(times.called.iter().filter(named).filter(|r| r.ratio > 1.5).count(), 2, "{:?}", times.called);
 }
 
-/// Twice as long at its shortest, but no longer than the longest before: another program can make that.
+/// The shortest repeat takes twice as long, but no longer than the longest before, as another program may
+/// cause.
 #[test]
 fn repeats_that_overlap_are_not_called() {
     let with = |seed: u64, times: [f64; 3]| {
@@ -138,7 +140,7 @@ fn repeats_that_overlap_are_not_called() {
     assert_eq!((called([0.2, 0.22, 0.24]), called([0.4, 0.42, 0.44])), (0, 1));
 }
 
-/// Of three repeats of 2 ms one other program can disturb all.
+/// A single other program can disturb all of three repeats of 2 ms.
 #[test]
 fn of_one_pair_a_short_phase_is_not_called_by_itself() {
     let short = |mut set: RunSet| {
