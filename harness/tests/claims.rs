@@ -9,7 +9,7 @@ body = { shape = "sphere-shell", inner = "10 mm", outer = "20 mm", octant = true
 material = { law = "linear", young = "20 kPa", poisson = 0.3 }
 support = [{ on = "x-min", fix = "x" }, { on = "y-min", fix = "y" }, { on = "z-min", fix = "z" }]
 load = [{ on = "inner", pressure = "2 kPa" }]
-reference = { exact = "thick-sphere", inner = "10 mm", outer = "20 mm", inner-pressure = "2 kPa" }
+reference = { exact = "thick-sphere", inner = "10 mm", outer = "20 mm", inner_pressure = "2 kPa" }
 method = [
     { id = "tet4", family = "fem", element = "tet4", size = { level = 1 } },
     { id = "hex20", family = "fem", element = "hex20", size = { level = 1 } },

@@ -66,7 +66,7 @@ body = {{ shape = "sphere-shell", inner = "10 mm", outer = "20 mm", octant = tru
 material = {{ law = "linear", young = "20 kPa", poisson = 0.3 }}
 support = [{ROLLERS}]
 load = [{{ on = "inner", pressure = "{inside}" }}]
-reference = {{ exact = "thick-sphere", inner = "10 mm", outer = "20 mm", inner-pressure = "2 kPa" }}
+reference = {{ exact = "thick-sphere", inner = "10 mm", outer = "20 mm", inner_pressure = "2 kPa" }}
 method = [{{ id = "tet4", family = "fem", element = "tet4", size = {{ level = {level} }} }}]
 "#
         )

@@ -75,7 +75,7 @@ fn states_are_recorded_with_energies_that_balance() {
 fn a_slow_damped_motion_ends_where_a_static_path_does() {
     let slow = |drive: &str| {
         moving(PRESSED)
-            .replace("duration = \"20 ms\"", "duration = \"0.6 s\", damping = \"60 /s\", tool-mass = 1.0")
+            .replace("duration = \"20 ms\"", "duration = \"0.6 s\", damping = \"60 /s\", tool_mass = 1.0")
             .replace("drive = { closure = \"2 mm\" }", &format!("drive = {{ {drive}, over = \"0.3 s\" }}"))
             .replace("drive = { closure = \"1 mm\" }", "drive = { closure = \"1 mm\", over = \"0.3 s\" }")
     };
@@ -193,7 +193,7 @@ fn a_tool_that_loses_its_contact_is_named_and_exits_with_3() {
     // A force-controlled tool oscillates on its contact with its own mass.
     let light = STRUCK
         .replace("closure = \"10 mm\"", "force = \"2 N\"")
-        .replace("steps = 10", "steps = 10, tool-mass = 1e-6")
+        .replace("steps = 10", "steps = 10, tool_mass = 1e-6")
         .replace("1e-4 MPa", "5 MPa");
     let (done, told) = run(&light);
     assert_fails(&done, 3, "key 'procedure': ");
@@ -233,7 +233,7 @@ fn bad_explicit_scenes_name_the_key() {
         ),
         ("steps = 4", "steps = 4, damping = 5", 2, "needs a unit: /s"),
         ("steps = 4", "steps = 4, damping = \"-5 /s\"", 2, "'procedure.damping'"),
-        ("steps = 4", "steps = 4, tool-mass = 0", 2, "'procedure.tool-mass'"),
+        ("steps = 4", "steps = 4, tool_mass = 0", 2, "'procedure.tool_mass'"),
         ("steps = 4", "steps = 4, tolerance = 1e-9", 2, "it goes with static, implicit-dynamic"),
         (
             "\"explicit\", duration = \"20 ms\"",

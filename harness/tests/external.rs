@@ -346,7 +346,7 @@ fn a_solver_ends_with_whoever_called_it() {
         "title = \"Solvers\"\n[[run]]\nscene = \"block.toml\"\nmethods = [\"sleep\"]\n",
     );
     let done =
-        tissuebench(&dir, &["verify", "study.toml", "--isolate", "--time-limit", "2", "--out", "results"]);
+        tissuebench(&dir, &["verify", "study.toml", "--isolate", "--time-limit", "2 s", "--out", "results"]);
     assert_fails(&done, 3, "out of time");
     wait("it is gone with an ended run", &|| !child_runs_in(&dir));
 }

@@ -145,14 +145,14 @@ fn bad_scenes_in_time_name_the_key() {
         ("duration = \"1 s\", ", "", 2, "'procedure.duration': is missing"),
         (
             "steps = 2",
-            "steps = 2, spectral-radius = 1.5",
+            "steps = 2, spectral_radius = 1.5",
             2,
-            "'procedure.spectral-radius': '1.5' is not in [0, 1]",
+            "'procedure.spectral_radius': '1.5' is not in [0, 1]",
         ),
         ("steps = 2", "steps = 2, accuracy = 0.1", 2, "'procedure.accuracy': '0.1' has no unit"),
         ("steps = 2", "steps = 2, accuracy = \"0 mm\"", 2, "'procedure.accuracy'"),
         ("steps = 2", "steps = 2, safety = 0.5", 2, "it goes with explicit"),
-        ("steps = 2", "steps = 2, on-stall = \"relax\"", 2, "it goes with static"),
+        ("steps = 2", "steps = 2, on_stall = \"relax\"", 2, "it goes with static"),
         (
             "steps = 2",
             "steps = 2, inertia = false, damping = \"5 /s\"",
@@ -184,11 +184,11 @@ fn bad_scenes_in_time_name_the_key() {
         good.replace(", density = \"1000 kg/m^3\"", "").replace("steps = 2", "steps = 2, inertia = false");
     assert_eq!(run(&still).0.code, 0);
     let touched = moving(PRESSED).replace("\"explicit\"", "\"implicit-dynamic\"");
-    let path = write(&dir, "mean.toml", &touched.replace("steps = 4", "steps = 4, spectral-radius = 0.5"));
+    let path = write(&dir, "mean.toml", &touched.replace("steps = 4", "steps = 4, spectral_radius = 0.5"));
     assert_fails(
         &tissuebench(&["run", &path]),
         3,
-        "'procedure.spectral-radius': '0.5' a spectral radius above 0 with tools",
+        "'procedure.spectral_radius': '0.5' a spectral radius above 0 with tools",
     );
     let ramps = touched.replace("closure = \"1 mm\"", "closure = \"1 mm\", over = \"10 ms\"");
     let path = write(&dir, "ramps.toml", &ramps);

@@ -17,7 +17,7 @@ fn block(solver: &str) -> String {
     let first = BLOCK.lines().filter(|line| !line.starts_with("method"));
     let text: String = first.map(|line| format!("{line}\n")).collect();
     format!(
-        "{text}procedure = {{ kind = \"linear\", linear-solver = \"{solver}\" }}\n{methods}\noutput = {{ probes = [[\"20 mm\", \"20 mm\", \"20 mm\"]] }}\n"
+        "{text}procedure = {{ kind = \"linear\", linear_solver = \"{solver}\" }}\n{methods}\noutput = {{ probes = [[\"20 mm\", \"20 mm\", \"20 mm\"]] }}\n"
     )
 }
 
@@ -110,7 +110,7 @@ fn constraint_rows_are_not_for_iterations() {
     assert_fails(
         &done,
         2,
-        "block.toml:6: key 'procedure.linear-solver': 'amg' iterates over nodal parameters",
+        "block.toml:6: key 'procedure.linear_solver': 'amg' iterates over nodal parameters",
     );
     assert!(done.stderr.contains("essential = \"nitsche\""), "{}", done.stderr);
     let free = text.replace("\"amg\"", "\"auto\"");

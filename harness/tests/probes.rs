@@ -94,7 +94,7 @@ body = {{ shape = "sphere-shell", inner = "10 mm", outer = "20 mm", octant = tru
 material = {{ law = "linear", young = "20 kPa", poisson = {poisson} }}
 support = [{{ on = "x-min", fix = "x" }}, {{ on = "y-min", fix = "y" }}, {{ on = "z-min", fix = "z" }}]
 load = [{{ on = "inner", pressure = "1 kPa" }}]
-reference = {{ exact = "thick-sphere", inner = "10 mm", outer = "20 mm", inner-pressure = "1 kPa" }}
+reference = {{ exact = "thick-sphere", inner = "10 mm", outer = "20 mm", inner_pressure = "1 kPa" }}
 output = {{ probes = [["7 mm", "7.2 mm", "6.9 mm"], ["15 mm", "1 mm", "0.4 mm"], ["12 mm", "5 mm", "9 mm"]] }}
 method = [
     {{ id = "hex20-reduced", family = "fem", element = "hex20", reduced = true, size = {{ level = 2 }} }},

@@ -312,7 +312,7 @@ fn where_newton_stalls_relaxation_comes_to_the_same_rest() {
     let force = PRESSED.replace("closure = \"2 mm\"", "force = \"4 N\"");
     for (name, text) in [("led.toml", PRESSED), ("forced.toml", force.as_str())] {
         // A single iteration never confirms convergence.
-        let stuck = text.replace("steps = 2 }", "steps = 2, iterations = 1, on-stall = \"relax\" }");
+        let stuck = text.replace("steps = 2 }", "steps = 2, iterations = 1, on_stall = \"relax\" }");
         let (free, stuck) = (write(&dir, name, text), write(&dir, &format!("stuck-{name}"), &stuck));
         for method in ["hex8", "tet4-nodal"] {
             let run = |path: &str| tissuebench(&["run", path, "--format", "json", "--method", method]);

@@ -292,7 +292,7 @@ fn memory_and_time_cost_one_run_alone() {
         &out,
         "--isolate",
         "--time-limit",
-        "4",
+        "4 s",
         "--memory-limit",
         "60MB",
     ]);
@@ -302,7 +302,7 @@ fn memory_and_time_cost_one_run_alone() {
     let [("b1", time), ("b2", memory)] = failed[..] else { panic!("{failed:?}") };
     assert!(time == "out of time: ended after 4 s (--time-limit)", "{time}");
     assert!(memory.starts_with("out of memory: memory allocation of "), "{memory}");
-    assert!(memory.ends_with("within 62914560 bytes (--memory-limit)"), "{memory}");
+    assert!(memory.ends_with("within 60000000 bytes (--memory-limit)"), "{memory}");
     let whole = |case: &str| set.records.iter().any(|r| r.case == case && r.quantity == "max-z");
     assert!(whole("b0") && whole("b3") && !whole("b1") && !whole("b2"));
     assert_eq!(processes_of(&dir), [""; 0]);

@@ -115,7 +115,7 @@ body = {{ shape = "file", path = "octant.msh", unit = "mm" }}
 material = {{ law = "linear", young = "20 kPa", poisson = 0.3 }}
 support = [{{ on = "x-min", fix = "x" }}, {{ on = "y-min", fix = "y" }}, {{ on = "z-min", fix = "z" }}]
 load = [{{ on = "inner", pressure = "{factor} Pa" }}]
-reference = {{ exact = "thick-sphere", inner = "10 mm", outer = "20 mm", inner-pressure = "100 Pa" }}
+reference = {{ exact = "thick-sphere", inner = "10 mm", outer = "20 mm", inner_pressure = "100 Pa" }}
 method = [{{ id = "tet10", family = "fem", element = "tet10", size = {{ file = "octant.msh", unit = "mm" }} }}]
 "#
         )

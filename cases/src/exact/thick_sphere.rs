@@ -87,12 +87,12 @@ pub(super) const ENTRY: SolutionEntry = Entry {
     parameters: &[
         Parameter::required("inner", Dimension::Length, "inner radius"),
         Parameter::required("outer", Dimension::Length, "outer radius"),
-        Parameter::default("inner-pressure", Dimension::Pressure, 0.0, "pressure on the inner wall"),
-        Parameter::default("outer-pressure", Dimension::Pressure, 0.0, "pressure on the outer wall"),
+        Parameter::default("inner_pressure", Dimension::Pressure, 0.0, "pressure on the inner wall"),
+        Parameter::default("outer_pressure", Dimension::Pressure, 0.0, "pressure on the outer wall"),
     ],
     build: |medium, values| {
         let radii = numbers(values, ["inner", "outer"])?;
-        let pressures = numbers(values, ["inner-pressure", "outer-pressure"])?;
+        let pressures = numbers(values, ["inner_pressure", "outer_pressure"])?;
         Ok(Box::new(ThickSphere::new(medium.elastic, radii, pressures)?))
     },
 };

@@ -24,7 +24,7 @@ impl Scene {
         };
         if !self.tools.is_empty() && radius > 0.0 {
             let help = "leave it out: above 0 stiff contact gains energy";
-            add("procedure.spectral-radius", "a spectral radius above 0 with tools".into(), help);
+            add("procedure.spectral_radius", "a spectral radius above 0 with tools".into(), help);
         }
         let ramp = |tool: &super::tool::Tool| tool.over.or(self.procedure.duration());
         for (i, tool) in self.tools.iter().enumerate().filter(|_| implicit) {

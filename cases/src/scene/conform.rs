@@ -15,7 +15,7 @@ use super::region::Region;
 use catalogue::Dimension;
 use catalogue::Problem;
 
-/// Renamed keys: old name and new name.
+/// Renamed keys, old name and new name; keys once spelled with hyphens, such as `on-stall`, need no entry.
 const RENAMED: [(&str, &str); 3] =
     [("dilatation", "support_scale"), ("dilatations", "support_scales"), ("support", "neighbourhood")];
 
@@ -381,9 +381,12 @@ fn keys(
         } else {
             let names: Vec<&str> = known.keys().map(String::as_str).collect();
             mistyped.extend(nearest(name, names.iter().copied()));
-            let now = RENAMED.iter().find(|(old, new)| *old == name && known.contains_key(*new));
-            let problem = match now {
-                Some((_, new)) => Problem::new("is an old name").help(format!("write {new}")),
+            let now = RENAMED
+                .iter()
+                .find(|(old, _)| *old == name)
+                .map_or(name.replace('-', "_"), |(_, new)| (*new).into());
+            let problem = match known.get_key_value(&now) {
+                Some((new, _)) => Problem::new("is an old name").help(format!("write {new}")),
                 None => of_another(name, form, others)
                     .unwrap_or_else(|| Problem::new("is not a known key").help(suggest(name, &names))),
             };

@@ -9,12 +9,12 @@ use super::keys::{JitterKeys, SizeKeys};
 use super::method::{Dilation, Element, Family, Fem, Method};
 use super::report::Report;
 use super::resolve::{jitter, positive, size};
-use super::units::{Q, Time};
+use super::units::{Bytes, Q, Time};
 
 /// Time limit of a run of an external solver if the file gives none, s.
 const TIME_LIMIT: f64 = 600.0;
 /// Memory limit of all its processes together if the file gives none, bytes: 4 GB.
-const MEMORY_LIMIT: u64 = 4 << 30;
+const MEMORY_LIMIT: u64 = 4_000_000_000;
 
 /// Settings of a method of an external solver.
 #[derive(Clone, Debug, PartialEq)]
@@ -60,7 +60,7 @@ pub(crate) struct ExternalKeys {
     /// Time limit of a run; 600 s unless given
     pub time_limit: Option<Q<Time>>,
     /// Memory limit of all processes of a run together, such as "500 MB"; "4 GB" unless given
-    pub memory_limit: Option<String>,
+    pub memory_limit: Option<Q<Bytes>>,
 }
 
 /// The method described by the keys at `key`.
@@ -70,17 +70,12 @@ pub(crate) fn external(keys: ExternalKeys, key: &str, report: &mut Report) -> Op
     let size = size(keys.size, &at("size"), report);
     let jitter = jitter(keys.jitter, key, report);
     let time_limit = keys.time_limit.map_or(TIME_LIMIT, |q| positive(q.0, &at("time_limit"), report));
-    let memory_limit = keys.memory_limit.map_or(Ok(MEMORY_LIMIT), |text| bytes(&text));
-    report.require(memory_limit.is_ok(), &at("memory_limit"), "is no size", BYTES);
+    let memory_limit =
+        keys.memory_limit.map_or(MEMORY_LIMIT, |q| positive(q.0, &at("memory_limit"), report) as u64);
     let (element, dilation) = (keys.element, Dilation::Standard);
     let elements = Fem { element, dilation, reduced: false, size: size?, jitter };
-    let external = External {
-        adapter: keys.adapter,
-        elements,
-        settings: keys.settings,
-        time_limit,
-        memory_limit: memory_limit.unwrap_or(MEMORY_LIMIT),
-    };
+    let external =
+        External { adapter: keys.adapter, elements, settings: keys.settings, time_limit, memory_limit };
     let series = keys.series.unwrap_or_else(|| keys.id.clone());
     Some(Method { id: keys.id, series, family: Family::External(external), mass: None })
 }
@@ -121,39 +116,9 @@ pub(crate) fn is_adapter(name: &str) -> bool {
     !name.is_empty() && name.chars().all(|c| c.is_ascii_alphanumeric() || "-_".contains(c))
 }
 
-/// Help for a size that can't be read.
-const BYTES: &str = "give a size such as 500MB or 2GB";
-
-/// Reads a size such as `500MB` or `2 GB`, in bytes.
-///
-/// # Errors
-/// An example of a valid size, if the text is none.
-pub fn bytes(text: &str) -> Result<u64, String> {
-    let digits = text.trim_end_matches(|c: char| !c.is_ascii_digit());
-    let unit = match text[digits.len()..].trim().to_ascii_uppercase().as_str() {
-        "" | "B" => 1,
-        "KB" | "K" => 1 << 10,
-        "MB" | "M" => 1 << 20,
-        "GB" | "G" => 1 << 30,
-        _ => return Err(BYTES.into()),
-    };
-    let count: u64 = digits.parse().map_err(|_| BYTES)?;
-    count.checked_mul(unit).filter(|bytes| *bytes > 0).ok_or_else(|| BYTES.into())
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn sizes_are_read_as_people_write_them() {
-        for (text, size) in [("4096", 4096), ("500MB", 500 << 20), ("2 GB", 2 << 30), ("3k", 3 << 10)] {
-            assert_eq!(bytes(text), Ok(size), "{text}");
-        }
-        for text in ["", "0", "MB", "-1GB", "1.5GB", "2TB", "99999999999GB"] {
-            assert!(bytes(text).is_err(), "{text}");
-        }
-    }
 
     const SCENE: &str = r#"title = "A block"
 body = { shape = "box", size = ["40 mm", "40 mm", "20 mm"] }
@@ -193,7 +158,7 @@ method = [{ id = "other", family = "external", adapter = "dummy", element = "tet
         let given = of(
             "time_limit = \"2 s\", memory_limit = \"10 MB\", settings = { mode = \"nan\", n = 2, fast = true }",
         );
-        assert_eq!((given.time_limit, given.memory_limit), (2.0, 10 << 20));
+        assert_eq!((given.time_limit, given.memory_limit), (2.0, 10_000_000));
         assert_eq!(given.settings["mode"], Setting::Text("nan".into()));
         assert_eq!(
             (&given.settings["n"], &given.settings["fast"]),

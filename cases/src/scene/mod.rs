@@ -43,7 +43,7 @@ pub use axis::Axis;
 pub use document::Origin;
 pub use error::{ErrorKind, SceneError};
 pub use expression::{Expression, NotFinite};
-pub use external::{External, Setting, bytes};
+pub use external::{External, Setting};
 pub use family::{FAMILIES, OverMesh};
 pub use field::{Prescribed, ScalarField, VectorField};
 pub use material::{Material, Relaxation, medium};

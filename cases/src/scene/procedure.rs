@@ -227,7 +227,6 @@ pub(crate) enum ProcedureKeys {
         steps: Option<u32>,
     },
     /// One linear solve
-    #[serde(rename_all = "kebab-case")]
     Linear {
         /// What solves the equations; "auto" unless given
         linear_solver: Option<LinearSolver>,
@@ -250,7 +249,6 @@ pub(crate) enum ProcedureKeys {
 }
 
 #[derive(Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
 pub(crate) struct StaticKeys {
     /// Load steps at whose ends results are reported; 1 unless given
     pub steps: Option<u32>,
@@ -288,7 +286,6 @@ pub(crate) struct RampKeys {
 }
 
 #[derive(Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
 pub(crate) struct ExplicitKeys {
     #[serde(flatten)]
     pub ramp: RampKeys,
@@ -301,7 +298,6 @@ pub(crate) struct ExplicitKeys {
 }
 
 #[derive(Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
 pub(crate) struct ImplicitKeys {
     #[serde(flatten)]
     pub ramp: RampKeys,
@@ -350,7 +346,7 @@ fn load_steps(keys: &StaticKeys, report: &mut Report) -> Static {
     let limit_within = keys.limit_within;
     let sound = limit_within.is_none_or(|part| (1e-4..=1.0).contains(&part));
     let help = "give 1e-4 to 1; 0.02 is usual";
-    report.require(sound, "procedure.limit-within", "is no part of the load", help);
+    report.require(sound, "procedure.limit_within", "is no part of the load", help);
     Static {
         steps: steps(keys.steps, report),
         newton: newton(&keys.newton, report),
@@ -400,7 +396,7 @@ fn explicit(keys: &ExplicitKeys, report: &mut Report) -> Explicit {
         ramp: ramp(&keys.ramp, report),
         safety: keys.safety.unwrap_or(SAFETY),
         step: keys.step.as_ref().map(|q| positive(q.0, "procedure.step", report)),
-        tool_mass: keys.tool_mass.map_or(TOOL_MASS, |m| positive(m, "procedure.tool-mass", report)),
+        tool_mass: keys.tool_mass.map_or(TOOL_MASS, |m| positive(m, "procedure.tool_mass", report)),
     };
     let sound = explicit.safety > 0.0 && explicit.safety <= 1.0;
     report.require(sound, "procedure.safety", "is not in (0, 1]", "0.9 is usual");
@@ -419,10 +415,10 @@ fn implicit(keys: &ImplicitKeys, tools: bool, report: &mut Report) -> Implicit {
     };
     let sound = (0.0..=1.0).contains(&implicit.spectral_radius);
     let help = "1 dissipates nothing, 0 kills in one step what a step cannot resolve; 0.8 is usual";
-    report.require(sound, "procedure.spectral-radius", "is not in [0, 1]", help);
+    report.require(sound, "procedure.spectral_radius", "is not in [0, 1]", help);
     let moving = [
         ("damping", keys.ramp.damping.is_some()),
-        ("spectral-radius", keys.spectral_radius.is_some()),
+        ("spectral_radius", keys.spectral_radius.is_some()),
         ("accuracy", keys.accuracy.is_some()),
     ];
     for (name, _) in moving.into_iter().filter(|(_, given)| *given && !implicit.inertia) {

@@ -43,7 +43,7 @@ const SAMPLES: [Sample; 14] = [
     ("uniaxial-compression", &[("strain", 0.1)], UNIT),
     (
         "thick-sphere",
-        &[("inner", 1.0), ("outer", 3.0), ("inner-pressure", 20.0), ("outer-pressure", 5.0)],
+        &[("inner", 1.0), ("outer", 3.0), ("inner_pressure", 20.0), ("outer_pressure", 5.0)],
         [[0.6, 1.6]; 3],
     ),
     ("rigid", &[], UNIT),

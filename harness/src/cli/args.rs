@@ -406,8 +406,7 @@ pub struct MakeArgs {
 
 /// Parses a length with its unit; returns m.
 pub(super) fn length(text: &str) -> Result<f64, String> {
-    let metres = catalogue::Dimension::Length.read(text).map_err(|bad| bad.to_string())?;
-    if metres > 0.0 { Ok(metres) } else { Err("a length above zero".into()) }
+    catalogue::Dimension::Length.read_positive(text).map_err(|bad| bad.to_string())
 }
 
 fn gmsh_version(text: &str) -> Result<GmshVersion, String> {

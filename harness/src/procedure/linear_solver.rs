@@ -133,7 +133,7 @@ pub(super) fn solved<'a>(
         return by_factor(prepared, assembled, meters);
     }
     if prepared.has_rows() {
-        let key = Key::Scene("procedure.linear-solver".into());
+        let key = Key::Scene("procedure.linear_solver".into());
         let problem = "iterates over nodal parameters, and this method has constraint rows besides";
         let help =
             "give \"auto\" or \"direct\", or hold the method by essential = \"nitsche\" or \"penalty\"";

@@ -145,7 +145,7 @@ impl Scenario<'_> {
             ExplicitError::StepTooLarge { .. } => {
                 (Key::Method(""), "procedure.safety = 0.7 leaves more room")
             }
-            ExplicitError::LightTool { .. } => (Key::Scene("procedure".into()), "a larger tool-mass"),
+            ExplicitError::LightTool { .. } => (Key::Scene("procedure".into()), "a larger tool_mass"),
             ExplicitError::ContactAt { tool, .. } => (Key::Scene(format!("tool[{tool}]")), ""),
             ExplicitError::InvertedAt { .. } => {
                 (Key::Method(""), "less load, a finer mesh, or a dilation that does not lock may carry more")

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, ExitStatus, Stdio};
 use std::time::{Duration, Instant};
 
+use catalogue::Dimension;
 use clap::Args;
 
 use super::store::Store;
@@ -26,11 +27,11 @@ pub struct ApartArgs {
     /// costs that one alone. Its reference is solved there too
     #[arg(long)]
     pub isolate: bool,
-    /// Seconds that a run may take, its reference included
-    #[arg(long, value_name = "SECONDS", requires = "isolate", value_parser = seconds)]
+    /// Time that a run may take, its reference included, such as "60 s" or "10 min"
+    #[arg(long, value_name = "TIME", requires = "isolate", value_parser = duration)]
     pub time_limit: Option<Duration>,
-    /// Memory that a run may allocate, such as 500MB or 2GB (Linux)
-    #[arg(long, value_name = "BYTES", requires = "isolate", value_parser = cases::scene::bytes)]
+    /// Memory that a run may allocate, such as 500MB or "2 GiB" (Linux)
+    #[arg(long, value_name = "SIZE", requires = "isolate", value_parser = bytes)]
     pub memory_limit: Option<u64>,
 }
 
@@ -59,11 +60,13 @@ pub struct ExperimentArgs {
     pub memory_limit: Option<u64>,
 }
 
-fn seconds(text: &str) -> Result<Duration, String> {
-    let fix = "give seconds above 0, such as 60";
-    let seconds: f64 = text.parse().map_err(|_| fix)?;
-    let limit = Duration::try_from_secs_f64(seconds).map_err(|_| fix)?;
-    if limit.is_zero() { Err(fix.into()) } else { Ok(limit) }
+fn duration(text: &str) -> Result<Duration, String> {
+    let seconds = Dimension::Time.read_positive(text).map_err(|bad| bad.to_string())?;
+    Duration::try_from_secs_f64(seconds).map_err(|bad| bad.to_string())
+}
+
+fn bytes(text: &str) -> Result<u64, String> {
+    Dimension::Bytes.read_positive(text).map(|bytes| bytes as u64).map_err(|bad| bad.to_string())
 }
 
 /// Runner that starts a process for each run.
@@ -195,10 +198,19 @@ mod tests {
     use super::*;
 
     #[test]
-    fn seconds_are_read_as_people_write_them() {
-        assert_eq!(seconds("0.5"), Ok(Duration::from_millis(500)));
-        for text in ["0", "-1", "nan", "inf", "soon", "1e300"] {
-            assert!(seconds(text).is_err(), "{text}");
+    fn limits_have_units() {
+        assert_eq!(duration("0.5 s"), Ok(Duration::from_millis(500)));
+        assert_eq!(duration("2min"), Ok(Duration::from_secs(120)));
+        for text in ["60", "0 s", "-1 s", "nan s", "inf s", "soon", "1e300 s", "1 GB"] {
+            assert!(duration(text).is_err(), "{text}");
         }
+        let sizes = [("500MB", 500_000_000), ("1.5 GB", 1_500_000_000), ("3 KiB", 3072), ("7 B", 7)];
+        for (text, size) in sizes {
+            assert_eq!(bytes(text), Ok(size), "{text}");
+        }
+        for text in ["", "4096", "0 B", "MB", "-1GB", "2 XB", "2 s"] {
+            assert!(bytes(text).is_err(), "{text}");
+        }
+        assert!(bytes("500").unwrap_err().contains("write \"500 GB\""), "{:?}", bytes("500"));
     }
 }

@@ -40,7 +40,7 @@ pub enum Dimension {
     Frequency,
     /// A bare number.
     None,
-    /// Bytes, as a bare number.
+    /// Bytes.
     Bytes,
 }
 
@@ -67,24 +67,25 @@ impl Dimension {
         Dimension::Bytes,
     ];
 
-    /// Exponents of metre, kilogram, second and radian.
+    /// Exponents of metre, kilogram, second, radian and byte.
     pub fn exponents(self) -> Exponents {
         match self {
-            Dimension::Length => [1, 0, 0, 0],
-            Dimension::Pressure => [-1, 1, -2, 0],
-            Dimension::Density => [-3, 1, 0, 0],
-            Dimension::Force => [1, 1, -2, 0],
-            Dimension::LineForce => [0, 1, -2, 0],
-            Dimension::Time => [0, 0, 1, 0],
-            Dimension::BodyForce | Dimension::ContactSlope => [-2, 1, -2, 0],
-            Dimension::Curvature => [-1, 0, 0, 0],
-            Dimension::Rate | Dimension::Frequency => [0, 0, -1, 0],
-            Dimension::Angle => [0, 0, 0, 1],
-            Dimension::Energy => [2, 1, -2, 0],
-            Dimension::Mass => [0, 1, 0, 0],
-            Dimension::Volume => [3, 0, 0, 0],
-            Dimension::AngularFrequency => [0, 0, -1, 1],
-            Dimension::None | Dimension::Bytes => [0, 0, 0, 0],
+            Dimension::Length => [1, 0, 0, 0, 0],
+            Dimension::Pressure => [-1, 1, -2, 0, 0],
+            Dimension::Density => [-3, 1, 0, 0, 0],
+            Dimension::Force => [1, 1, -2, 0, 0],
+            Dimension::LineForce => [0, 1, -2, 0, 0],
+            Dimension::Time => [0, 0, 1, 0, 0],
+            Dimension::BodyForce | Dimension::ContactSlope => [-2, 1, -2, 0, 0],
+            Dimension::Curvature => [-1, 0, 0, 0, 0],
+            Dimension::Rate | Dimension::Frequency => [0, 0, -1, 0, 0],
+            Dimension::Angle => [0, 0, 0, 1, 0],
+            Dimension::Energy => [2, 1, -2, 0, 0],
+            Dimension::Mass => [0, 1, 0, 0, 0],
+            Dimension::Volume => [3, 0, 0, 0, 0],
+            Dimension::AngularFrequency => [0, 0, -1, 1, 0],
+            Dimension::None => [0, 0, 0, 0, 0],
+            Dimension::Bytes => [0, 0, 0, 0, 1],
         }
     }
 
@@ -108,7 +109,7 @@ impl Dimension {
             Dimension::AngularFrequency => "angular frequency",
             Dimension::Frequency => "frequency",
             Dimension::None => "number",
-            Dimension::Bytes => "number of bytes",
+            Dimension::Bytes => "memory size",
         }
     }
 
@@ -155,7 +156,8 @@ impl Dimension {
             Dimension::Volume => &["mm^3", "m^3", "cm^3"],
             Dimension::AngularFrequency => &["rad/s", "rad/ms"],
             Dimension::Frequency => &["Hz", "kHz"],
-            Dimension::None | Dimension::Bytes => &[],
+            Dimension::Bytes => &["GB", "MB", "kB", "GiB", "MiB"],
+            Dimension::None => &[],
         }
     }
 
@@ -192,7 +194,7 @@ impl Dimension {
     /// Returns the help text: `a pressure needs a unit: kPa, Pa, ...`
     fn need(self) -> String {
         match self {
-            Dimension::None | Dimension::Bytes => "a number without a unit belongs here".into(),
+            Dimension::None => "a number without a unit belongs here".into(),
             _ => format!("{} needs a unit: {}", self.a_name(), self.offered().join(", ")),
         }
     }
@@ -216,6 +218,16 @@ impl Dimension {
         self.take(quantity, text)
     }
 
+    /// Reads a quantity above zero, such as an option `--time-limit "60 s"`, into SI.
+    ///
+    /// # Errors
+    ///
+    /// The text is no quantity of this dimension, or not above zero.
+    pub fn read_positive(self, text: &str) -> Result<f64, Problem> {
+        let value = self.read(text)?;
+        if value > 0.0 { Ok(value) } else { Err(Problem::new("has to be above zero").found(text)) }
+    }
+
     /// Returns the SI value of a quantity that must have this dimension. `text` is the quantity as written in
     /// the file, for the error.
     ///
@@ -226,7 +238,7 @@ impl Dimension {
         if quantity.exponents == self.exponents() {
             return Ok(quantity.value);
         }
-        if quantity.exponents == [0; 4] {
+        if quantity.exponents == [0; 5] {
             return Err(Problem::new("has no unit").found(text).help(self.fix(text)));
         }
         let is = match Dimension::of(quantity.exponents) {

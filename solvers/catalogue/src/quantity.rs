@@ -3,15 +3,15 @@
 use crate::names::nearest;
 use crate::problem::Problem;
 
-/// Exponents of metre, kilogram, second and radian.
-pub type Exponents = [i8; 4];
+/// Exponents of metre, kilogram, second, radian and byte.
+pub type Exponents = [i8; 5];
 
 /// Number in SI base units with its dimension.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Quantity {
     /// Value in SI base units (angles in radians).
     pub value: f64,
-    /// Exponents of metre, kilogram, second and radian.
+    /// Exponents of metre, kilogram, second, radian and byte.
     pub exponents: Exponents,
 }
 
@@ -76,27 +76,35 @@ type Named = (&'static str, i32, f64, Exponents);
 
 /// Units that take the prefixes G, M, k, h, c, m, u and n.
 const PREFIXED: [Named; 8] = [
-    ("m", 0, 1.0, [1, 0, 0, 0]),
-    ("g", -3, 1.0, [0, 1, 0, 0]),
-    ("s", 0, 1.0, [0, 0, 1, 0]),
-    ("N", 0, 1.0, [1, 1, -2, 0]),
-    ("Pa", 0, 1.0, [-1, 1, -2, 0]),
-    ("J", 0, 1.0, [2, 1, -2, 0]),
-    ("rad", 0, 1.0, [0, 0, 0, 1]),
-    ("Hz", 0, 1.0, [0, 0, -1, 0]),
+    ("m", 0, 1.0, [1, 0, 0, 0, 0]),
+    ("g", -3, 1.0, [0, 1, 0, 0, 0]),
+    ("s", 0, 1.0, [0, 0, 1, 0, 0]),
+    ("N", 0, 1.0, [1, 1, -2, 0, 0]),
+    ("Pa", 0, 1.0, [-1, 1, -2, 0, 0]),
+    ("J", 0, 1.0, [2, 1, -2, 0, 0]),
+    ("rad", 0, 1.0, [0, 0, 0, 1, 0]),
+    ("Hz", 0, 1.0, [0, 0, -1, 0, 0]),
 ];
 
 /// Units that take no prefix.
-const PLAIN: [Named; 9] = [
-    ("1", 0, 1.0, [0, 0, 0, 0]),
-    ("%", -2, 1.0, [0, 0, 0, 0]),
-    ("t", 3, 1.0, [0, 1, 0, 0]),
-    ("min", 0, 60.0, [0, 0, 1, 0]),
-    ("h", 0, 3600.0, [0, 0, 1, 0]),
-    ("deg", 0, std::f64::consts::PI / 180.0, [0, 0, 0, 1]),
-    ("\u{b0}", 0, std::f64::consts::PI / 180.0, [0, 0, 0, 1]),
-    ("bar", 5, 1.0, [-1, 1, -2, 0]),
-    ("mmHg", 0, 133.322_387_415, [-1, 1, -2, 0]),
+const PLAIN: [Named; 17] = [
+    ("1", 0, 1.0, [0, 0, 0, 0, 0]),
+    ("%", -2, 1.0, [0, 0, 0, 0, 0]),
+    ("t", 3, 1.0, [0, 1, 0, 0, 0]),
+    ("min", 0, 60.0, [0, 0, 1, 0, 0]),
+    ("h", 0, 3600.0, [0, 0, 1, 0, 0]),
+    ("deg", 0, std::f64::consts::PI / 180.0, [0, 0, 0, 1, 0]),
+    ("\u{b0}", 0, std::f64::consts::PI / 180.0, [0, 0, 0, 1, 0]),
+    ("bar", 5, 1.0, [-1, 1, -2, 0, 0]),
+    ("mmHg", 0, 133.322_387_415, [-1, 1, -2, 0, 0]),
+    ("B", 0, 1.0, [0, 0, 0, 0, 1]),
+    ("kB", 3, 1.0, [0, 0, 0, 0, 1]),
+    ("MB", 6, 1.0, [0, 0, 0, 0, 1]),
+    ("GB", 9, 1.0, [0, 0, 0, 0, 1]),
+    ("TB", 12, 1.0, [0, 0, 0, 0, 1]),
+    ("KiB", 0, 1024.0, [0, 0, 0, 0, 1]),
+    ("MiB", 0, 1048576.0, [0, 0, 0, 0, 1]),
+    ("GiB", 0, 1073741824.0, [0, 0, 0, 0, 1]),
 ];
 
 /// Named unit without prefix, such as `Pa` or `min`, for lists of the known units.
@@ -108,7 +116,7 @@ pub struct UnitWord {
     pub prefixed: bool,
     /// Size of the unit in SI base units.
     pub si: f64,
-    /// Exponents of metre, kilogram, second and radian.
+    /// Exponents of metre, kilogram, second, radian and byte.
     pub exponents: Exponents,
 }
 
@@ -142,7 +150,7 @@ fn named(name: &str) -> Option<(i32, f64, Exponents)> {
 fn read_unit(text: &str) -> Result<(i32, f64, Exponents), String> {
     let mut ten = 0;
     let mut factor = 1.0;
-    let mut exponents: Exponents = [0; 4];
+    let mut exponents: Exponents = [0; 5];
     let mut rest = text.trim();
     while !rest.is_empty() {
         // A factor after a division multiplies again: "N /m^2 s" is (N / m^2) s.

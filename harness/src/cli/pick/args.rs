@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use catalogue::Dimension;
 use clap::Args;
 
 use crate::cli::args::{Format, SceneArgs};
@@ -41,14 +42,9 @@ pub struct PickArgs {
 
 /// Parses a percentage and returns it as a fraction.
 fn percent(text: &str) -> Result<f64, String> {
-    let wrong = || "is no percentage: write 3%".to_string();
-    let number = text.trim().strip_suffix('%').ok_or_else(wrong)?.trim();
-    let value: f64 = number.parse().map_err(|_| wrong())?;
-    if value > 0.0 && value.is_finite() {
-        Ok(value / 100.0)
-    } else {
-        Err("has to be above 0 %, as an error of nothing is never reached".into())
-    }
+    let value = Dimension::None.read_positive(text).map_err(|bad| bad.to_string())?;
+    let beyond = || format!("is {} %, more than the whole: write 3% or 0.03", 100.0 * value);
+    if value <= 1.0 { Ok(value) } else { Err(beyond()) }
 }
 
 /// Parses `QUANTITY=PERCENT`.
@@ -58,8 +54,7 @@ fn companion(text: &str) -> Result<(String, f64), String> {
 }
 
 fn time(text: &str) -> Result<f64, String> {
-    let seconds = catalogue::Dimension::Time.read(text).map_err(|bad| bad.to_string())?;
-    if seconds > 0.0 { Ok(seconds) } else { Err("a time above zero".into()) }
+    Dimension::Time.read_positive(text).map_err(|bad| bad.to_string())
 }
 
 #[cfg(test)]
@@ -68,8 +63,8 @@ mod tests {
 
     #[test]
     fn an_error_is_a_percentage_above_zero() {
-        assert_eq!((percent("3%"), percent(" 0.5 % ")), (Ok(0.03), Ok(0.005)));
-        for bad in ["3", "0.03", "%", "three%", "0%", "-1%", "nan%", "inf%"] {
+        assert_eq!((percent("3%"), percent(" 0.5 % "), percent("0.03")), (Ok(0.03), Ok(0.005), Ok(0.03)));
+        for bad in ["3", "101%", "%", "three%", "0%", "-1%", "nan%", "inf%"] {
             assert!(percent(bad).is_err(), "{bad}");
         }
         assert_eq!(companion("force=5%"), Ok(("force".into(), 0.05)));
