@@ -9,9 +9,9 @@ use std::path::Path;
 
 use cases::scene::parse_study;
 use harness::study::{Plan, VerifyArgs, check};
+use records::Record;
 
 use one_percent::within_one_percent;
-use reports::Record;
 
 const METHODS: [&str; 8] =
     ["tet4", "tet4-nodal", "tet10", "hex8", "hex8-mean", "hex20", "efg-gauss", "efg-projected"];

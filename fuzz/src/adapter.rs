@@ -18,7 +18,7 @@ pub(crate) fn run(data: &[u8]) {
     }
     if let Ok(claims) = read_claims(&folder.path().join("claims.toml")) {
         for claim in claims {
-            let _ = claim.judge(&reports::RunSet::default());
+            let _ = claim.judge(&records::RunSet::default());
         }
     }
 }

@@ -1,8 +1,8 @@
 //! Stored references (JSON) and accepted numbers (TOML).
 
 use harness::run::Stored;
+use records::{Record, RunSet};
 use reports::baseline::Baseline;
-use reports::{Record, RunSet};
 
 pub(crate) fn run(data: &[u8]) {
     let Ok(text) = std::str::from_utf8(data) else { return };
@@ -11,7 +11,7 @@ pub(crate) fn run(data: &[u8]) {
         let records = stored.records(&Record::default());
         if records.iter().all(|r| r.value.is_finite()) {
             let folder = tempfile::tempdir().expect("a folder for temporary files");
-            let _ = reports::write_run(folder.path(), &RunSet { records, ..RunSet::default() });
+            let _ = records::write_run(folder.path(), &RunSet { records, ..RunSet::default() });
         }
         let other = stored.clone();
         stored.widen(&other);

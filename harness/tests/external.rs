@@ -174,8 +174,8 @@ fn the_time_of_children_counts() {
     let spend = format!("(bash -c \"while {ticks}; do :; done\"); ").replace('$', "\\$");
     let done = bash(&dir, &format!("{spend}\"$0\" solve \"$1\" \"$2\""), "");
     assert_eq!(done.code, 0, "{}", done.stderr);
-    let set = reports::read_run(&dir.path().join("results")).unwrap();
-    let of = |r: &&reports::Record| r.quantity == "cpu-time" && r.phase == "solve" && r.statistic == "median";
+    let set = records::read_run(&dir.path().join("results")).unwrap();
+    let of = |r: &&records::Record| r.quantity == "cpu-time" && r.phase == "solve" && r.statistic == "median";
     let seconds = set.records.iter().find(of).expect("seconds of processors").value;
     assert!((0.49..5.0).contains(&seconds), "{seconds}");
 }

@@ -81,7 +81,7 @@ fn the_reference_is_named_with_its_error_and_records_have_it() {
     let line = done.stdout.lines().find(|line| line.starts_with("compared with ")).unwrap();
     assert!(line.starts_with("compared with tet4 with 75 nodes, whose own error is about "), "{line}");
     assert!(line.contains("(by tet4 with 18 nodes and tet10 with 75 nodes)"), "{line}");
-    let results = reports::read_run(Path::new(&out)).unwrap();
+    let results = records::read_run(Path::new(&out)).unwrap();
     assert_eq!(results.references.len(), 1);
     let bands: Vec<f64> = (results.records.iter())
         .filter(|r| r.quantity == "relative-rms" && r.statistic == "band")

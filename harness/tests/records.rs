@@ -6,7 +6,7 @@ use std::collections::HashSet;
 use std::path::Path;
 
 use common::{BLOCK, inside, tissuebench, write, written_out};
-use reports::{Purpose, Record, RunSet, Status, read_run};
+use records::{Purpose, Record, RunSet, Status, read_run};
 use tempfile::TempDir;
 
 fn verified(dir: &TempDir, study: &str, out: &str) -> (RunSet, String) {

@@ -37,7 +37,7 @@ fn frames_of_a_static_path_come_to_its_end() {
     let (path, out) = (write(&dir, "plates.toml", &scene), common::inside(&dir, "out"));
     let done = tissuebench(&["run", &path, "--method", "hex8", "--out", &out]);
     assert_eq!(done.code, 0, "{}", done.stderr);
-    let records = reports::read_run(std::path::Path::new(&out)).unwrap().records;
+    let records = records::read_run(std::path::Path::new(&out)).unwrap().records;
     let told = |statistic: &str| -> f64 {
         let found = records.iter().find(|r| r.phase == "repeated" && r.statistic == statistic);
         found.unwrap_or_else(|| panic!("no {statistic}")).value

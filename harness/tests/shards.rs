@@ -6,7 +6,7 @@ use std::collections::BTreeSet;
 use std::path::Path;
 
 use common::{assert_fails, cases, inside, tissuebench, write};
-use reports::{Record, RunSet, read_run};
+use records::{Record, RunSet, read_run};
 use tempfile::TempDir;
 
 /// A study with levels whose orders are checked, clouds of many seeds, and runs that two tables request.

@@ -11,7 +11,7 @@ use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
 use common::{BLOCK, assert_fails, inside, tissuebench, write};
-use reports::{Record, RunSet, read_run};
+use records::{Record, RunSet, read_run};
 use tempfile::TempDir;
 
 const PROGRAM: &str = env!("CARGO_BIN_EXE_tissuebench");
@@ -47,7 +47,7 @@ fn results(out: &str) -> RunSet {
 }
 
 /// Results that are bitwise equal in two runs of one study.
-fn exact(out: &str) -> (Vec<(Record, u64)>, Vec<reports::Check>, Vec<reports::PlanEntry>) {
+fn exact(out: &str) -> (Vec<(Record, u64)>, Vec<records::Check>, Vec<records::PlanEntry>) {
     let set = results(out);
     let rows = set.records.iter().filter(|r| !r.is_measured());
     (rows.map(|r| (r.clone(), r.value.to_bits())).collect(), set.checks, set.plans)

@@ -5,7 +5,7 @@ mod common;
 use std::path::Path;
 
 use common::{BLOCK, assert_fails, cases, inside, tissuebench, without, write};
-use reports::{Family, Record, RunSet, Status, read_run};
+use records::{Family, Record, RunSet, Status, read_run};
 use tempfile::TempDir;
 
 fn results(folder: &str) -> RunSet {

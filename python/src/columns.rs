@@ -2,9 +2,9 @@
 
 use std::sync::Arc;
 
+use records::Record;
 use arrow_array::{ArrayRef, Float64Array, RecordBatch, StringViewArray, UInt32Array, UInt64Array};
 use arrow_schema::ArrowError;
-use reports::Record;
 use serde_json::Value;
 
 /// Returns the word for a value in files.

@@ -3,12 +3,12 @@
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex};
 
+use records::{Failure as FailedRun, Machine, Record, RunSet};
 use cases::scene;
 use harness::outcome::{Outcome, provenance};
 use harness::run::case_name;
 use harness::study::{check, compared_with, failed, reference_records, stalled, warn_if_busy};
 use pyo3::prelude::*;
-use reports::{Failure as FailedRun, Machine, Record, RunSet};
 
 use crate::error::{input, not_run, of_failure};
 use crate::run::Run;

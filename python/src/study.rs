@@ -3,11 +3,11 @@
 use std::io::{self, Write};
 use std::path::PathBuf;
 
+use records::Status;
 use cases::scene;
 use harness::study::{Events, Filters, Finished, Plan, VerifyArgs};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use reports::Status;
 
 use crate::error::{input, of_failure, of_scene};
 use crate::table::Table;
@@ -56,7 +56,7 @@ impl Study {
 
     #[getter]
     fn checks<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
-        let one = |check: &reports::Check| {
+        let one = |check: &records::Check| {
             let row = PyDict::new(py);
             row.set_item("case", &check.case)?;
             row.set_item("method", &check.method)?;

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use records::Record;
 use arrow_array::cast::AsArray;
 use arrow_array::ffi::FFI_ArrowSchema;
 use arrow_array::ffi_stream::FFI_ArrowArrayStream;
@@ -12,7 +13,6 @@ use numpy::PyArray1;
 use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
 use pyo3::types::{PyCapsule, PyList};
-use reports::Record;
 
 use crate::columns::batch;
 use crate::error::not_run;
@@ -96,6 +96,6 @@ impl Table {
 /// Reads the records in a folder of results.
 #[pyfunction]
 pub(crate) fn read(py: Python<'_>, results: PathBuf) -> PyResult<Table> {
-    let set = wait(py, None, move |_, _| reports::read_run(&results))?.map_err(|bad| not_run(py, bad))?;
+    let set = wait(py, None, move |_, _| records::read_run(&results))?.map_err(|bad| not_run(py, bad))?;
     Table::of(py, &set.records)
 }

@@ -7,8 +7,8 @@
 
 use std::path::PathBuf;
 
+use records::{RunSet, read_run};
 use reports::compare::{Comparison, Scope, Times};
-use reports::{RunSet, read_run};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let folders: Vec<PathBuf> = std::env::args_os().skip(1).map(PathBuf::from).collect();
@@ -56,7 +56,7 @@ fn times(chosen: &[RunSet], slow: impl Fn(&str) -> bool) -> Times {
     };
     let pairs: Vec<(RunSet, RunSet)> =
         chosen.chunks(2).map(|two| (longer_not(&two[0]), longer(&two[1]))).collect();
-    Comparison::of(&pairs, 1e-6, true).times.expect("asked for")
+    Comparison::of(&pairs, 1e-6, true).expect("pairs").times.expect("asked for")
 }
 
 fn longer_not(set: &RunSet) -> RunSet {

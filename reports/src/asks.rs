@@ -1,8 +1,9 @@
 //! Questions put to every case, for each kind of time: the runs that answer, with their time and error.
 
+use records::{Family, Purpose};
+
 use crate::figures::chosen;
 use crate::fronts::{Clock, QUESTIONS, Question, WANTED, band, counts, point};
-use crate::record::{Family, Purpose};
 use crate::seconds::Seconds;
 use crate::select::{Run, Series, kernels, labels, series};
 
@@ -146,8 +147,8 @@ fn reference_of(group: &[Run]) -> Option<String> {
 mod tests {
     use super::*;
     use crate::fronts::tests::record;
-    use crate::record::Record;
     use crate::select::runs;
+    use records::Record;
 
     #[test]
     fn a_page_begins_with_the_claimed_force_that_is_answered_within_what_is_wanted() {

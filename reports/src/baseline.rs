@@ -8,20 +8,13 @@
 mod compare;
 mod tolerance;
 
-use std::collections::BTreeMap;
 use std::path::Path;
 
+use records::store::write_text;
+use records::{Numbers, Record, RecordError, numbers};
 use serde::{Deserialize, Serialize};
 
-use crate::error::ReportError;
-use crate::history::step;
-use crate::record::Record;
-use crate::store::write_text;
-
 pub use compare::{Change, Comparison};
-
-/// Numbers by quantity, with the unit behind it: `rms-x [m]`, `tool-force by step [N]`.
-pub type Numbers = BTreeMap<String, Vec<f64>>;
 
 /// Accepted numbers of a study, by run and quantity, SI.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -29,33 +22,24 @@ pub struct Baseline {
     /// The kind of processor: numbers are the same bits on the same kind.
     pub processor: String,
     /// Numbers of each run; its name says case, method, settings and size.
-    pub runs: BTreeMap<String, Numbers>,
+    pub runs: Numbers,
 }
 
 impl Baseline {
     /// The numbers of `records` that do not depend on the moment, found on a `processor`.
     pub fn of(records: &[Record], processor: &str) -> Baseline {
-        let mut by_step: BTreeMap<(String, String), BTreeMap<u64, f64>> = BTreeMap::new();
-        for record in records.iter().filter(|r| !r.is_measured()) {
-            let index = step(record).unwrap_or(0);
-            by_step.entry((run_name(record), quantity_name(record))).or_default().insert(index, record.value);
-        }
-        let mut runs: BTreeMap<String, Numbers> = BTreeMap::new();
-        for ((run, quantity), values) in by_step {
-            runs.entry(run).or_default().insert(quantity, values.into_values().collect());
-        }
-        Baseline { processor: processor.into(), runs }
+        Baseline { processor: processor.into(), runs: numbers(records) }
     }
 
     /// Reads a baseline file.
-    pub fn load(path: &Path) -> Result<Baseline, ReportError> {
+    pub fn load(path: &Path) -> Result<Baseline, RecordError> {
         let text = disk::read_text(path, disk::Kind::BASELINE)
-            .map_err(|source| ReportError::Io { path: path.into(), source })?;
-        toml::from_str(&text).map_err(|e| ReportError::Content { path: path.into(), reason: e.to_string() })
+            .map_err(|source| RecordError::Io { path: path.into(), source })?;
+        toml::from_str(&text).map_err(|e| RecordError::Content { path: path.into(), reason: e.to_string() })
     }
 
     /// Writes a baseline file: one line for each quantity, numbers with the fewest digits that give the same bits again.
-    pub fn save(&self, path: &Path) -> Result<(), ReportError> {
+    pub fn save(&self, path: &Path) -> Result<(), RecordError> {
         let mut text = format!("{HEADER}processor = {}\n", quoted(&self.processor));
         for (run, numbers) in &self.runs {
             text += &format!("\n[runs.{}]\n", quoted(run));
@@ -80,34 +64,10 @@ fn quoted(text: &str) -> String {
     serde_json::Value::from(text).to_string().replace('\u{7f}', "\\u007f")
 }
 
-/// Case, method, settings and size of a record.
-pub(crate) fn run_name(r: &Record) -> String {
-    let mut name = format!("{} {} {}", r.case, r.method, r.variant);
-    let settings: Vec<String> = r.settings().iter().map(|(key, value)| format!("{key}={value}")).collect();
-    if !settings.is_empty() {
-        name += &format!(" {}", settings.join("; "));
-    }
-    name += &format!(" nu={} level={} nodes={}", r.poisson, r.level, r.nodes);
-    if r.seed != 0 {
-        name += &format!(" seed={}", r.seed);
-    }
-    name
-}
-
-/// Quantity, phase and statistic of a record, and its unit.
-fn quantity_name(r: &Record) -> String {
-    let phase = match (step(r), r.phase.as_str()) {
-        (Some(_), _) => " by step".into(),
-        (None, "") => String::new(),
-        (None, phase) => format!(" {phase}"),
-    };
-    let statistic = if r.statistic == "value" { String::new() } else { format!(" {}", r.statistic) };
-    format!("{}{phase}{statistic} [{}]", r.quantity, r.unit)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::blank::Blank as _;
 
     fn records() -> Vec<Record> {
         let record = |quantity: &str, step: Option<u64>, value| Record {

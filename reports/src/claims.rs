@@ -3,16 +3,14 @@
 
 use std::path::Path;
 
+use records::text::significant;
+use records::{Family, Record, RecordError, RunSet};
 use serde::Deserialize;
 
-use crate::error::ReportError;
 use crate::findings::Matched;
 use crate::fronts::{Clock, judged};
-use crate::record::{Family, Record};
-use crate::run_set::RunSet;
 use crate::seconds::decide;
 use crate::select::{Run, runs, solved};
-use crate::text::significant;
 
 /// Verdict of the results on a claim.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
@@ -119,8 +117,8 @@ struct File {
 ///
 /// # Errors
 /// A file that cannot be read or is not a file of claims, with the line.
-pub fn read_claims(path: &Path) -> Result<Vec<Claim>, ReportError> {
-    let content = |reason: String| ReportError::Content { path: path.into(), reason };
+pub fn read_claims(path: &Path) -> Result<Vec<Claim>, RecordError> {
+    let content = |reason: String| RecordError::Content { path: path.into(), reason };
     let text = disk::read_text(path, disk::Kind::SCENE).map_err(|bad| content(bad.to_string()))?;
     let file: File = toml::from_str(&text).map_err(|bad| content(bad.to_string().trim_end().into()))?;
     for claim in &file.claim {
@@ -236,7 +234,7 @@ error = "relative-rms"
 at_most = 0.01
 "#;
 
-    fn claims(text: &str) -> Result<Vec<Claim>, ReportError> {
+    fn claims(text: &str) -> Result<Vec<Claim>, RecordError> {
         let dir = tempfile::tempdir().unwrap();
         let path = dir.path().join("claims.toml");
         std::fs::write(&path, text).unwrap();

@@ -59,8 +59,9 @@ impl Spread {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::record::{Family, Record};
+    use crate::blank::Blank as _;
     use crate::select::runs;
+    use records::{Family, Record};
 
     fn record(method: &str, seed: u64, quantity: &str, value: f64) -> Record {
         Record {

@@ -1,8 +1,9 @@
 //! Run time against error: the questions put to runs, the kinds of time, and the Pareto front.
 
+use records::text::significant;
+
 use crate::order::ROUNDING;
 use crate::select::Run;
-use crate::text::significant;
 
 /// Smallest relative error drawn; smaller errors are drawn at this value. Errors of rounding size would
 /// squeeze all others into a corner.
@@ -213,8 +214,9 @@ pub(crate) fn pareto<T>(runs: impl IntoIterator<Item = T>, at: impl Fn(&T) -> (f
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;
-    use crate::record::{Family, Record};
+    use crate::blank::Blank as _;
     use crate::select::runs;
+    use records::{Family, Record};
 
     /// A record of one number. `of` is its phase and statistic, separated by a colon: `time`, `total:median`.
     pub(crate) fn record(

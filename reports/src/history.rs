@@ -2,18 +2,14 @@
 
 use std::collections::BTreeMap;
 
-use crate::record::{Family, Record};
-use crate::select::Run;
+use records::{Family, Record};
 
-/// Number of the step or mode that a record belongs to, if any.
-pub(crate) fn step(record: &Record) -> Option<u64> {
-    record.step.or(record.mode)
-}
+use crate::select::Run;
 
 /// Values of a quantity by step, for one statistic.
 fn by_step(run: &Run, quantity: &str, statistic: &str) -> BTreeMap<u64, f64> {
     let fits = |r: &&&Record| r.quantity == quantity && r.statistic == statistic;
-    run.records().iter().filter(fits).filter_map(|r| Some((step(r)?, r.value))).collect()
+    run.records().iter().filter(fits).filter_map(|r| Some((r.index()?, r.value))).collect()
 }
 
 /// `(x, y)` at every step that has both, in the order of the steps.
@@ -53,6 +49,7 @@ pub(crate) fn between(line: &[(f64, f64)], x: f64) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::blank::Blank as _;
     use crate::select::runs;
 
     #[test]

@@ -1,29 +1,29 @@
 //! Turns records into tables, figures and a page.
 //!
-//! The harness passes a [`RunSet`]. [`write_run`] writes it to a folder. [`render`] turns the folder into
-//! CSV, Markdown and LaTeX tables, SVG, PNG and PDF figures and a self-contained HTML report. Rendering only
-//! reads: nothing is solved or timed again.
+//! The harness writes a [`records::RunSet`] to a folder. [`render`] turns the folder into CSV, Markdown and LaTeX
+//! tables, SVG, PNG and PDF figures and a self-contained HTML report. Rendering only reads: nothing is solved or
+//! timed again.
 //!
 //! ```
-//! use reports::{Family, Record, RunSet, read_run, render, write_run};
+//! use records::{Family, Record, RunSet, read_run, write_run};
+//! use reports::render;
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
 //! // A record is one number of one run: its case and method, then its quantity, unit and value.
-//! let run = Record { case: "block".into(), method: "tet4".into(), family: Family::Fem, ..Record::default()
-//! }; let error = Record { quantity: "l2".into(), unit: "1".into(), statistic: "value".into(), value: 0.02,
-//! ..run }; let set = RunSet { records: vec![error], ..RunSet::default() }; let folder =
-//! std::env::temp_dir().join(format!("tissuebench-{}", std::process::id())); write_run(&folder, &set)?;
-//! assert_eq!(read_run(&folder)?.records[0].value, 0.02); let rendered = render(&folder,
-//! &folder.join("report"))?; assert!(rendered.files.iter().any(|file| file.ends_with("report.html")));
+//! let run = Record { case: "block".into(), method: "tet4".into(), family: Family::Fem, ..Record::default() };
+//! let error = Record { quantity: "l2".into(), unit: "1".into(), statistic: "value".into(), value: 0.02, ..run };
+//! let set = RunSet { records: vec![error], ..RunSet::default() };
+//! let folder = std::env::temp_dir().join(format!("tissuebench-{}", std::process::id()));
+//! write_run(&folder, &set)?;
+//! assert_eq!(read_run(&folder)?.records[0].value, 0.02);
+//! let rendered = render(&folder, &folder.join("report"))?;
+//! assert!(rendered.files.iter().any(|file| file.ends_with("report.html")));
 //! # std::fs::remove_dir_all(&folder)?;
 //! # Ok(())
 //! # }
 //! ```
 
 mod asks;
-mod axis;
 pub mod baseline;
-mod body;
-mod cell;
 mod claims;
 mod clouds;
 pub mod commits;
@@ -31,42 +31,27 @@ pub mod compare;
 mod error;
 mod figures;
 mod findings;
-mod frame;
 mod fronts;
 mod history;
 mod look;
 mod order;
 mod page;
 mod plot;
-mod provenance;
 mod published;
 mod quantity;
-mod record;
-mod reference;
 mod render;
-mod run_set;
 mod seconds;
 mod select;
-mod store;
 mod table;
 mod tables;
-mod text;
 mod within;
 
-pub use axis::{Axis, Ended, Trial, Verdict as AxisVerdict};
-pub use body::{Body, BodyState, Faces, Inside, InsideState, Skin, pack};
+#[cfg(test)]
+mod blank;
+
 pub use claims::{Claim, ClaimVerdict, Judged, read_claims};
 pub use error::ReportError;
 pub use order::{Order, observed as observed_order};
-pub use provenance::{FORMAT, Machine, Program, Provenance, SceneHash};
 pub use published::is_known_publication;
-pub use record::{Family, Purpose, Record};
-pub use reference::Reference;
 pub use render::{Rendered, render, render_over_commits, write_with_report};
-pub use run_set::{
-    Check, Failure, PlanEntry, RunSet, Section, SectionCell, Status, SurfaceField, ToolHull, Warning,
-};
 pub use seconds::{Busy, Seconds, Took};
-pub use store::{
-    begin, end, is_incomplete, provenance_of, read_numbers, read_run, source_of, write_run, write_text,
-};

@@ -5,7 +5,7 @@
 //! longest known prefix, as `efg-gauss-lumped` does of `efg-gauss`, and a marker by a hash. Two labels of one
 //! figure never look the same: [`distinct`] gives the less known label another marker or shade.
 
-use crate::record::Family;
+use records::Family;
 
 /// Names of the markers in pages.
 pub(crate) const MARKERS: [&str; 7] =

@@ -1,9 +1,8 @@
 //! Data of a figure, which is drawn on paper, written as CSV next to the figure, and redrawn by the page.
 
+use records::Family;
+use records::cell::csv_line;
 use serde::Serialize;
-
-use crate::record::Family;
-use crate::table::csv_line;
 
 /// A pair of axes with its curves.
 #[derive(Clone, Debug)]

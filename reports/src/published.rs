@@ -1,6 +1,7 @@
 //! Published comparisons, number by number with their place, so that they can be set against computed ones.
 
-use crate::record::{Family, Purpose, Record};
+use records::{Family, Purpose, Record};
+
 use crate::select::Run;
 
 /// A published comparison of finite elements with clouds.

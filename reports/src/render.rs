@@ -3,16 +3,16 @@
 use std::path::{Path, PathBuf};
 
 use rayon::prelude::*;
+use records::RunSet;
+use records::store::{end, make_dir, read_marked, read_numbers, remove_files, write_marked, write_text};
 
 use crate::clouds;
 use crate::commits;
 use crate::error::ReportError;
 use crate::figures::{self, Figure};
 use crate::page::{self, Drawn};
-use crate::run_set::RunSet;
 use crate::seconds;
 use crate::select;
-use crate::store::{end, make_dir, read_marked, read_numbers, remove_files, write_marked, write_text};
 use crate::tables;
 
 /// Files written by a rendering.

@@ -4,10 +4,9 @@
 //! measures how busy the machine was, and CPU time is closer to the cost of the method. The choice is made
 //! here, equally for all runs of a case.
 
+use records::{Family, Machine, Record};
 use serde::{Deserialize, Serialize};
 
-use crate::provenance::Machine;
-use crate::record::{Family, Record};
 use crate::select::{Run, runs};
 
 /// Ratio of wall time to CPU time above which other programs used the processors.

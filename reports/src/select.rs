@@ -2,8 +2,8 @@
 
 use std::cmp::Ordering;
 
-use crate::history::step;
-use crate::record::{Family, Purpose, Record};
+use records::{Family, Purpose, Record};
+
 use crate::seconds::Seconds;
 
 /// All numbers of one discretisation of one case.
@@ -34,7 +34,7 @@ impl<'a> Run<'a> {
 
     /// Record of a plain value, which is not part of a history.
     fn plain(&self, quantity: &str) -> Option<&'a Record> {
-        let fits = |r: &&&Record| r.quantity == quantity && r.statistic == "value" && step(r).is_none();
+        let fits = |r: &&&Record| r.quantity == quantity && r.statistic == "value" && r.index().is_none();
         self.records.iter().find(fits).copied()
     }
 

@@ -1,7 +1,7 @@
 //! A table and its output formats: CSV, Markdown, LaTeX and HTML cells.
 
-use crate::cell::guarded;
-use crate::text::{scientific, significant, spread};
+use records::cell::csv_line;
+use records::text::{scientific, significant, spread};
 
 /// A cell and its number format. CSV always contains every digit.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -195,19 +195,6 @@ impl Table {
         }
         out
     }
-}
-
-/// A line of CSV (RFC 4180): cells with a comma, quote or line break are quoted, and formulas are guarded.
-pub(crate) fn csv_line(cells: &[&str]) -> String {
-    let quoted: Vec<String> = cells
-        .iter()
-        .map(|cell| guarded(cell))
-        .map(|cell| match cell.contains([',', '"', '\n', '\r']) {
-            true => format!("\"{}\"", cell.replace('"', "\"\"")),
-            false => cell.into_owned(),
-        })
-        .collect();
-    quoted.join(",") + "\n"
 }
 
 /// Escapes Markdown markup in a table cell; a line break becomes a space.

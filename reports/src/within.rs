@@ -1,8 +1,9 @@
 //! Cheapest method within an error, case by case: data of the table and of the performance profile.
 
+use records::Family;
+
 use crate::asks::{Ask, Line, asks};
 use crate::fronts::{Clock, WANTED};
-use crate::record::Family;
 use crate::seconds::Seconds;
 use crate::select::Run;
 
@@ -84,8 +85,8 @@ pub(crate) fn ratios(problems: &[Problem], label: &str) -> (Vec<f64>, usize) {
 mod tests {
     use super::*;
     use crate::fronts::tests::run;
-    use crate::record::Record;
     use crate::select::runs;
+    use records::Record;
 
     #[test]
     fn the_cheapest_run_within_the_error_counts_and_chance_does_not() {

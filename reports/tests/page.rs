@@ -6,7 +6,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::Path;
 
-use reports::{RunSet, render, write_run};
+use records::{RunSet, write_run};
+use reports::render;
 
 /// Hash of the sources, as computed by `page/build.mjs`: FNV-1a over their bytes, in the order of their
 /// names.

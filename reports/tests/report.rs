@@ -5,8 +5,9 @@ mod common;
 use std::fs;
 use std::path::Path;
 
+use records::{RunSet, write_run};
 use reports::commits::add;
-use reports::{ReportError, RunSet, render, render_over_commits, write_run, write_with_report};
+use reports::{ReportError, render, render_over_commits, write_with_report};
 use serde_json::Value;
 
 fn text(path: &Path) -> String {

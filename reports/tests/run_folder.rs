@@ -4,7 +4,7 @@ mod common;
 
 use std::fs;
 
-use reports::{Record, RunSet, read_run, write_run};
+use records::{Record, RunSet, read_run, write_run};
 
 #[test]
 fn a_run_survives_its_folder() {

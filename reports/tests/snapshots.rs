@@ -6,7 +6,8 @@ mod common;
 mod one_percent;
 
 use one_percent::{agree, within_one_percent};
-use reports::{render, write_run};
+use records::write_run;
+use reports::render;
 
 #[test]
 fn the_comparator_can_fail() {

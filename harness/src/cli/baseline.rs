@@ -14,12 +14,12 @@ const SHOWN: usize = 40;
 /// Compares the results and accepts the selected differences. Returns the exit code: 0 if no difference is
 /// left, 1 otherwise, 2 without accepted results.
 pub fn baseline(args: &BaselineArgs) -> Result<u8, ReportError> {
-    let now = Baseline::of(&reports::read_numbers(&args.results, "compare")?.records, &processor());
+    let now = Baseline::of(&records::read_numbers(&args.results, "compare")?.records, &processor());
     if !args.file.exists() {
         return first(args, &now);
     }
     let mut accepted = Baseline::load(&args.file)?;
-    let found = accepted.compare(&now, !args.part);
+    let found = accepted.compare(&now, !args.part)?;
     if found.compared == 0 && found.changes.is_empty() {
         eprintln!("tissuebench: {}: nothing was compared", args.file.display());
         return Ok(2);

@@ -1,6 +1,7 @@
 //! `tissuebench claims`: compares published claims with stored results.
 
-use reports::{ClaimVerdict, read_claims, read_run};
+use records::read_run;
+use reports::{ClaimVerdict, read_claims};
 
 use crate::cli::args::ClaimsArgs;
 use crate::cli::unreported;
@@ -10,7 +11,7 @@ pub(super) fn claims(args: &ClaimsArgs) -> u8 {
     let read = read_claims(&args.file).and_then(|claims| Ok((claims, read_run(&args.results)?)));
     let (claims, set) = match read {
         Ok(read) => read,
-        Err(bad) => return unreported(&bad),
+        Err(bad) => return unreported(bad),
     };
     let (mut tested, mut unexpected) = (0, 0);
     for claim in &claims {

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use reports::RunSet;
+use records::RunSet;
 use reports::compare::{Comparison, NumberChange, Numbers, Ratio, Scope, Times, across};
 
 use super::args::{CompareArgs, Format};
@@ -21,7 +21,13 @@ pub(super) fn compare(args: &CompareArgs) -> u8 {
             return 2;
         }
     };
-    let found = Comparison::of(&pairs, args.tolerance, !args.no_times);
+    let found = match Comparison::of(&pairs, args.tolerance, !args.no_times) {
+        Ok(found) => found,
+        Err(bad) => {
+            eprintln!("tissuebench: {bad}");
+            return 2;
+        }
+    };
     if found.numbers.compared == 0 && found.is_same() {
         eprintln!("tissuebench: nothing was compared: the results have no number in common");
         return 2;
@@ -50,7 +56,7 @@ fn read(args: &CompareArgs) -> Result<Vec<(RunSet, RunSet)>, String> {
     if !(args.tolerance >= 0.0 && args.tolerance < 1.0) {
         return Err(format!("--tolerance {}: is no relative difference; give 0 to below 1", args.tolerance));
     }
-    let one = |path: &Path| reports::read_numbers(path, "compare").map_err(|bad| bad.to_string());
+    let one = |path: &Path| records::read_numbers(path, "compare").map_err(|bad| bad.to_string());
     let mut pairs: Vec<(RunSet, RunSet)> = args
         .results
         .chunks(2)

@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use reports::{ReportError, write_text};
+use records::{RecordError, write_text};
 
 use crate::cli::args::FieldsArgs;
 use crate::cli::{affordable_methods, open, unreported};
@@ -54,7 +54,7 @@ pub(super) fn run(args: &FieldsArgs) -> u8 {
                 let series = args.out.join(format!("{}.pvd", method.id));
                 println!("{}: {} states", series.display(), states.len());
             }
-            Err(bad) => code = code.max(unreported(&bad)),
+            Err(bad) => code = code.max(unreported(bad)),
         }
     }
     code
@@ -62,13 +62,13 @@ pub(super) fn run(args: &FieldsArgs) -> u8 {
 
 /// Writes the files of a method to a folder, which is created if missing. Parts of an earlier series of the
 /// method are removed.
-pub(super) fn write(states: &States, method: &str, folder: &Path) -> Result<(), ReportError> {
+pub(super) fn write(states: &States, method: &str, folder: &Path) -> Result<(), RecordError> {
     if states.is_empty() {
         return Ok(());
     }
     let parts = folder.join(method);
     clear(&parts)?;
-    fs::create_dir_all(&parts).map_err(|source| ReportError::Unwritten { path: parts.clone(), source })?;
+    fs::create_dir_all(&parts).map_err(|source| RecordError::Unwritten { path: parts.clone(), source })?;
     let mut files = states.files(method);
     let series = files.next();
     // The series file is written last, so that all parts it names exist.
@@ -76,8 +76,8 @@ pub(super) fn write(states: &States, method: &str, folder: &Path) -> Result<(), 
 }
 
 /// Removes the files of earlier series from a folder, and the folder itself if it is then empty.
-pub(super) fn clear(folder: &Path) -> Result<(), ReportError> {
-    let unwritten = |source| ReportError::Unwritten { path: folder.into(), source };
+pub(super) fn clear(folder: &Path) -> Result<(), RecordError> {
+    let unwritten = |source| RecordError::Unwritten { path: folder.into(), source };
     let Ok(entries) = fs::read_dir(folder) else { return Ok(()) };
     for entry in entries {
         let entry = entry.map_err(unwritten)?;
@@ -86,7 +86,7 @@ pub(super) fn clear(folder: &Path) -> Result<(), ReportError> {
         if entry.file_type().map_err(unwritten)?.is_dir() {
             clear(&path)?;
         } else if States::is_file(&entry.file_name().to_string_lossy()) {
-            disk::remove(&path).map_err(|source| ReportError::Unwritten { path, source })?;
+            disk::remove(&path).map_err(|source| RecordError::Unwritten { path, source })?;
         }
     }
     // A folder with other files stays.

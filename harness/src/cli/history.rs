@@ -48,14 +48,15 @@ const SHOWN: usize = 5;
 pub(super) fn act(action: &HistoryAction) -> u8 {
     let done = match action {
         HistoryAction::Add { results, to, label } => {
-            reports::read_numbers(results, "keep").and_then(|set| add(to, &set, label)).map(|path| {
+            let added = records::read_numbers(results, "keep").map_err(ReportError::from);
+            added.and_then(|set| add(to, &set, label)).map(|path| {
                 println!("{}", path.display());
                 0
             })
         }
         HistoryAction::Show(args) => show(args),
     };
-    done.unwrap_or_else(|bad| unreported(&bad))
+    done.unwrap_or_else(unreported)
 }
 
 fn show(args: &ShowArgs) -> Result<u8, ReportError> {
@@ -74,7 +75,7 @@ fn show(args: &ShowArgs) -> Result<u8, ReportError> {
         }
     }
     if let Some(path) = &args.figure {
-        reports::write_text(path, svg(&found)?)?;
+        records::write_text(path, svg(&found)?)?;
     }
     Ok(0)
 }

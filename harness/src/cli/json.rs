@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use geometry::Vector3;
-use reports::Reference;
+use records::Reference;
 use schemars::JsonSchema;
 use serde::Serialize;
 

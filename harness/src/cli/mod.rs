@@ -34,7 +34,8 @@ use cases::scene::{self, ErrorKind, Scene, SceneError};
 use catalogue::nearest;
 use clap::{CommandFactory, Parser};
 use geometry::files;
-use reports::{Rendered, ReportError, RunSet};
+use records::{RecordError, RunSet};
+use reports::{Rendered, ReportError};
 use schemars::schema_for;
 
 use crate::Failure;
@@ -112,7 +113,7 @@ fn act(cli: Cli) -> u8 {
             let out = out.unwrap_or_else(|| results.join("report"));
             report(&results, &out, history.as_deref(), false)
         }
-        Command::Baseline(args) => baseline(&args).unwrap_or_else(|bad| unreported(&bad)),
+        Command::Baseline(args) => baseline(&args).unwrap_or_else(unreported),
         Command::Reference(args) => match reference(&args) {
             Ok(()) => 0,
             Err(code) => code,
@@ -148,8 +149,8 @@ fn schema(of: SchemaOf) -> serde_json::Value {
         SchemaOf::Study => scene::study_schema(),
         SchemaOf::Run => schema_for!(RunObject).to_value(),
         SchemaOf::Events => schema_for!(Line).to_value(),
-        SchemaOf::Checks => schema_for!(Vec<reports::Check>).to_value(),
-        SchemaOf::Provenance => schema_for!(reports::Provenance).to_value(),
+        SchemaOf::Checks => schema_for!(Vec<records::Check>).to_value(),
+        SchemaOf::Provenance => schema_for!(records::Provenance).to_value(),
     }
 }
 
@@ -289,17 +290,18 @@ fn rendered(done: Result<Rendered, ReportError>, quiet: bool) -> u8 {
             }
             0
         }
-        Err(bad) => unreported(&bad),
+        Err(bad) => unreported(bad),
     }
 }
 
 /// Prints why results could not be read or written, and returns the exit code.
-fn unreported(bad: &ReportError) -> u8 {
+fn unreported(bad: impl Into<ReportError>) -> u8 {
+    let bad = bad.into();
     eprintln!("tissuebench: {bad}");
-    match bad {
+    match &bad {
         // The output is an input, or not a regular file.
-        ReportError::Unwritten { source, .. } if source.kind() == InvalidInput => 2,
-        ReportError::Incomplete { .. } | ReportError::Unwritten { .. } => 5,
+        ReportError::Records(RecordError::Unwritten { source, .. }) if source.kind() == InvalidInput => 2,
+        ReportError::Records(RecordError::Incomplete { .. } | RecordError::Unwritten { .. }) => 5,
         _ => 2,
     }
 }

@@ -5,7 +5,8 @@ use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
 use cases::scene::{self, Scene};
-use reports::{Machine, RunSet, Seconds, Status};
+use records::{Machine, RunSet, Status};
+use reports::Seconds;
 
 use crate::Failure;
 use crate::cli::args::{Format, RunArgs};
@@ -38,7 +39,7 @@ pub(super) fn run(args: &RunArgs) -> u8 {
     if let Some(out) = &args.out
         && let Err(bad) = fields::clear(&out.join(fields::FOLDER))
     {
-        return unreported(&bad);
+        return unreported(bad);
     }
     let scene = Arc::new(scene);
     let made = Arc::new(Mutex::new(Made {
@@ -149,7 +150,7 @@ impl Made {
         let reason = format!("reference stalled: {failure}");
         let (case, method) = (self.case.clone(), "reference".into());
         let status = failure.status().into();
-        self.set.failures.push(reports::Failure {
+        self.set.failures.push(records::Failure {
             case,
             method,
             reason,
@@ -182,7 +183,7 @@ impl Made {
         if let (Some(out), Some(states)) = (&self.args.out, outcome.states.take())
             && let Err(bad) = fields::write(&states, &method.id, &out.join(fields::FOLDER))
         {
-            self.code = self.code.max(unreported(&bad));
+            self.code = self.code.max(unreported(bad));
         }
         if let Some(reason) = &outcome.relaxed {
             eprintln!("relaxed: {reason} (method '{}')", method.id);
@@ -210,7 +211,7 @@ impl Made {
     fn interrupted(&mut self) {
         eprintln!("tissuebench: interrupted before the end of {}", self.left.join(", "));
         for id in std::mem::take(&mut self.left) {
-            self.set.failures.push(reports::Failure {
+            self.set.failures.push(records::Failure {
                 case: self.case.clone(),
                 method: id,
                 reason: "interrupted".into(),

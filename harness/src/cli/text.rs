@@ -2,7 +2,8 @@
 
 use std::fmt::Write as _;
 
-use reports::{Check, Reference, Seconds, Status};
+use records::{Check, Reference, Status};
+use reports::Seconds;
 
 use crate::cli::colour;
 
@@ -209,7 +210,7 @@ pub(super) fn aligned(rows: &[Vec<String>]) -> String {
 }
 
 /// Formats warnings about the results, one line each with the methods concerned.
-pub fn warnings(rows: &[reports::Warning]) -> String {
+pub fn warnings(rows: &[records::Warning]) -> String {
     let mut found: Vec<(String, Vec<&str>)> = Vec::new();
     for warning in rows {
         let (text, method) = (line(warning), warning.method.as_str());
@@ -226,7 +227,7 @@ pub fn warnings(rows: &[reports::Warning]) -> String {
     found.iter().map(line).collect()
 }
 
-fn line(warning: &reports::Warning) -> String {
+fn line(warning: &records::Warning) -> String {
     let place = if warning.place.is_empty() { String::new() } else { format!("key '{}': ", warning.place) };
     format!("{place}{} ({})", warning.message, warning.code)
 }

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use cases::scene;
 use catalogue::warning;
-use reports::Status;
+use records::Status;
 
 use crate::cli::ci::{self, CiArgs};
 use crate::cli::{
@@ -65,7 +65,7 @@ pub(super) fn verify(args: &VerifyArgs, ci: &CiArgs) -> u8 {
     }
     // An unreadable history is refused before the runs, which may take hours.
     if let Some(Err(bad)) = args.history.as_deref().map(reports::commits::check) {
-        return unreported(&bad);
+        return unreported(bad);
     }
     let events = match ci::begin(ci, &plan) {
         Ok(events) => events,

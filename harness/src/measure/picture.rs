@@ -2,7 +2,7 @@
 //! the tools with its pressure.
 
 use geometry::{Mesh, Point3, Vector3};
-use reports::{Section, SectionCell, SurfaceField, ToolHull};
+use records::{Section, SectionCell, SurfaceField, ToolHull};
 
 use super::states::at_mesh;
 use super::{Solved, mean_pressure};

@@ -1,7 +1,7 @@
 //! Data of a run for the three-dimensional view: the surface of the elements at some of the run's states.
 
 use geometry::{Facet, Mesh, Point3, Search, Vector3};
-use reports::{Body, BodyState, Faces, Inside, InsideState, Skin, pack};
+use records::{Body, BodyState, Faces, Inside, InsideState, Skin, pack};
 use shape::PointRows;
 
 use super::states::{Recorded, at_mesh, recorded};

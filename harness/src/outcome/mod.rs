@@ -6,7 +6,7 @@ mod load_step;
 mod places;
 mod plan;
 pub mod provenance;
-mod records;
+mod rows;
 mod states;
 pub(crate) mod timing;
 mod warning;
@@ -14,7 +14,7 @@ mod watch;
 
 use catalogue::{Values, metric};
 use geometry::{Matrix3, Point3, Vector3};
-use reports::{Record, Reference, SurfaceField};
+use records::{Record, Reference, SurfaceField};
 
 use crate::Failure;
 pub use counters::Counters;
@@ -23,7 +23,7 @@ pub use latency::Latency;
 pub use load_step::{LoadStep, ToolStep};
 pub use places::{FaceMean, SupportForce};
 pub use plan::{Plan, Stage, StageName};
-pub(crate) use records::run_id;
+pub(crate) use rows::run_id;
 pub use states::States;
 pub(crate) use states::{State, Tensors, ToolSkin, von_mises};
 pub(crate) use timing::Meters;

@@ -1,7 +1,7 @@
 //! Provenance of the results: the program, fixed when it was built, and the state of the machine when a run
 //! begins.
 
-use reports::{FORMAT, Machine, Program, Provenance, SceneHash};
+use records::{FORMAT, Machine, Program, Provenance, SceneHash};
 
 /// BLAKE3 hash of a scene's text, in hexadecimal digits.
 pub fn hash(text: &str) -> String {

@@ -307,17 +307,17 @@ impl<'a> Group<'a> {
     }
 
     /// Reference that the runs are compared with; `None` if there is none.
-    pub fn reference(&self) -> Option<reports::Reference> {
+    pub fn reference(&self) -> Option<records::Reference> {
         let case = self.case.clone();
         if let Some(Reference::Exact { entry, .. }) = &self.scene.reference {
-            return Some(reports::Reference {
+            return Some(records::Reference {
                 case,
                 method: entry.name.into(),
-                ..reports::Reference::default()
+                ..records::Reference::default()
             });
         }
         let measure::Reference { method, nodes, own, warnings, .. } = self.reference.as_ref()?;
-        Some(reports::Reference {
+        Some(records::Reference {
             case,
             poisson: 0.0,
             method: method.clone(),
@@ -332,7 +332,7 @@ impl<'a> Group<'a> {
     /// Records the reference in an outcome, and warns if the reference is coarser than the run.
     pub(super) fn hold_against(&self, outcome: &mut Outcome) {
         let poisson = outcome.identity.poisson;
-        outcome.reference = self.reference().map(|reference| reports::Reference { poisson, ..reference });
+        outcome.reference = self.reference().map(|reference| records::Reference { poisson, ..reference });
         outcome.warnings.extend(outcome.reference.as_ref().and_then(|reference| coarser(reference, outcome)));
     }
 
@@ -363,7 +363,7 @@ impl<'a> Group<'a> {
 const ROUNDING: f64 = 1e-9;
 
 /// Warning that the run has more nodes than its reference, whose error may then dominate.
-fn coarser(reference: &reports::Reference, outcome: &Outcome) -> Option<Warning> {
+fn coarser(reference: &records::Reference, outcome: &Outcome) -> Option<Warning> {
     let error = outcome.metric(metric::RELATIVE_RMS.name).filter(|error| *error > ROUNDING)?;
     let (own, known) = (outcome.size.nodes, reference.nodes);
     (known > 0 && own > known).then(|| {

@@ -14,7 +14,7 @@ use std::time::Instant;
 
 use cases::scene::Procedure;
 use geometry::{Point3, Vector3};
-use reports::{Record, SurfaceField};
+use records::{Record, SurfaceField};
 
 use crate::Failure;
 use crate::discretise::Discretisation;

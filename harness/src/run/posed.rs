@@ -4,7 +4,7 @@
 use cases::scene::Procedure;
 use contact::{ContactHistory, Drive, ToolState};
 use geometry::{Mesh, Point3, Vector3};
-use reports::Family;
+use records::Family;
 use shape::{FixedDof, GradRows, PointRows, VolumeRows};
 
 use super::{Group, loaded, size};

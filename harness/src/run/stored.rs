@@ -8,7 +8,7 @@ use std::path::Path;
 use cases::scene::{ErrorKind, Scene};
 use catalogue::metric;
 use geometry::{Point3, Vector3};
-use reports::{Family, Record};
+use records::{Family, Record};
 use serde::{Deserialize, Serialize};
 
 use super::mirror::Mirror;

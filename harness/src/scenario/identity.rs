@@ -1,8 +1,7 @@
 //! Identity of a scenario's run in records.
 
 use cases::scene::{self, Family, ProcedureKind};
-
-use reports::Purpose;
+use records::Purpose;
 
 use super::Scenario;
 use crate::adapter;
@@ -32,14 +31,14 @@ impl Scenario<'_> {
             Family::Fem(fem) => of_elements(fem, identity),
             Family::Efg(efg) => of_cloud(efg, identity),
             Family::External(external) => Identity {
-                family: reports::Family::External,
+                family: records::Family::External,
                 adapter: Some(adapter::label(&external.adapter, &external.settings)),
                 variant: external.elements.element.name().into(),
                 seed: external.elements.jitter.map_or(0, |j| j.seed),
                 ..identity
             },
             Family::OverMesh(over) => Identity {
-                family: reports::Family::OverMesh,
+                family: records::Family::OverMesh,
                 variant: over.entry.name.into(),
                 dilation: Some(over.dilation.name().into()),
                 seed: over.jitter.map_or(0, |j| j.seed),
@@ -51,7 +50,7 @@ impl Scenario<'_> {
 
 fn of_elements(fem: &scene::Fem, identity: Identity) -> Identity {
     Identity {
-        family: reports::Family::Fem,
+        family: records::Family::Fem,
         variant: fem.element.name().into(),
         dilation: Some(fem.dilation.name().into()),
         integration: fem.reduced.then(|| "2x2x2".into()),
@@ -62,7 +61,7 @@ fn of_elements(fem: &scene::Fem, identity: Identity) -> Identity {
 
 fn of_cloud(efg: &scene::Efg, identity: Identity) -> Identity {
     let mut identity = Identity {
-        family: reports::Family::Efg,
+        family: records::Family::Efg,
         basis: Some(efg.functions.basis().into()),
         dilation: Some(efg.dilation.name().into()),
         integration: Some(rule(efg.integration)),

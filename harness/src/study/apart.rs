@@ -190,7 +190,7 @@ pub(crate) fn experiment(args: &ExperimentArgs) -> Result<(), Failure> {
         std::fs::create_dir_all(folder).map_err(|bad| Failure::Run(bad.to_string()))?;
     }
     let text = serde_json::to_string(&result).map_err(|bad| Failure::Run(bad.to_string()))?;
-    reports::write_text(&args.answer, text).map_err(|bad| Failure::Run(bad.to_string()))
+    records::write_text(&args.answer, text).map_err(|bad| Failure::Run(bad.to_string()))
 }
 
 #[cfg(test)]

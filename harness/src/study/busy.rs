@@ -1,7 +1,8 @@
 //! The warning that other programs used the processors while runs were timed.
 
 use catalogue::warning;
-use reports::{Busy, Machine, Record, RunSet, Seconds, Took, Warning};
+use records::{Machine, Record, RunSet, Warning};
+use reports::{Busy, Seconds, Took};
 
 /// Adds a warning to results from a busy machine. It names the clock by which runs are compared instead, and
 /// the deviation of the wall-clock times.

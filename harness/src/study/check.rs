@@ -2,7 +2,7 @@
 
 use cases::scene::{Bound, Check};
 use catalogue::metric::{self, Needs};
-use reports::{Check as Verdict, Family, Record, Status};
+use records::{Check as Verdict, Family, Record, Status};
 
 /// Value of a metric among the records of one run, SI units; `None` if there is no such record.
 pub fn value(metric: &str, records: &[Record]) -> Option<f64> {

@@ -243,7 +243,7 @@ impl Plan {
         if let (Some(stalled), None) = (group.reference_stalled(), &result.failure) {
             let reason = format!("reference stalled: {stalled}");
             let carried = group.reference_carried();
-            let run = reports::Failure { reason, carried, ..failed(&case, method, stalled) };
+            let run = records::Failure { reason, carried, ..failed(&case, method, stalled) };
             result.failure = Some((run, stalled.exit_code()));
         }
         result

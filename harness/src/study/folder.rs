@@ -95,7 +95,7 @@ fn enter(out: &Path, mut lock: File, first: bool) -> Result<Folder, Failure> {
         writeln!(lock, "{}", std::process::id())
     };
     sign().map_err(|bad| unwritable(out, &bad))?;
-    Ok(Folder { path: out.into(), lock, whole: !reports::is_incomplete(out) })
+    Ok(Folder { path: out.into(), lock, whole: !records::is_incomplete(out) })
 }
 
 fn in_use(out: &Path, lock: &mut File) -> Failure {
@@ -126,13 +126,13 @@ impl Folder {
     /// results, which that process reads again for its report.
     pub(crate) fn begin(&self, file: &Path) -> Result<(), Failure> {
         let _lock = self.writing();
-        reports::begin(&self.path, &source(file)).map_err(|bad| Failure::Run(bad.to_string()))
+        records::begin(&self.path, &source(file)).map_err(|bad| Failure::Run(bad.to_string()))
     }
 
     /// Restores the mark of complete results if nothing was run.
     pub(crate) fn leave(self) {
         if self.whole {
-            let _ = reports::end(&self.path);
+            let _ = records::end(&self.path);
         }
     }
 
@@ -144,7 +144,7 @@ impl Folder {
         if let Some(file) = &file {
             let _ = file.lock();
         }
-        (file, !reports::is_incomplete(&self.path))
+        (file, !records::is_incomplete(&self.path))
     }
 
     /// Releases the folder. Calls `clean` if no other process is left in it.
@@ -167,7 +167,7 @@ pub(crate) fn ready_file(out: &Path) -> Result<(), String> {
 
 /// Description of the results in a folder, which a new run replaces; `None` if there are none.
 pub(crate) fn replaced(out: &Path) -> Option<String> {
-    let held = reports::read_run(out).ok()?;
+    let held = records::read_run(out).ok()?;
     let methods: BTreeSet<_> = held.plans.iter().map(|plan| (&plan.case, &plan.method)).collect();
     let scenes: BTreeSet<_> = methods.iter().map(|(case, _)| case).collect();
     match (scenes.len(), methods.len()) {
@@ -180,7 +180,7 @@ pub(crate) fn replaced(out: &Path) -> Option<String> {
 
 /// Refuses a folder that holds the results of another file.
 fn free_for(file: &Path, out: &Path) -> Result<(), String> {
-    let (here, wanted) = (reports::source_of(out), source(file));
+    let (here, wanted) = (records::source_of(out), source(file));
     match here {
         Some(here) if here != wanted => Err(format!(
             "{} holds the results of {here}; give those of {wanted} a folder of their own, such as --out {}-{}",

@@ -60,7 +60,7 @@ pub(crate) fn note(args: &VerifyArgs, study: &Path) -> Result<(), Failure> {
     let study = study.canonicalize().unwrap_or_else(|_| study.into());
     let note = Note { study, quick: args.quick, filter: args.filter.clone(), filters: args.filters.clone() };
     let text = serde_json::to_string_pretty(&note).map_err(|bad| Failure::Run(bad.to_string()))?;
-    reports::write_text(&args.out.join(NOTE), text + "\n").map_err(|bad| Failure::Run(bad.to_string()))
+    records::write_text(&args.out.join(NOTE), text + "\n").map_err(|bad| Failure::Run(bad.to_string()))
 }
 
 fn noted(share: &Path) -> Result<Note, Failure> {
@@ -113,7 +113,7 @@ pub(crate) fn plan(args: &MergeArgs) -> Result<(PathBuf, Plan, VerifyArgs), Unme
 impl Plan {
     /// Takes every result from the first share that has it, and copies it to the folder of the whole study.
     pub(crate) fn merge(&self, args: &VerifyArgs, shares: &[PathBuf]) -> Result<Merged, Failure> {
-        let unwritten = |bad: reports::ReportError| Failure::Run(bad.to_string());
+        let unwritten = |bad: records::RecordError| Failure::Run(bad.to_string());
         let mut found = Share::default();
         let mut results: BTreeMap<usize, TaskResult> = BTreeMap::new();
         let mut missing = Vec::new();
@@ -135,7 +135,7 @@ impl Plan {
                 }
             }
         }
-        let machine = shares.iter().find_map(|share| reports::provenance_of(share));
+        let machine = shares.iter().find_map(|share| records::provenance_of(share));
         let machine = machine.map_or_else(provenance::machine, |from| from.machine);
         Ok(Merged { finished: self.collect(results, machine), missing, machines: found.machines.len() })
     }

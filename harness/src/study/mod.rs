@@ -30,7 +30,7 @@ use std::sync::atomic::AtomicUsize;
 use std::sync::{Arc, Mutex};
 
 use cases::scene::{self, Check, ErrorKind, Scene, Study};
-use reports::{Axis, Check as Verdict, Machine, Record, Reference, RunSet, SurfaceField};
+use records::{Axis, Check as Verdict, Machine, Record, Reference, RunSet, SurfaceField};
 
 use crate::error::ForeignStatus;
 use crate::outcome::{Counters, Watch, provenance};
@@ -328,7 +328,7 @@ impl Plan {
                 // Stalls among many clouds are results if there are metrics. So is a known early end.
                 let counted = self.is_one_of_many(task) && !result.records.is_empty();
                 let known =
-                    |v: &Verdict| v.metric == "load-carried" && v.status == reports::Status::KnownFailure;
+                    |v: &Verdict| v.metric == "load-carried" && v.status == records::Status::KnownFailure;
                 if offered && !counted && !verdicts.iter().any(known) {
                     failed.push(*code);
                     run.failure = Some(failure.reason.clone());

@@ -7,7 +7,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use disk::Kind;
-use reports::{Machine, Program, ReportError};
+use records::{Machine, Program, RecordError};
 use serde::{Deserialize, Serialize};
 
 use super::task::TaskResult;
@@ -151,12 +151,12 @@ impl Store {
 
     /// Stores a result. The file is written under another name and renamed, so that an interruption leaves no
     /// partial file.
-    pub(super) fn save(&self, key: &str, result: &TaskResult) -> Result<(), ReportError> {
+    pub(super) fn save(&self, key: &str, result: &TaskResult) -> Result<(), RecordError> {
         let path = self.file(key);
-        let unwritten = |source| ReportError::Unwritten { path: path.clone(), source };
+        let unwritten = |source| RecordError::Unwritten { path: path.clone(), source };
         fs::create_dir_all(&self.folder).map_err(unwritten)?;
         let text = sealed(key, &Stored { by: &self.by, result });
-        reports::write_text(&path, text.map_err(|bad| unwritten(bad.into()))?)
+        records::write_text(&path, text.map_err(|bad| unwritten(bad.into()))?)
     }
 
     /// Locks a task for this process until the returned file is closed; `None` if another process holds the
@@ -224,10 +224,10 @@ pub(super) fn any(out: &Path) -> bool {
 }
 
 /// Stores the text of a result from another folder.
-pub(super) fn keep(out: &Path, key: &str, text: &str) -> Result<(), ReportError> {
+pub(super) fn keep(out: &Path, key: &str, text: &str) -> Result<(), RecordError> {
     let folder = out.join(TASKS);
-    fs::create_dir_all(&folder).map_err(|source| ReportError::Unwritten { path: folder.clone(), source })?;
-    reports::write_text(&folder.join(format!("{key}.json")), text)
+    fs::create_dir_all(&folder).map_err(|source| RecordError::Unwritten { path: folder.clone(), source })?;
+    records::write_text(&folder.join(format!("{key}.json")), text)
 }
 
 /// Removes files that killed processes left in a folder of results. Call it only if no other process uses the
@@ -299,7 +299,7 @@ mod tests {
     fn a_changed_result_and_one_of_another_key_are_refused() {
         let dir = tempfile::tempdir().unwrap();
         let store = store(dir.path(), &Program::default(), &Machine::default());
-        let record = reports::Record { value: 0.125, ..reports::Record::default() };
+        let record = records::Record { value: 0.125, ..records::Record::default() };
         store.save("key", &TaskResult { records: vec![record], ..TaskResult::default() }).unwrap();
         let load = |key: &str| store.load(key, Accept::Finished);
         assert_eq!(load("key").unwrap().unwrap().records[0].value, 0.125);
@@ -333,7 +333,7 @@ mod tests {
         let store = store(dir.path(), &Program::default(), &Machine::default());
         store.save("finished", &TaskResult::default()).unwrap();
         let failure = crate::Failure::Run("rigid".into());
-        let failed = (reports::Failure { reason: failure.to_string(), ..reports::Failure::default() }, 3);
+        let failed = (records::Failure { reason: failure.to_string(), ..records::Failure::default() }, 3);
         store.save("failed", &TaskResult { failure: Some(failed), ..TaskResult::default() }).unwrap();
         for (name, text) in [("half.json", "{"), ("killed.json.partial", ""), ("killed.claim", "")] {
             fs::write(store.folder.join(name), text).unwrap();

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use cases::scene::{ErrorKind, Scene};
-use reports::{Check, Record};
+use records::{Check, Record};
 
 use super::task::TaskResult;
 use super::tasks::Task;

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use cases::scene;
-use reports::{Failure as FailedRun, PlanEntry, Record, Reference, SurfaceField, Warning};
+use records::{Failure as FailedRun, PlanEntry, Record, Reference, SurfaceField, Warning};
 use serde::{Deserialize, Serialize};
 
 use crate::Failure;

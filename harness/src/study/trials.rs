@@ -2,7 +2,7 @@
 
 use cases::scene::{self, Bound, Check};
 use catalogue::metric;
-use reports::{Axis, Check as Verdict, Ended, Trial};
+use records::{Axis, Check as Verdict, Ended, Trial};
 
 use super::check;
 use super::task::TaskResult;
@@ -69,7 +69,7 @@ pub(super) fn verdicts(axis: &Axis) -> Vec<Verdict> {
     let each = axis.methods().into_iter().map(|method| {
         let case = format!("{} along {}", axis.case, axis.name);
         let mut verdict = check::judge(&check, &case, method, Some(axis.silent(method) as f64), None);
-        let silent = |t: &&Trial| t.method == method && axis.verdict(t) == reports::AxisVerdict::Silent;
+        let silent = |t: &&Trial| t.method == method && axis.verdict(t) == records::AxisVerdict::Silent;
         if let Some(first) = axis.trials.iter().find(silent) {
             let error = first.error.map_or("no".into(), |e| format!("{e:.3}"));
             verdict.reason = format!("at {} {}: {} {error}, no warning", first.value, axis.unit, axis.judge);

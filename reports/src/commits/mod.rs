@@ -8,12 +8,13 @@ mod trend;
 
 use std::path::{Path, PathBuf};
 
+use records::{RecordError, RunSet};
+
 pub use summary::{RunNumbers, Summary};
 pub use trend::{ErrorStep, Point, Step, Trend};
 
 use crate::error::ReportError;
 use crate::figures::{OVER_COMMITS as TITLE, over_commits};
-use crate::run_set::RunSet;
 
 /// Adds results to a history, with a label in addition to their commit. Returns the path of the new file.
 ///
@@ -24,7 +25,7 @@ pub fn add(history: &Path, set: &RunSet, label: &str) -> Result<PathBuf, ReportE
     let commit: String = set.provenance.program.commit.chars().take(12).collect();
     let path = history.join(format!("{:04}-{commit}.toml", last + 1));
     std::fs::create_dir_all(history)
-        .map_err(|source| ReportError::Unwritten { path: history.into(), source })?;
+        .map_err(|source| RecordError::Unwritten { path: history.into(), source })?;
     Summary { label: label.into(), ..Summary::of(set) }.save(&path)?;
     Ok(path)
 }
@@ -35,7 +36,7 @@ pub fn add(history: &Path, set: &RunSet, label: &str) -> Result<PathBuf, ReportE
 /// A folder or a file that cannot be read.
 pub fn trends(history: &Path) -> Result<Vec<Trend>, ReportError> {
     let read = files(history)?.into_iter().map(|(number, path)| Ok((number, Summary::load(&path)?)));
-    Ok(trend::trends(read.collect::<Result<_, ReportError>>()?))
+    Ok(trend::trends(read.collect::<Result<_, RecordError>>()?)?)
 }
 
 /// Checks that a folder contains a history.
@@ -47,7 +48,7 @@ pub fn check(history: &Path) -> Result<(), ReportError> {
         return Ok(());
     }
     let reason = "it holds no history; `tissuebench history add` begins one".into();
-    Err(ReportError::Content { path: history.into(), reason })
+    Err(RecordError::Content { path: history.into(), reason }.into())
 }
 
 /// Trends of a history for a report, beginning with those of the report's study.
@@ -68,7 +69,7 @@ pub fn svg(trends: &[Trend]) -> Result<String, ReportError> {
 
 /// Files of a history with their numbers; empty for a folder that does not exist.
 fn files(history: &Path) -> Result<Vec<(u32, PathBuf)>, ReportError> {
-    let unread = |source| ReportError::Io { path: history.into(), source };
+    let unread = |source| RecordError::Io { path: history.into(), source };
     if !history.exists() {
         return Ok(Vec::new());
     }

@@ -4,14 +4,9 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use catalogue::metric;
+use records::store::write_text;
+use records::{Machine, Numbers, Program, Record, RecordError, RunSet, Status};
 use serde::{Deserialize, Serialize};
-
-use crate::baseline::run_name;
-use crate::error::ReportError;
-use crate::provenance::{Machine, Program};
-use crate::record::Record;
-use crate::run_set::{RunSet, Status};
-use crate::store::write_text;
 
 /// Results in short.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -69,7 +64,7 @@ impl Summary {
         let mut wall: BTreeMap<(String, String), Vec<f64>> = BTreeMap::new();
         let at_end = |r: &&Record| r.step.is_none() && r.mode.is_none();
         for record in set.records.iter().filter(at_end) {
-            let name = run_name(record);
+            let name = record.run_name();
             let run = runs.entry(name.clone()).or_insert_with(|| RunNumbers {
                 case: record.case.clone(),
                 method: record.method.clone(),
@@ -113,10 +108,10 @@ impl Summary {
         }
     }
 
-    pub(super) fn load(path: &Path) -> Result<Summary, ReportError> {
+    pub(super) fn load(path: &Path) -> Result<Summary, RecordError> {
         let text = disk::read_text(path, disk::Kind::HISTORY)
-            .map_err(|source| ReportError::Io { path: path.into(), source })?;
-        let content = |reason| ReportError::Content { path: path.into(), reason };
+            .map_err(|source| RecordError::Io { path: path.into(), source })?;
+        let content = |reason| RecordError::Content { path: path.into(), reason };
         let read: Summary = toml::from_str(&text).map_err(|bad| content(bad.to_string()))?;
         let numbers = |run: &RunNumbers| {
             let all = run.errors.values().chain(run.seconds.values().flatten());
@@ -128,10 +123,17 @@ impl Summary {
         }
     }
 
-    pub(super) fn save(&self, path: &Path) -> Result<(), ReportError> {
+    pub(super) fn save(&self, path: &Path) -> Result<(), RecordError> {
         let text = toml::to_string(self)
-            .map_err(|e| ReportError::Content { path: path.into(), reason: e.to_string() })?;
+            .map_err(|e| RecordError::Content { path: path.into(), reason: e.to_string() })?;
         write_text(path, text)
+    }
+
+    /// Its errors by run and quantity.
+    pub(super) fn errors(&self) -> Numbers {
+        let listed = |(quantity, error): (&String, &f64)| (quantity.clone(), vec![*error]);
+        let of = |run: &RunNumbers| run.errors.iter().map(listed).collect();
+        self.runs.iter().map(|(name, run)| (name.clone(), of(run))).collect()
     }
 
     /// Its times as the records of a run set: what two results are compared by.

@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use records::{Pair, Paired, RecordError, difference};
 use serde::Serialize;
 
 use super::Summary;
@@ -137,12 +138,12 @@ impl Step {
         !self.worse.is_empty() || !self.better.is_empty() || !self.called.is_empty()
     }
 
-    fn between(before: &[Summary], after: &[Summary]) -> Step {
+    fn between(before: &[Summary], after: &[Summary]) -> Result<Step, RecordError> {
         let mut step = Step::default();
-        let (Some(old), Some(new)) = (before.last(), after.last()) else { return step };
+        let (Some(old), Some(new)) = (before.last(), after.last()) else { return Ok(step) };
         step.lost = old.runs.keys().filter(|run| !new.runs.contains_key(*run)).count();
         step.new = new.runs.keys().filter(|run| !old.runs.contains_key(*run)).count();
-        for change in errors(old, new) {
+        for change in errors(old, new)? {
             let (a, b) = (change.before, change.after);
             if (a - b).abs() > TOLERANCE * a.abs().max(b.abs()) && a.max(b) > ROUNDING {
                 if b > a { &mut step.worse } else { &mut step.better }.push(change);
@@ -154,26 +155,25 @@ impl Step {
             list.sort_by(|a, b| size(b).total_cmp(&size(a)));
         }
         let pairs: Vec<_> = before.iter().zip(after).map(|(a, b)| (a.times(), b.times())).collect();
-        if let Some(times) = Comparison::of(&pairs, TOLERANCE, true).times {
+        if let Some(times) = Comparison::of(&pairs, TOLERANCE, true)?.times {
             (step.times, step.called) = (times.whole, times.called);
         }
-        step
+        Ok(step)
     }
 }
 
 /// The errors that two results have in common.
-fn errors<'a>(old: &'a Summary, new: &'a Summary) -> impl Iterator<Item = ErrorStep> + 'a {
-    old.runs.iter().flat_map(|(name, run)| {
-        let other = new.runs.get(name);
-        run.errors.iter().filter_map(move |(quantity, &before)| {
-            let after = *other?.errors.get(quantity)?;
-            Some(ErrorStep { run: name.clone(), quantity: quantity.clone(), before, after })
-        })
-    })
+fn errors(old: &Summary, new: &Summary) -> Result<Vec<ErrorStep>, RecordError> {
+    let found = difference(&old.errors(), &new.errors())?.paired.into_iter();
+    let both = |Paired { run, quantity, pairs, .. }: Paired| {
+        let Pair { before: Some(before), after: Some(after) } = *pairs.first()? else { return None };
+        Some(ErrorStep { run, quantity, before, after })
+    };
+    Ok(found.filter_map(both).collect())
 }
 
 /// The trends of results in the order they were added.
-pub(super) fn trends(all: Vec<(u32, Summary)>) -> Vec<Trend> {
+pub(super) fn trends(all: Vec<(u32, Summary)>) -> Result<Vec<Trend>, RecordError> {
     let mut found: Vec<(String, String, Vec<Added>)> = Vec::new();
     for (number, summary) in all {
         let (source, machine) = (summary.source.clone(), machine(&summary));
@@ -199,7 +199,7 @@ pub(super) fn trends(all: Vec<(u32, Summary)>) -> Vec<Trend> {
     }
     found
         .into_iter()
-        .map(|(source, machine, commits)| Trend { source, machine, points: points(&commits) })
+        .map(|(source, machine, commits)| Ok(Trend { source, machine, points: points(&commits)? }))
         .collect()
 }
 
@@ -216,14 +216,17 @@ fn machine(summary: &Summary) -> String {
     format!("{}, {}, {} threads", machine.cpu, machine.instructions, machine.threads)
 }
 
-fn points(commits: &[Added]) -> Vec<Point> {
-    let point = |(at, added): (usize, &Added)| {
-        let (first, newest) = (&commits[0], added.results.last()?);
+fn points(commits: &[Added]) -> Result<Vec<Point>, RecordError> {
+    let mut points = Vec::new();
+    for (at, added) in commits.iter().enumerate() {
+        let first = &commits[0];
+        let (Some(oldest), Some(newest)) = (first.results.last(), added.results.last()) else { continue };
         let known: Option<Vec<bool>> = added.results.iter().map(|result| result.machine.quiet).collect();
         let seconds = newest.runs.keys().filter_map(|run| shortest(added, run)).sum();
         let both = newest.runs.keys().filter_map(|run| Some((shortest(first, run)?, shortest(added, run)?)));
         let (old, new) = both.fold((0.0, 0.0), |(old, new), (a, b)| (old + a, new + b));
-        Some(Point {
+        let before = at.checked_sub(1).map(|before| &commits[before].results);
+        points.push(Point {
             number: added.number,
             commit: added.commit.clone(),
             label: added.label.clone(),
@@ -233,11 +236,11 @@ fn points(commits: &[Added]) -> Vec<Point> {
             checks_failed: newest.checks_failed,
             seconds,
             seconds_ratio: (old > 0.0).then_some(new / old),
-            error_ratio: error_ratio(first.results.last()?, newest),
-            step: (at > 0).then(|| Step::between(&commits[at - 1].results, &added.results)),
-        })
-    };
-    commits.iter().enumerate().filter_map(point).collect()
+            error_ratio: error_ratio(oldest, newest)?,
+            step: before.map(|before| Step::between(before, &added.results)).transpose()?,
+        });
+    }
+    Ok(points)
 }
 
 /// Time of a run, s: the shortest of all results of a commit.
@@ -245,12 +248,13 @@ fn shortest(added: &Added, run: &str) -> Option<f64> {
     added.results.iter().filter_map(|result| result.total(run)).reduce(f64::min)
 }
 
-fn error_ratio(first: &Summary, now: &Summary) -> Option<f64> {
-    let logs: Vec<f64> = errors(first, now)
+fn error_ratio(first: &Summary, now: &Summary) -> Result<Option<f64>, RecordError> {
+    let logs: Vec<f64> = errors(first, now)?
+        .iter()
         .filter(|e| e.before > ROUNDING && e.after > ROUNDING)
         .map(|e| (e.after / e.before).ln())
         .collect();
-    (!logs.is_empty()).then(|| (logs.iter().sum::<f64>() / logs.len() as f64).exp())
+    Ok((!logs.is_empty()).then(|| (logs.iter().sum::<f64>() / logs.len() as f64).exp()))
 }
 
 #[cfg(test)]
@@ -259,7 +263,7 @@ mod tests {
 
     use super::*;
     use crate::commits::RunNumbers;
-    use crate::provenance::{Machine, Program};
+    use records::{Machine, Program};
 
     /// Results of so many runs, each of `seconds` scattered a little, with an error.
     fn results(commit: &str, count: usize, seconds: f64, error: f64) -> Summary {
@@ -291,7 +295,7 @@ mod tests {
             results("c", 12, 0.15, 1e-3),
             results("d", 12, 0.15, 2e-3),
         ];
-        let found = trends((1..).zip(all).collect());
+        let found = trends((1..).zip(all).collect()).unwrap();
         assert_eq!(found.len(), 1);
         let steps: Vec<&Step> = found[0].points.iter().filter_map(|point| point.step.as_ref()).collect();
         assert_eq!(steps.len(), 3);
@@ -310,18 +314,18 @@ mod tests {
         let mut busy = results("a", 12, 0.2, 1e-3);
         busy.machine.quiet = Some(false);
         let all = [results("a", 12, 0.1, 1e-3), busy, elsewhere];
-        let found = trends((1..).zip(all).collect());
+        let found = trends((1..).zip(all).collect()).unwrap();
         assert_eq!(found.len(), 2);
         let point = &found[0].points[0];
         assert_eq!((found[0].points.len(), point.results, point.quiet), (1, 2, Some(false)));
         assert!((point.seconds - 12.0 * 0.1).abs() < 0.05);
-        assert_eq!(trends(Vec::new()), []);
+        assert_eq!(trends(Vec::new()).unwrap(), []);
     }
 
     #[test]
     fn an_error_that_grows_from_nothing_is_worse_and_rounding_is_not() {
         let all = [1e-16, 4e-16, 1e-3].map(|error| results(&error.to_string(), 8, 0.1, error));
-        let found = trends((1..).zip(all).collect());
+        let found = trends((1..).zip(all).collect()).unwrap();
         let steps = found[0].points.iter().filter_map(|point| point.step.as_ref());
         assert_eq!(steps.map(|step| step.worse.len()).collect::<Vec<_>>(), [0, 8]);
     }
@@ -330,14 +334,15 @@ mod tests {
     fn changed_sources_are_never_the_same() {
         let mut changed = results("a", 8, 0.1, 1e-3);
         changed.program.dirty = true;
-        let found = trends((1..).zip([changed.clone(), changed]).collect());
+        let found = trends((1..).zip([changed.clone(), changed]).collect()).unwrap();
         let points: Vec<_> = found[0].points.iter().map(|point| (point.name(), point.results)).collect();
         assert_eq!(points, [("a+".to_string(), 1), ("a+".to_string(), 1)]);
     }
 
     #[test]
     fn runs_that_come_and_go_are_counted() {
-        let found = trends((1..).zip([results("a", 8, 0.1, 1.0), results("b", 10, 0.1, 1.0)]).collect());
+        let found =
+            trends((1..).zip([results("a", 8, 0.1, 1.0), results("b", 10, 0.1, 1.0)]).collect()).unwrap();
         let step = found[0].points[1].step.as_ref().unwrap();
         assert_eq!((step.lost, step.new), (0, 2));
         assert!((found[0].points[1].seconds_ratio.unwrap() - 1.0).abs() < 1e-9);

@@ -2,9 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::baseline::run_name;
-use crate::record::Record;
-use crate::run_set::RunSet;
+use records::{Record, RunSet};
 
 /// Removes a setting from a record.
 type Clear = fn(&mut Record);
@@ -55,9 +53,9 @@ pub fn across(pair: &mut (RunSet, RunSet), settings: &[String]) -> Result<(), St
     for set in [&mut pair.0, &mut pair.1] {
         let mut owners: BTreeMap<String, (String, String)> = BTreeMap::new();
         for record in &mut set.records {
-            let (own, name) = (std::mem::take(&mut record.run), run_name(record));
+            let (own, name) = (std::mem::take(&mut record.run), record.run_name());
             clears.iter().for_each(|clear| clear(record));
-            record.run = run_name(record);
+            record.run = record.run_name();
             let first = owners.entry(record.run.clone()).or_insert_with(|| (own.clone(), name.clone()));
             if first.0 != own {
                 return Err(format!(
@@ -74,6 +72,7 @@ pub fn across(pair: &mut (RunSet, RunSet), settings: &[String]) -> Result<(), St
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::blank::Blank as _;
     use crate::compare::Comparison;
 
     fn set(runs: &[(&str, &str, f64)]) -> RunSet {
@@ -87,11 +86,11 @@ mod tests {
     #[test]
     fn runs_that_differ_in_the_stated_setting_are_pairs() {
         let pair = || (set(&[("a", "standard", 1.0)]), set(&[("a", "nodal-mean", 2.0)]));
-        let plain = Comparison::of(&[pair()], 1e-6, false).numbers;
+        let plain = Comparison::of(&[pair()], 1e-6, false).unwrap().numbers;
         assert_eq!((plain.compared, plain.only_before.len(), plain.only_after.len()), (0, 1, 1));
         let mut stated = pair();
         across(&mut stated, &["dilation".into()]).unwrap();
-        let found = Comparison::of(&[stated], 1e-6, false).numbers;
+        let found = Comparison::of(&[stated], 1e-6, false).unwrap().numbers;
         assert_eq!((found.compared, found.changes.len()), (1, 1), "{found:?}");
         assert!(found.only_before.is_empty() && found.only_after.is_empty());
     }

@@ -12,9 +12,8 @@ pub use across::across;
 pub use numbers::{NumberChange, Numbers};
 pub use times::{Ratio, Scope, Times};
 
+use records::{RecordError, RunSet};
 use serde::Serialize;
-
-use crate::run_set::RunSet;
 
 /// What is different between results before and after.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -29,9 +28,17 @@ pub struct Comparison {
 impl Comparison {
     /// Of pairs of results, before and after; the first pair's numbers are compared, the times of all. A number has changed from the
     /// relative difference `tolerance` on.
-    pub fn of(pairs: &[(RunSet, RunSet)], tolerance: f64, with_times: bool) -> Comparison {
-        let numbers = pairs.first().map_or(Numbers::default(), |(a, b)| Numbers::of(a, b, tolerance));
-        Comparison { numbers, times: with_times.then(|| Times::of(pairs)) }
+    ///
+    /// # Errors
+    /// Numbers that can't be paired.
+    pub fn of(
+        pairs: &[(RunSet, RunSet)],
+        tolerance: f64,
+        with_times: bool,
+    ) -> Result<Comparison, RecordError> {
+        let numbers = pairs.first().map(|(a, b)| Numbers::of(a, b, tolerance)).transpose()?;
+        let times = with_times.then(|| Times::of(pairs));
+        Ok(Comparison { numbers: numbers.unwrap_or_default(), times })
     }
 
     /// Whether no number has changed, no run is missing, and no time is called.

@@ -1,12 +1,8 @@
 //! Numbers that do not depend on the moment, by a tolerance.
 
-use std::collections::BTreeMap;
-
 use catalogue::metric;
+use records::{Pair, Paired, RecordError, RunSet, difference, numbers};
 use serde::Serialize;
-
-use crate::baseline::Baseline;
-use crate::run_set::RunSet;
 
 /// How numbers compare.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
@@ -41,30 +37,18 @@ pub struct NumberChange {
 }
 
 impl Numbers {
-    pub(super) fn of(before: &RunSet, after: &RunSet, tolerance: f64) -> Numbers {
-        let [before, after] = [before, after].map(|set| Baseline::of(&set.records, ""));
-        let missing = |from: &Baseline, of: &Baseline| -> Vec<String> {
-            from.runs.keys().filter(|run| !of.runs.contains_key(*run)).cloned().collect()
-        };
-        let (only_before, only_after) = (missing(&before, &after), missing(&after, &before));
-        let mut found = Numbers { tolerance, only_before, only_after, ..Numbers::default() };
-        for (run, old) in &before.runs {
-            let Some(new) = after.runs.get(run) else { continue };
-            let scales = scales(old);
-            let mut quantities: Vec<&String> = old.keys().chain(new.keys()).collect();
-            quantities.sort();
-            quantities.dedup();
-            for quantity in quantities {
-                let of =
-                    |numbers: &BTreeMap<String, Vec<f64>>| numbers.get(quantity).cloned().unwrap_or_default();
-                let (old, new) = (of(old), of(new));
-                found.compared += old.len().max(new.len());
-                let scale = scales.get(unit(quantity)).copied().unwrap_or(0.0);
-                found.changes.extend(change(run, quantity, &old, &new, scale, tolerance));
-            }
-        }
-        found.changes.sort_by(|a, b| b.relative.total_cmp(&a.relative));
-        found
+    pub(super) fn of(before: &RunSet, after: &RunSet, tolerance: f64) -> Result<Numbers, RecordError> {
+        let found = difference(&numbers(&before.records), &numbers(&after.records))?;
+        let mut changes: Vec<NumberChange> =
+            found.paired.iter().filter_map(|paired| change(paired, tolerance)).collect();
+        changes.sort_by(|a, b| b.relative.total_cmp(&a.relative));
+        Ok(Numbers {
+            tolerance,
+            compared: found.paired.iter().map(|paired| paired.pairs.len()).sum(),
+            only_before: found.only_before,
+            only_after: found.only_after,
+            changes,
+        })
     }
 
     pub(super) fn is_same(&self) -> bool {
@@ -76,52 +60,29 @@ impl Numbers {
 const ROUNDING: f64 = 1e-9;
 
 /// The largest change among the steps of a quantity, if one is beyond the tolerance.
-fn change(
-    run: &str,
-    quantity: &str,
-    old: &[f64],
-    new: &[f64],
-    scale: f64,
-    tolerance: f64,
-) -> Option<NumberChange> {
-    let steps = (0..old.len().max(new.len())).map(|step| (old.get(step).copied(), new.get(step).copied()));
-    let relative = |(a, b): &(Option<f64>, Option<f64>)| match (a, b) {
-        (Some(a), Some(b)) if (a - b).abs() <= ROUNDING * scale => 0.0,
+fn change(paired: &Paired, tolerance: f64) -> Option<NumberChange> {
+    let relative = |pair: &Pair| match (pair.before, pair.after) {
+        (Some(a), Some(b)) if (a - b).abs() <= ROUNDING * paired.scale => 0.0,
         (Some(a), Some(b)) => (a - b).abs() / a.abs().max(b.abs()),
         _ => 1.0,
     };
-    let (before, after) = steps.max_by(|a, b| relative(a).total_cmp(&relative(b)))?;
-    let relative = relative(&(before, after));
-    let name = quantity.split(' ').next().unwrap_or(quantity);
+    let Pair { before, after } = *paired.pairs.iter().max_by(|a, b| relative(a).total_cmp(&relative(b)))?;
+    let relative = relative(&Pair { before, after });
+    let name = paired.quantity.split(' ').next().unwrap_or(&paired.quantity);
     let verdict = match (metric::find(name).is_some_and(|m| m.lower_is_better()), before, after) {
         (true, Some(a), Some(b)) if b > a => "worse",
         (true, Some(_), Some(_)) => "better",
         _ => "differs",
     };
-    let (run, quantity) = (run.into(), quantity.into());
+    let (run, quantity) = (paired.run.clone(), paired.quantity.clone());
     (relative > tolerance).then_some(NumberChange { run, quantity, before, after, relative, verdict })
-}
-
-/// The largest number of each unit; pure numbers are as they are, down to the rounding of 1.
-fn scales(numbers: &BTreeMap<String, Vec<f64>>) -> BTreeMap<&str, f64> {
-    let mut scales: BTreeMap<&str, f64> = BTreeMap::new();
-    for (quantity, values) in numbers {
-        let largest = values.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
-        let scale = scales.entry(unit(quantity)).or_default();
-        // An error of 1e-10 is exact, an error of 1e-5 is one.
-        *scale = if unit(quantity) == "1" { 1.0 } else { scale.max(largest) };
-    }
-    scales
-}
-
-fn unit(quantity: &str) -> &str {
-    quantity.rsplit_once('[').map_or("", |(_, unit)| unit.trim_end_matches(']'))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::record::Record;
+    use crate::blank::Blank as _;
+    use records::Record;
 
     fn set(numbers: &[(&str, &str, Option<u64>, f64)]) -> RunSet {
         let record = |&(method, quantity, step, value): &(&str, &str, Option<u64>, f64)| {
@@ -135,14 +96,14 @@ mod tests {
     fn a_change_beyond_the_tolerance_is_one_and_says_which_way() {
         let before = set(&[("tet4", "rms", None, 1.0), ("tet4", "max-z", None, 2.0)]);
         let after = set(&[("tet4", "rms", None, 1.02), ("tet4", "max-z", None, 2.001)]);
-        let found = |tolerance| Numbers::of(&before, &after, tolerance);
+        let found = |tolerance| Numbers::of(&before, &after, tolerance).unwrap();
         assert!(found(0.05).is_same());
         let one = found(0.01);
         assert_eq!((one.changes.len(), one.changes[0].verdict, one.compared), (1, "worse", 2));
         assert!((one.changes[0].relative - 0.02 / 1.02).abs() < 1e-12);
         let all: Vec<&str> = found(1e-6).changes.iter().map(|c| c.verdict).collect();
         assert_eq!(all, ["worse", "differs"]);
-        assert_eq!(Numbers::of(&after, &before, 0.01).changes[0].verdict, "better");
+        assert_eq!(Numbers::of(&after, &before, 0.01).unwrap().changes[0].verdict, "better");
     }
 
     #[test]
@@ -151,7 +112,7 @@ mod tests {
             set(&[("a", "rms", None, 1e-12), ("a", "max-z", None, 1.0), ("a", "closure", Some(1), 0.1)]);
         let after =
             set(&[("a", "rms", None, 3e-12), ("a", "max-z", None, 1.0), ("a", "closure", Some(1), 0.2)]);
-        let found = Numbers::of(&before, &after, 1e-6);
+        let found = Numbers::of(&before, &after, 1e-6).unwrap();
         assert_eq!(found.changes.len(), 1, "{found:?}");
         assert_eq!((found.changes[0].before, found.changes[0].after), (Some(0.1), Some(0.2)));
     }
@@ -159,7 +120,7 @@ mod tests {
     #[test]
     fn a_small_number_beside_a_large_one_changes_above_rounding() {
         let at = |small: f64| set(&[("a", "max-z", None, 1.0), ("a", "max-x", None, small)]);
-        let changes = |small: f64| Numbers::of(&at(1e-3), &at(small), 1e-6).changes.len();
+        let changes = |small: f64| Numbers::of(&at(1e-3), &at(small), 1e-6).unwrap().changes.len();
         assert_eq!((changes(1e-3 + 5e-10), changes(1e-3 + 2e-9), changes(1e-3 + 1e-7)), (0, 1, 1));
     }
 
@@ -167,7 +128,7 @@ mod tests {
     fn what_is_missing_is_named() {
         let before = set(&[("a", "rms", None, 1.0), ("a", "max-z", None, 1.0)]);
         let after = set(&[("a", "rms", None, 1.0), ("b", "rms", None, 1.0)]);
-        let found = Numbers::of(&before, &after, 1e-6);
+        let found = Numbers::of(&before, &after, 1e-6).unwrap();
         assert!(found.only_before.is_empty() && found.only_after.len() == 1 && !found.is_same());
         assert_eq!((found.changes[0].after, found.changes[0].verdict), (None, "differs"));
     }

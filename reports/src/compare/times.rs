@@ -8,11 +8,10 @@
 
 use std::collections::{BTreeMap, HashMap};
 
+use records::{Record, RunSet};
 use serde::Serialize;
 
 use super::statistics::{scale, student, trimmed_mean};
-use crate::record::Record;
-use crate::run_set::RunSet;
 
 /// Smallest time compared, s; shorter times are dominated by the clock.
 const SHORTEST: f64 = 20e-6;

@@ -1,7 +1,8 @@
 //! Axes: mapping from values to paper, ticks and frame.
 
+use records::text::{power, tick};
+
 use super::canvas::{Anchor, BLACK_INK, Canvas, GREY, PALE, text_width};
-use crate::text::{power, tick};
 
 /// Size of ordinary text, points.
 pub(crate) const TEXT: f64 = 9.0;

@@ -1,16 +1,17 @@
 //! RMS errors by direction: one row per run, and one scale for all columns.
 
+use records::Family;
+use records::cell::csv_line;
+use records::store::slug;
+use records::text::significant;
+
 use super::axes::TEXT;
 use super::canvas::{Anchor, BLACK_INK, Canvas, Colour, GREY, text_width};
 use super::grid::WIDTH;
 use super::{Data, Figure, representative};
 use crate::look::Look;
 use crate::published::read_as;
-use crate::record::Family;
 use crate::select::{Run, competing, kernels, labels, series};
-use crate::store::slug;
-use crate::table::csv_line;
-use crate::text::significant;
 
 const ROW: f64 = 16.0;
 const TOP: f64 = 42.0;

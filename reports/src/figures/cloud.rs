@@ -1,11 +1,12 @@
 //! Conditioning and neighbours of the meshfree methods as a function of the support scale.
 
+use records::Family;
+
 use super::axes::Axis;
 use super::grid::{Content, multiples};
 use super::style::{find, styles};
 use super::{Data, Figure, PAGE, continued, paged};
 use crate::plot::{Curve, Plot, Scale};
-use crate::record::Family;
 use crate::select::{Run, by_case};
 
 /// A kernel or case as `(label, points)`, each point as `(support scale, value, low, high)`.
@@ -189,8 +190,9 @@ fn ticks(mut values: Vec<f64>) -> Vec<(f64, String)> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::record::Record;
+    use crate::blank::Blank as _;
     use crate::select::runs;
+    use records::Record;
 
     #[test]
     fn coupled_clouds_are_no_points_of_a_line_of_plain_ones() {

@@ -1,5 +1,7 @@
 //! Run time against error, the main result of a benchmark.
 
+use records::text::list;
+
 use super::axes::{Axis, Panel, TEXT};
 use super::canvas::{Canvas, GREY};
 use super::grid::{Content, multiples};
@@ -11,7 +13,6 @@ use crate::plot::{self, Curve, Plot, Scale};
 use crate::quantity::label;
 use crate::seconds::Seconds;
 use crate::select::Run;
-use crate::text::list;
 
 /// Error of the dashed line.
 const PERCENT: f64 = 0.01;
@@ -255,8 +256,8 @@ mod tests {
     use super::*;
     use crate::fronts::QUESTIONS;
     use crate::fronts::tests::run;
-    use crate::record::Family;
     use crate::select::runs;
+    use records::Family;
 
     #[test]
     fn a_line_far_from_all_runs_is_not_drawn_but_said() {

@@ -1,6 +1,8 @@
 //! Histories of a closing tool (force against travel and time, and energies over time), and frequency errors
 //! by mode.
 
+use records::Family;
+
 use super::axes::Axis;
 use super::canvas::{Canvas, Colour};
 use super::grid::{Content, multiples};
@@ -8,7 +10,6 @@ use super::style::{find, styles};
 use super::{Data, Figure, PAGE, continued, paged};
 use crate::history::{band, between, curve, reference};
 use crate::plot::{self, Curve, Plot, Scale};
-use crate::record::Family;
 use crate::select::{Run, by_case, labels, series};
 
 /// Grey of an uncertainty band, light enough for every line on it.

@@ -1,5 +1,7 @@
 //! Error against Poisson's ratio at one size, which shows locking.
 
+use records::Family;
+
 use super::axes::Axis;
 use super::canvas::GREY;
 
@@ -9,7 +11,6 @@ use super::{Data, Figure, PAGE, continued, paged};
 use crate::fronts::FLOOR;
 use crate::plot::{Curve, Plot, Scale};
 use crate::quantity::label;
-use crate::record::Family;
 use crate::select::{Run, competing, labels};
 
 /// A method as `(label, family, runs of one size by ascending Poisson's ratio)`.

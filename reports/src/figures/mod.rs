@@ -26,11 +26,12 @@ pub(crate) use canvas::{Canvas, png_and_pdf};
 pub(crate) use locking::sweeps;
 pub(crate) use over_commits::{TITLE as OVER_COMMITS, over_commits};
 
+use records::RunSet;
+use records::text::ratio;
+
 use crate::commits::Trend;
 use crate::plot::{Plot, csv};
-use crate::run_set::RunSet;
 use crate::select::{Run, competing, groups, solved};
-use crate::text::ratio;
 
 /// Largest number of panels on a figure.
 const PAGE: usize = 6;

@@ -1,13 +1,14 @@
 //! Errors and CPU seconds of a study over commits.
 
+use records::Family;
+use records::cell::csv_line;
+
 use super::axes::Axis;
 use super::canvas::Canvas;
 use super::grid::{Content, multiples};
 use super::style::{Style, find, styles};
 use super::{Data, Figure};
 use crate::commits::{Point, Trend};
-use crate::record::Family;
-use crate::table::csv_line;
 
 /// Title of the figure.
 pub(crate) const TITLE: &str = "Errors and processor seconds over commits";

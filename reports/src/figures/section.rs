@@ -1,6 +1,10 @@
 //! A deformed section between the tools, with every cell in the colour of its own pressure. Nothing is
 //! smoothed, so that checkerboards of a locking or unstable method remain visible.
 
+use records::store::slug;
+use records::text::significant;
+use records::{Section, SurfaceField};
+
 use super::axes::TEXT;
 use super::canvas::{Anchor, Canvas, GREY};
 use super::colour::Scale;
@@ -8,10 +12,7 @@ use super::grid::{WIDTH, wrapped};
 use super::silhouette;
 use super::surface::{Chosen, GRASPED, Pose, carried, pictured, titled};
 use super::{Data, Figure};
-use crate::run_set::{Section, SurfaceField};
 use crate::select::Run;
-use crate::store::slug;
-use crate::text::significant;
 
 /// Fraction of a section's cells whose pressures lie within the colour scale, for the median method.
 const SHOWN: f64 = 0.98;
@@ -113,8 +114,7 @@ fn figure(case: &str, chosen: &[Chosen], runs: &[Run]) -> Figure {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::record::Family;
-    use crate::run_set::SectionCell;
+    use records::{Family, SectionCell};
 
     #[test]
     fn one_wild_method_does_not_take_the_colours_of_the_others() {

@@ -1,7 +1,8 @@
 //! Outlines of the tools in figures.
 
+use records::ToolHull;
+
 use super::canvas::{Canvas, Colour};
-use crate::run_set::ToolHull;
 
 const METAL: Colour = [0xdd, 0xdd, 0xdd];
 const EDGE: Colour = [0x45, 0x45, 0x45];

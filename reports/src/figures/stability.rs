@@ -1,14 +1,15 @@
 //! Stability maps: a row for each method, a column for each value of an axis, and a colour for each verdict.
 
+use records::cell::csv_line;
+use records::store::slug;
+use records::text::{short, significant};
+use records::{Axis, AxisVerdict as Verdict, Trial};
+
 use super::axes::TEXT;
 use super::canvas::{Anchor, BLACK_INK, Canvas, Colour, GREY, text_width};
 use super::grid::{WIDTH, wrapped};
 use super::{Data, Figure};
-use crate::axis::{Axis, Trial, Verdict};
 use crate::quantity::label;
-use crate::store::slug;
-use crate::table::csv_line;
-use crate::text::{short, significant};
 
 const ROW: f64 = 15.0;
 const TOP: f64 = 34.0;

@@ -1,9 +1,10 @@
 //! Appearance of a method in figures: marker, line and legend.
 
+use records::Family;
+
 use super::axes::TEXT;
 use super::canvas::{Anchor, BLACK_INK, Canvas, text_width};
 use crate::look::{Look, distinct};
-use crate::record::Family;
 
 /// Style of a label.
 #[derive(Clone, Debug, PartialEq)]

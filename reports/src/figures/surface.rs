@@ -1,16 +1,16 @@
 //! Bodies seen from outside, deformed and coloured by displacement magnitude.
 
+use records::store::slug;
+use records::text::significant;
+use records::{Family, SurfaceField};
+
 use super::axes::TEXT;
 use super::canvas::{Anchor, BLACK_INK, Canvas, GREY, text_width};
 use super::colour::Scale;
 use super::grid::{WIDTH, wrapped};
 use super::silhouette;
 use super::{Data, Figure, Pictured};
-use crate::record::Family;
-use crate::run_set::SurfaceField;
 use crate::select::Run;
-use crate::store::slug;
-use crate::text::significant;
 
 /// Largest number of bodies in a figure and in a row.
 const SHOWN: usize = 4;

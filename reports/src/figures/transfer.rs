@@ -2,17 +2,18 @@
 
 use std::collections::BTreeSet;
 
+use records::Family;
+use records::cell::csv_line;
+use records::store::slug;
+use records::text::tick;
+
 use super::axes::{Axis, Panel, TEXT};
 use super::canvas::{Anchor, BLACK_INK, Canvas, GREY, PALE, text_width};
 use super::grid::WIDTH;
 use super::style::{legend, legend_height, styles};
 use super::{Data, Figure};
 use crate::findings::source;
-use crate::record::Family;
 use crate::select::{Run, by_case};
-use crate::store::slug;
-use crate::table::csv_line;
-use crate::text::tick;
 
 /// Height of a row with several markers.
 const LINE: f64 = 20.0;

@@ -2,12 +2,13 @@
 
 use std::collections::BTreeMap;
 
+use records::Purpose;
+use records::text::{list, percent, plural, significant};
+
 use super::cases;
 use crate::figures::sweeps;
 use crate::order;
-use crate::record::Purpose;
 use crate::select::{Run, by_case, competing, labels, series};
-use crate::text::{list, percent, plural, significant};
 
 /// Ratio of the errors of the least and the most compressible material above which a method locks.
 const LOCKS: f64 = 2.0;

@@ -3,12 +3,13 @@
 //!
 //! The claim concerns contact with jaws, so cases without contact do not test it.
 
+use records::Family;
+use records::text::{list, percent, significant};
+
 use crate::figures::chosen;
 use crate::fronts::{Clock, QUESTIONS, judged};
 use crate::published::{Publication, tested};
-use crate::record::Family;
 use crate::select::Run;
-use crate::text::{list, percent, significant};
 
 /// A run's `(seconds, relative error)`.
 type Point = (f64, f64);
@@ -125,8 +126,8 @@ mod tests {
     use super::{Matched, claim, seconds};
     use crate::fronts::tests::{record, run};
     use crate::published::tested;
-    use crate::record::{Family, Record};
     use crate::select::runs;
+    use records::{Family, Record};
 
     #[test]
     fn the_published_costs_are_half_a_percent() {

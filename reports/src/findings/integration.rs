@@ -1,8 +1,9 @@
 //! Findings on clouds whose integration error exceeds their discretisation error.
 
+use records::text::{list, ratio, significant};
+
 use crate::select::{Run, groups};
 use crate::tables::{ErrorParts, error_parts};
-use crate::text::{list, ratio, significant};
 
 /// One sentence for every case whose clouds were also solved with a fine rule.
 pub(super) fn integration(runs: &[Run]) -> Vec<String> {

@@ -12,8 +12,9 @@ mod vibration;
 pub(crate) use claim::Matched;
 pub(crate) use transfer::source;
 
+use records::RunSet;
+
 use crate::clouds::Clouds;
-use crate::run_set::RunSet;
 use crate::select::{Run, competing, groups, solved};
 
 /// Findings under one heading.
@@ -48,7 +49,7 @@ fn cases<'a, 'r>(runs: &'a [Run<'r>]) -> Vec<(String, &'a [Run<'r>])> {
         for group in &by_ratio {
             let is = group[0].is;
             let name = if by_ratio.len() > 1 {
-                format!("{} at ν = {}", is.case, crate::text::ratio(is.poisson))
+                format!("{} at ν = {}", is.case, records::text::ratio(is.poisson))
             } else {
                 is.case.clone()
             };

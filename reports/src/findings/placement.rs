@@ -1,8 +1,9 @@
 //! Findings on the sensitivity of results to node placement.
 
+use records::Family;
+use records::text::significant;
+
 use crate::clouds::{Clouds, Spread};
-use crate::record::Family;
-use crate::text::significant;
 
 /// Candidate errors, of which a method's first is reported, each with its words, unit and scale factor.
 const ERRORS: [(&str, &str, &str, f64); 2] =

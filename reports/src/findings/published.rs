@@ -2,11 +2,12 @@
 
 use std::collections::BTreeMap;
 
+use records::Family;
+use records::text::{duration, percent, significant};
+
 use crate::published::read_as;
-use crate::record::Family;
 use crate::select::Run;
 use crate::tables::{PublishedPair as Pair, PublishedSplit as Split, published_pairs, published_splits};
-use crate::text::{duration, percent, significant};
 
 /// Sentences on speed-ups and RMS differences compared with the publication.
 pub(super) fn published(runs: &[Run]) -> Vec<String> {

@@ -1,8 +1,7 @@
 //! Findings on the limits of methods along the axes of a study.
 
-use crate::axis::{Axis, Verdict};
-use crate::run_set::RunSet;
-use crate::text::{list, short};
+use records::text::{list, short};
+use records::{Axis, AxisVerdict as Verdict, RunSet};
 
 /// One sentence per axis: the methods that hold over the whole axis, those that fail, and those wrong without
 /// a warning.
@@ -49,7 +48,7 @@ fn breaks(axis: &Axis, method: &str) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::axis::{Ended, Trial};
+    use records::{Ended, Trial};
 
     #[test]
     fn a_sentence_says_what_holds_and_what_breaks() {

@@ -1,8 +1,9 @@
 //! Findings on the error added by each transfer scheme.
 
-use crate::record::Family;
+use records::Family;
+use records::text::significant;
+
 use crate::select::{Run, by_case};
-use crate::text::significant;
 
 /// Sentences on the best, worst and published transfer scheme for every transferred field.
 pub(super) fn transfer(runs: &[Run]) -> Vec<String> {

@@ -1,9 +1,10 @@
 //! Findings on the effect of the mass matrix on frequencies.
 
+use records::Family;
+use records::text::{list, significant};
+
 use super::cases;
-use crate::record::Family;
 use crate::select::{Run, labels, series};
-use crate::text::{list, significant};
 
 /// Sentences for every case with modes: the error of the first frequency by family and mass, and the methods
 /// with spurious modes.

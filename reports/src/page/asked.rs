@@ -1,12 +1,12 @@
 //! View of a question put to a case, in columns.
 
+use records::Reference;
 use serde::Serialize;
 
 use super::methods::Methods;
 use crate::asks::{Ask, Line, Rank, Timed};
 use crate::fronts::Clock;
 use crate::quantity::label;
-use crate::reference::Reference;
 
 #[derive(Serialize)]
 pub(super) struct AskView {

@@ -1,10 +1,9 @@
 //! Bodies in three dimensions: one element of the page for each case, parsed on demand.
 
+use records::{Body, BodyState, Faces, SurfaceField};
 use serde::Serialize;
 
-use crate::body::{Body, BodyState, Faces};
 use crate::error::ReportError;
-use crate::run_set::SurfaceField;
 use crate::select::Run;
 
 /// Script that draws the bodies, evaluated on first use.
@@ -183,7 +182,7 @@ fn fit(bodies: &mut Vec<BodyView>, room: usize) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::body::{Inside, InsideState, pack};
+    use records::{Inside, InsideState, pack};
 
     fn body_view(case: &'static str, method: &'static str, body: Body) -> BodyView<'static> {
         BodyView {

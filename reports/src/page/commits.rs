@@ -1,10 +1,10 @@
 //! View of a study over commits.
 
+use records::Family;
 use serde::Serialize;
 
 use super::methods::Methods;
 use crate::commits::{Point, Step, Trend};
-use crate::record::Family;
 
 /// Largest number of changes of a kind that are named; the others are counted.
 const NAMED: usize = 5;

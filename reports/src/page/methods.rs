@@ -2,10 +2,10 @@
 
 use std::collections::{BTreeMap, HashMap};
 
+use records::Family;
 use serde::Serialize;
 
 use crate::look::{Look, MARKERS, distinct};
-use crate::record::Family;
 use crate::select::{Run, by_material, labels};
 
 /// Appearance of a label.

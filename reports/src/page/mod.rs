@@ -9,6 +9,7 @@ mod tabled;
 
 use std::collections::BTreeMap;
 
+use records::{Machine, Program, Purpose, RunSet, SceneHash, Status};
 use serde::Serialize;
 
 use crate::asks::asks;
@@ -19,9 +20,6 @@ use crate::figures::{Data, Figure};
 use crate::findings;
 use crate::fronts::{DEADLINES, FLOOR, WANTED};
 use crate::plot::{Plot, Scale};
-use crate::provenance::{Machine, Program, SceneHash};
-use crate::record::Purpose;
-use crate::run_set::{RunSet, Status};
 use crate::select::{Run, solved};
 use crate::table::Table;
 

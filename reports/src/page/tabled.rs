@@ -1,11 +1,11 @@
 //! Views of tables and stability maps, in columns.
 
+use records::text::short;
+use records::{Axis, Trial};
 use serde::Serialize;
 
-use crate::axis::{Axis, Trial};
 use crate::quantity::label;
 use crate::table::{Column, Table};
-use crate::text::short;
 
 #[derive(Serialize)]
 pub(super) struct TableView<'a> {

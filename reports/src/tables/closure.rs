@@ -1,7 +1,8 @@
 //! Tool force against travel, step by step, compared with the reference and its uncertainty.
 
+use records::Family;
+
 use crate::history::{band, between, curve, reference};
-use crate::record::Family;
 use crate::select::{Run, by_material, labels, series};
 use crate::table::Column::{Number, Words};
 use crate::table::{Cell, Table};

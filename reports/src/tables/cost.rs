@@ -1,11 +1,12 @@
 //! Growth of times and memory with the number of nodes.
 
+use records::text::ratio;
+
 use super::orders::labelled;
 use crate::order::{Order, observed};
 use crate::select::{Run, Series};
 use crate::table::Column::{Number, Words};
 use crate::table::{Cell, Table};
-use crate::text::ratio;
 
 /// Phases with their own columns.
 const PHASES: [&str; 4] = ["prepare", "assemble", "factor", "solve"];
@@ -81,8 +82,9 @@ pub(super) fn cost(runs: &[Run]) -> Table {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::record::{Family, Record};
+    use crate::blank::Blank as _;
     use crate::select::{runs, series};
+    use records::{Family, Record};
 
     fn exponent(times: &[(u64, f64)]) -> Option<f64> {
         let record = |&(nodes, value): &(u64, f64)| {

@@ -1,11 +1,12 @@
 //! Components of the errors of clouds: reference, discretisation, integration, transfer.
 
+use records::Family;
+use records::text::ratio;
+
 use super::{labelled, millimetres};
-use crate::record::Family;
 use crate::select::Run;
 use crate::table::Column::{Number, Words};
 use crate::table::{Cell, Table};
-use crate::text::ratio;
 
 /// Components of the error of a cloud, RMS in m. They do not add up, because the underlying fields are
 /// correlated.
@@ -109,8 +110,9 @@ pub(super) fn error_split(runs: &[Run]) -> Table {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::record::Record;
+    use crate::blank::Blank as _;
     use crate::select::runs;
+    use records::Record;
 
     fn record(who: (&str, Family, &str, Option<&str>), nodes: u64, quantity: &str, value: f64) -> Record {
         let (method, family, variant, from) = who;

@@ -1,10 +1,11 @@
 //! Tables of errors and largest displacements of every run.
 
+use records::text::ratio;
+
 use super::{labelled, millimetres};
 use crate::select::{Run, solved};
 use crate::table::Column::{Number, Words};
 use crate::table::{Cell, Table};
-use crate::text::ratio;
 
 /// Table of relative L2, energy and pressure errors.
 pub(super) fn relative(runs: &[Run]) -> Table {
@@ -102,8 +103,8 @@ fn rows(
 #[cfg(test)]
 mod tests {
     use crate::fronts::tests::run;
-    use crate::record::Family;
     use crate::select::runs;
+    use records::Family;
 
     #[test]
     fn the_reference_has_its_name_in_place_of_an_error() {

@@ -25,9 +25,10 @@ pub(crate) use published::{
     Pair as PublishedPair, Split as PublishedSplit, pairs as published_pairs, splits as published_splits,
 };
 
+use records::RunSet;
+
 use crate::clouds::Clouds;
 use crate::commits::Trend;
-use crate::run_set::RunSet;
 use crate::select::{Run, by_material, labels};
 use crate::table::Table;
 

@@ -54,9 +54,10 @@ pub(super) fn modes(runs: &[Run]) -> Table {
 #[cfg(test)]
 mod tests {
     use super::modes;
+    use crate::blank::Blank as _;
     use crate::fronts::tests::record;
-    use crate::record::Family;
     use crate::select::runs;
+    use records::Family;
 
     #[test]
     fn a_row_for_each_mass() {

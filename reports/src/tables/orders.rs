@@ -1,10 +1,11 @@
 //! Observed orders of convergence and grid convergence indices.
 
+use records::text::ratio;
+
 use crate::order;
 use crate::select::{Run, Series, by_material, labels, series, solved};
 use crate::table::Column::{Number, Words};
 use crate::table::{Cell, Table};
-use crate::text::ratio;
 
 const ERRORS: [&str; 5] = ["l2", "energy", "pressure", "rms", "max-error"];
 

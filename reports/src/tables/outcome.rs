@@ -2,7 +2,8 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::run_set::RunSet;
+use records::RunSet;
+
 use crate::table::Column::{Number, Words};
 use crate::table::{Cell, Table};
 
@@ -172,7 +173,7 @@ fn pattern(why: &str) -> (String, Option<u64>) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::run_set::Failure;
+    use records::Failure;
 
     #[test]
     fn a_value_shows_the_digits_of_its_bound() {
@@ -198,7 +199,7 @@ mod tests {
 
     #[test]
     fn reasons_that_differ_in_a_count_are_one() {
-        let entry = |why: &str| crate::run_set::PlanEntry {
+        let entry = |why: &str| records::PlanEntry {
             case: "a".into(),
             method: "b".into(),
             stage: "supports".into(),

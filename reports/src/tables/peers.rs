@@ -1,12 +1,13 @@
 //! Times and errors of external solvers relative to this program's elements on the same mesh.
 
+use records::Family;
+use records::text::ratio;
+
 use super::millimetres as milliseconds;
 use crate::fronts::QUESTIONS;
-use crate::record::Family;
 use crate::select::{Run, by_material};
 use crate::table::Column::{Number, Words};
 use crate::table::{Cell, Table};
-use crate::text::ratio;
 
 /// Prefix of the phases that a solver reports itself.
 const OWN: &str = "own-";
@@ -95,8 +96,8 @@ fn own_phases(run: &Run) -> Option<f64> {
 mod tests {
     use super::*;
     use crate::fronts::tests::run;
-    use crate::record::Record;
     use crate::select::runs;
+    use records::Record;
 
     fn with_cpu(mut records: Vec<Record>, seconds: f64) -> Vec<Record> {
         let mut cpu = records[0].clone();

@@ -1,8 +1,9 @@
 //! Results on clouds with the same number of nodes, placed by different seeds.
 
+use records::Family;
+
 use crate::clouds::{Clouds, Spread};
 use crate::quantity::Shown;
-use crate::record::Family;
 use crate::select::groups;
 use crate::table::Column::{Number, Words};
 use crate::table::{Cell, Table};

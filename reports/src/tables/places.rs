@@ -1,7 +1,8 @@
 //! Results other than errors: support forces, mean displacements of faces, and frequencies.
 
+use records::Purpose;
+
 use crate::history::curve;
-use crate::record::Purpose;
 use crate::select::{Run, Series, by_material, labels, series};
 use crate::table::Column::{Number, Words};
 use crate::table::{Cell, Table};
@@ -106,8 +107,8 @@ pub(super) fn frequencies(runs: &[Run]) -> Table {
 mod tests {
     use super::*;
     use crate::fronts::tests::record;
-    use crate::record::Family;
     use crate::select::runs;
+    use records::Family;
 
     #[test]
     fn places_are_numbered_and_the_finest_run_stands_for_its_method() {
@@ -130,7 +131,7 @@ mod tests {
         assert_eq!(rows(means(&runs(&records))), ["block tet4 800 1 1.000 0 -2.000"]);
         let modes: Vec<_> = [("mode", 1.0), ("frequency", 12.5), ("omega-ratio", 1.01)]
             .into_iter()
-            .map(|(quantity, value)| crate::record::Record { mode: Some(1), ..of(100, quantity, value) })
+            .map(|(quantity, value)| records::Record { mode: Some(1), ..of(100, quantity, value) })
             .collect();
         assert_eq!(rows(frequencies(&runs(&modes))), ["block tet4 100 1 12.50 1.010"]);
         assert!(supports(&runs(&modes)).is_empty());

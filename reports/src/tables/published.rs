@@ -1,8 +1,9 @@
 //! Tables of computed numbers next to the published ones.
 
+use records::Family;
+
 use super::millimetres;
 use crate::published::{Publication, Published, read_as};
-use crate::record::Family;
 use crate::select::{Run, by_case};
 use crate::table::Column::{Number, Words};
 use crate::table::{Cell, Table};
@@ -236,8 +237,9 @@ pub(super) fn rms_parts(runs: &[Run]) -> Table {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::record::{Purpose, Record};
+    use crate::blank::Blank as _;
     use crate::select::runs;
+    use records::{Purpose, Record};
 
     fn record(
         case: &str,

@@ -1,11 +1,12 @@
 //! Solves in the loop of a simulator after one preparation, and whether they meet visual and haptic rates.
 
+use records::text::ratio;
+
 use super::{labelled, millimetres as milliseconds};
 use crate::fronts::{DEADLINES, Frame, RESOLUTION};
 use crate::select::{Run, solved};
 use crate::table::Column::{Number, Words};
 use crate::table::{Cell, Table};
-use crate::text::ratio;
 
 /// Table of every run with repeated solves, with a row for each kind of result of its frames.
 pub(super) fn repeated(runs: &[Run]) -> Table {
@@ -79,8 +80,8 @@ fn resolved<'a>(seconds: Option<f64>) -> Cell<'a> {
 mod tests {
     use super::repeated;
     use crate::fronts::tests::record;
-    use crate::record::Family;
     use crate::select::runs;
+    use records::Family;
 
     #[test]
     fn a_rate_holds_where_p99_is_within_its_period() {

@@ -2,8 +2,8 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::record::{Family, Record};
-use crate::run_set::RunSet;
+use records::{Family, Record, RunSet};
+
 use crate::table::Column::Words;
 use crate::table::{Cell, Table};
 
@@ -83,7 +83,7 @@ fn name(record: &Record) -> &str {
 mod tests {
     use super::*;
     use crate::fronts::tests::run;
-    use crate::run_set::Failure;
+    use records::Failure;
 
     #[test]
     fn every_end_is_counted_once_and_cases_of_our_own_are_left_out() {

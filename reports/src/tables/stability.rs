@@ -1,11 +1,11 @@
 //! Limits of methods along the axes of a study.
 
-use crate::axis::{Axis, Verdict};
+use records::text::short;
+use records::{Axis, AxisVerdict as Verdict, RunSet};
+
 use crate::quantity::label;
-use crate::run_set::RunSet;
 use crate::table::Column::{Number, Words};
 use crate::table::{Cell, Table};
-use crate::text::short;
 
 /// Table with a row for each method of each axis.
 pub(super) fn stability(set: &RunSet) -> Table {

@@ -1,11 +1,12 @@
 //! Cost of every phase.
 
+use records::Machine;
+use records::text::ratio;
+
 use super::{labelled, millimetres as milliseconds};
-use crate::provenance::Machine;
 use crate::select::{Run, solved};
 use crate::table::Column::{Number, Spread, Words};
 use crate::table::{Cell, Table};
-use crate::text::ratio;
 
 const PHASES: [&str; 6] = ["prepare", "assemble", "factor", "solve", "transfer", "total"];
 

@@ -1,7 +1,8 @@
 //! Comparison of transfer schemes.
 
+use records::Family;
+
 use super::millimetres;
-use crate::record::Family;
 use crate::select::Run;
 use crate::table::Column::{Number, Words};
 use crate::table::{Cell, Table};

@@ -1,6 +1,6 @@
 //! Artificial surfaces of a kidney, at rest and between jaws.
 
-use reports::{Family, Section, SectionCell, SurfaceField, ToolHull};
+use records::{Family, Section, SectionCell, SurfaceField, ToolHull};
 
 /// A ball mapped to a bean, compressed in the middle of its length.
 pub fn bean((method, family): (&str, Family), title: &str, n: u32, amplitude: f64) -> SurfaceField {

@@ -4,7 +4,7 @@
 mod bean;
 
 use bean::{bean, grasped};
-use reports::{
+use records::{
     Check, Failure, Family, Machine, PlanEntry, Program, Provenance, Purpose, Record, RunSet, SceneHash,
     Status,
 };
@@ -351,7 +351,7 @@ fn provenance() -> Provenance {
     Provenance {
         source: "study.toml".into(),
         set: Vec::new(),
-        format: reports::FORMAT,
+        format: records::FORMAT,
         program: Program {
             version: "0.1.0".into(),
             commit: "0123456789ab".into(),

@@ -1,6 +1,6 @@
 //! GitHub workflow commands: an error at the line of the failed method or check.
 
-use reports::Status;
+use records::Status;
 
 use crate::cli::text;
 use crate::study::RunSummary;
@@ -38,7 +38,7 @@ fn property(text: &str) -> String {
 
 #[cfg(test)]
 mod tests {
-    use reports::Check;
+    use records::Check;
 
     use super::*;
 

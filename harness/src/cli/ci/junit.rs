@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use reports::{Check, Status};
+use records::{Check, Status};
 
 use crate::cli::text;
 use crate::study::RunSummary;

@@ -10,7 +10,8 @@ mod usual;
 use std::io::IsTerminal;
 
 use cases::scene::Scene;
-use reports::{Reference, Seconds};
+use records::Reference;
+use reports::Seconds;
 use serde::Serialize;
 
 use crate::cli::args::Format;

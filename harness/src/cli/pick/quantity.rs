@@ -2,7 +2,7 @@
 
 use catalogue::metric::{self, Kind, METRICS, Metric};
 use catalogue::{Dimension, nearest};
-use reports::Reference;
+use records::Reference;
 
 use crate::outcome::Outcome;
 

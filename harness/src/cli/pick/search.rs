@@ -2,7 +2,8 @@
 //! more expensive than another accurate run.
 
 use cases::scene::{Method, Scene};
-use reports::{Machine, Reference, RunSet, Seconds, Took};
+use records::{Machine, Reference, RunSet};
+use reports::{Seconds, Took};
 use serde::Serialize;
 
 use super::ladder::Ladder;

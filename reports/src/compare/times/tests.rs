@@ -1,4 +1,5 @@
 //! Times made up with the noise of a busy machine: what is called is called rightly.
+use crate::blank::Blank as _;
 
 use super::*;
 

@@ -92,7 +92,7 @@ const CLASSES: [f64; 2] = [0.01, 0.05];
 impl Axis {
     /// Names of the classes of a map: the classes of errors that are not wrong, the best first, followed by
     /// the kinds of wrong results.
-    pub(crate) fn classes(&self) -> Vec<String> {
+    pub fn classes(&self) -> Vec<String> {
         let ends = self.ends();
         let per_cent = |e: f64| significant(100.0 * e, 1 + usize::from(e >= 0.1));
         let mut out = vec![format!("below {} %", per_cent(ends[0]))];
@@ -102,7 +102,7 @@ impl Axis {
     }
 
     /// Class of a trial, as an index into [`classes`](Self::classes).
-    pub(crate) fn class(&self, trial: &Trial) -> usize {
+    pub fn class(&self, trial: &Trial) -> usize {
         let ends = self.ends();
         match self.verdict(trial) {
             Verdict::Holds | Verdict::Bends => {

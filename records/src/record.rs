@@ -39,7 +39,7 @@ use std::cmp::Ordering;
 
 use serde::{Deserialize, Serialize};
 
-use crate::error::ReportError;
+use crate::error::RecordError;
 
 /// Kind of method that produced a number.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
@@ -60,6 +60,20 @@ pub enum Family {
     Reference,
 }
 
+impl Family {
+    /// The word in files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Family::Fem => "fem",
+            Family::Efg => "efg",
+            Family::OverMesh => "over-mesh",
+            Family::External => "external",
+            Family::Interp => "interp",
+            Family::Reference => "reference",
+        }
+    }
+}
+
 /// Purpose of a case.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
@@ -73,6 +87,18 @@ pub enum Purpose {
     Rough,
     /// A reproduction of a published case, compared with its numbers, without a theoretical order.
     Published,
+}
+
+impl Purpose {
+    /// The word in files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Purpose::Patch => "patch",
+            Purpose::Smooth => "smooth",
+            Purpose::Rough => "rough",
+            Purpose::Published => "published",
+        }
+    }
 }
 
 /// One number of one run. Settings that a method does not have are `None`.
@@ -186,17 +212,17 @@ pub struct Record {
 }
 
 /// Unique key of a row: run, quantity, phase, step, mode, statistic, repeat.
-pub(crate) type Key<'a> = (&'a str, &'a str, &'a str, Option<u64>, Option<u64>, &'a str, Option<u64>);
+pub type Key<'a> = (&'a str, &'a str, &'a str, Option<u64>, Option<u64>, &'a str, Option<u64>);
 
 impl Record {
     /// Checks the numbers of the record.
     ///
     /// # Errors
     /// A value, Poisson's ratio or spacing that is not finite.
-    pub fn check(&self) -> Result<(), ReportError> {
+    pub fn check(&self) -> Result<(), RecordError> {
         for (field, value) in [("value", self.value), ("poisson", self.poisson), ("spacing", self.spacing)] {
             if !value.is_finite() {
-                return Err(ReportError::NotFinite {
+                return Err(RecordError::NotFinite {
                     case: self.case.clone(),
                     method: self.method.clone(),
                     quantity: self.quantity.clone(),
@@ -255,7 +281,7 @@ impl Record {
     }
 
     /// Unique key of the row.
-    pub(crate) fn key(&self) -> Key<'_> {
+    pub fn key(&self) -> Key<'_> {
         let Record { run, quantity, phase, step, mode, statistic, repeat, .. } = self;
         (run, quantity, phase, *step, *mode, statistic, *repeat)
     }
@@ -289,6 +315,38 @@ impl Record {
         all.into_iter().filter_map(|(name, value)| Some((name, value?))).collect()
     }
 
+    /// Number of the step or mode of the record, if any.
+    pub fn index(&self) -> Option<u64> {
+        self.step.or(self.mode)
+    }
+
+    /// Name of the run: case, method, settings and size.
+    pub fn run_name(&self) -> String {
+        let mut name = format!("{} {} {}", self.case, self.method, self.variant);
+        let settings: Vec<String> =
+            self.settings().iter().map(|(key, value)| format!("{key}={value}")).collect();
+        if !settings.is_empty() {
+            name += &format!(" {}", settings.join("; "));
+        }
+        name += &format!(" nu={} level={} nodes={}", self.poisson, self.level, self.nodes);
+        if self.seed != 0 {
+            name += &format!(" seed={}", self.seed);
+        }
+        name
+    }
+
+    /// Name of the quantity: quantity, phase and statistic, with the unit in brackets.
+    pub fn quantity_name(&self) -> String {
+        let phase = match (self.index(), self.phase.as_str()) {
+            (Some(_), _) => " by step".into(),
+            (None, "") => String::new(),
+            (None, phase) => format!(" {phase}"),
+        };
+        let statistic =
+            if self.statistic == "value" { String::new() } else { format!(" {}", self.statistic) };
+        format!("{}{phase}{statistic} [{}]", self.quantity, self.unit)
+    }
+
     /// Order of the stored table: by the properties of the run that a reader looks for, then by the key of
     /// the row.
     pub fn order(&self, other: &Record) -> Ordering {
@@ -306,29 +364,5 @@ impl Record {
             })
             .then_with(|| self.key().cmp(&other.key()))
             .then(self.value.total_cmp(&other.value))
-    }
-}
-
-#[cfg(test)]
-impl Record {
-    /// A record for tests: a value of a run without a size.
-    pub(crate) fn blank() -> Record {
-        Record { poisson: 0.495, unit: "m".into(), statistic: "value".into(), ..Record::default() }
-    }
-
-    /// The record with an id composed of the properties that distinguish runs in tests.
-    pub(crate) fn of_its_run(mut self) -> Record {
-        let who = (
-            &self.case,
-            &self.method,
-            &self.variant,
-            self.settings(),
-            self.poisson.to_bits(),
-            self.level,
-            self.nodes,
-            self.seed,
-        );
-        self.run = format!("{who:?}");
-        self
     }
 }

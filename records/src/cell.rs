@@ -12,7 +12,7 @@ fn is_formula(text: &str) -> bool {
 }
 
 /// Text as a cell, guarded if it is a formula. Numbers are unchanged.
-pub(crate) fn guarded(text: &str) -> Cow<'_, str> {
+pub fn guarded(text: &str) -> Cow<'_, str> {
     let safe = !is_formula(text) || text.parse::<f64>().is_ok();
     if safe { text.into() } else { format!("{GUARD}{text}").into() }
 }
@@ -20,6 +20,19 @@ pub(crate) fn guarded(text: &str) -> Cow<'_, str> {
 /// Text of a cell, without its guard.
 pub(crate) fn unguarded(cell: &str) -> &str {
     cell.strip_prefix(GUARD).filter(|text| is_formula(text)).unwrap_or(cell)
+}
+
+/// One CSV line (RFC 4180): cells with a comma, quote or line break are quoted, formulas guarded.
+pub fn csv_line(cells: &[&str]) -> String {
+    let quoted: Vec<String> = cells
+        .iter()
+        .map(|cell| guarded(cell))
+        .map(|cell| match cell.contains([',', '"', '\n', '\r']) {
+            true => format!("\"{}\"", cell.replace('"', "\"\"")),
+            false => cell.into_owned(),
+        })
+        .collect();
+    quoted.join(",") + "\n"
 }
 
 #[cfg(test)]

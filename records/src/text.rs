@@ -1,12 +1,12 @@
 //! Numbers and names as text, for all output formats.
 
 /// Four significant digits as `1.234e-3`, for tables and snapshots.
-pub(crate) fn scientific(value: f64) -> String {
+pub fn scientific(value: f64) -> String {
     format!("{value:.3e}")
 }
 
 /// A readable number with `digits` significant digits, plain between 0.001 and 100 000, scientific otherwise.
-pub(crate) fn significant(value: f64, digits: usize) -> String {
+pub fn significant(value: f64, digits: usize) -> String {
     if value == 0.0 {
         return "0".into();
     }
@@ -26,7 +26,7 @@ pub(crate) fn significant(value: f64, digits: usize) -> String {
 }
 
 /// A number on an axis: plain from 0.001 to 1000, a [`power`] of ten otherwise.
-pub(crate) fn tick(value: f64) -> String {
+pub fn tick(value: f64) -> String {
     let exponent = exponent(value);
     if value == 0.0 {
         "0".into()
@@ -42,12 +42,12 @@ pub(crate) fn tick(value: f64) -> String {
 }
 
 /// A number with all its digits: plain from 0.001 to 100 000, a [`power`] of ten otherwise.
-pub(crate) fn short(value: f64) -> String {
+pub fn short(value: f64) -> String {
     if value == 0.0 || (1e-3..1e5).contains(&value.abs()) { value.to_string() } else { power(value) }
 }
 
 /// A number in powers of ten, as `10⁻³`, `2×10⁻³` or `1.5×10⁻³`; plain from 1 to 100.
-pub(crate) fn power(value: f64) -> String {
+pub fn power(value: f64) -> String {
     let exponent = exponent(value);
     if value == 0.0 || (0..=1).contains(&exponent) {
         return tick(value);
@@ -69,7 +69,7 @@ fn exponent(value: f64) -> i32 {
 }
 
 /// A spread next to its median: one significant digit, plain if the median is plain.
-pub(crate) fn spread(value: f64, median: f64) -> String {
+pub fn spread(value: f64, median: f64) -> String {
     let plain = |v: f64| (1e-3..1e5).contains(&v.abs());
     if value <= 0.0 || plain(value) || !plain(median) {
         return significant(value, 1);
@@ -80,12 +80,12 @@ pub(crate) fn spread(value: f64, median: f64) -> String {
 
 /// A Poisson's ratio with at most six decimals, because a ratio computed from moduli has seventeen
 /// meaningless digits.
-pub(crate) fn ratio(poisson: f64) -> String {
+pub fn ratio(poisson: f64) -> String {
     format!("{:.6}", poisson).trim_end_matches('0').trim_end_matches('.').to_string()
 }
 
 /// A time in the most readable unit, from nanoseconds to hours.
-pub(crate) fn duration(seconds: f64) -> String {
+pub fn duration(seconds: f64) -> String {
     let (scale, unit) = match seconds {
         s if s >= 7200.0 => (3600.0, "h"),
         s if s >= 1.0 => (1.0, "s"),
@@ -97,7 +97,7 @@ pub(crate) fn duration(seconds: f64) -> String {
 }
 
 /// A relative error in per cent, or in scientific notation if it is very small.
-pub(crate) fn percent(value: f64) -> String {
+pub fn percent(value: f64) -> String {
     if value == 0.0 || value.abs() >= 1e-4 {
         format!("{} %", significant(100.0 * value, 3))
     } else {
@@ -106,7 +106,7 @@ pub(crate) fn percent(value: f64) -> String {
 }
 
 /// A list in words: `a`, `a and b`, `a, b and c`.
-pub(crate) fn list(items: &[String]) -> String {
+pub fn list(items: &[String]) -> String {
     match items {
         [] => String::new(),
         [one] => one.clone(),
@@ -115,7 +115,7 @@ pub(crate) fn list(items: &[String]) -> String {
 }
 
 /// Plural `s`, empty for a count of one.
-pub(crate) fn plural(count: usize) -> &'static str {
+pub fn plural(count: usize) -> &'static str {
     if count == 1 { "" } else { "s" }
 }
 

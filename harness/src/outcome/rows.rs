@@ -2,7 +2,7 @@
 //! report.
 
 use catalogue::metric;
-use reports::{Family, PlanEntry, Record};
+use records::{Family, PlanEntry, Record};
 
 use super::timing::{Summary, Timed};
 use super::{LoadStep, Metric, Outcome, SchemeSettings, Transfer, push, push_numbered};
@@ -114,9 +114,9 @@ impl Outcome {
     }
 
     /// Rows of the warnings for the report.
-    pub fn warning_rows(&self) -> Vec<reports::Warning> {
+    pub fn warning_rows(&self) -> Vec<records::Warning> {
         let run = self.row().run;
-        let each = self.warnings.iter().map(|warning| reports::Warning {
+        let each = self.warnings.iter().map(|warning| records::Warning {
             case: self.identity.case.clone(),
             method: self.identity.method.clone(),
             run: run.clone(),

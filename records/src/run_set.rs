@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::axis::Axis;
 use crate::body::Body;
-use crate::error::ReportError;
+use crate::error::RecordError;
 use crate::provenance::Provenance;
 use crate::record::{Family, Record};
 use crate::reference::Reference;
@@ -129,8 +129,8 @@ impl SurfaceField {
     ///
     /// # Errors
     /// Arrays that are inconsistent or contain a number that is not finite.
-    pub fn check(&self) -> Result<(), ReportError> {
-        let wrong = |reason: String| ReportError::Field {
+    pub fn check(&self) -> Result<(), RecordError> {
+        let wrong = |reason: String| RecordError::Field {
             case: self.case.clone(),
             method: self.method.clone(),
             reason,

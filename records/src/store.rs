@@ -2,7 +2,8 @@
 //!
 //! | file | content |
 //! |---|---|
-//! | `records.csv` | the long table, one number per row, SI |
+//! | `records.parquet` | the long table, one number per row, SI |
+//! | `records.csv` | the same table for people and other programs; read if there is no Parquet file |
 //! | `provenance.json` | provenance of the numbers, with the hash of every scene |
 //! | `checks.csv`, `checks.json` | every bound with its outcome |
 //! | `plans.json`, `failures.json` | stages run and skipped; runs without numbers or with a partial load |
@@ -28,12 +29,12 @@ use disk::Kind;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
-use crate::error::ReportError;
+use crate::cell::csv_line;
+use crate::error::RecordError;
 use crate::frame;
 use crate::provenance::{FORMAT, Provenance};
 use crate::record::Record;
 use crate::run_set::RunSet;
-use crate::table::csv_line;
 
 /// Name of the mark of a folder whose results are not those of the last study or run started there.
 const MARK: &str = "incomplete.json";
@@ -51,7 +52,7 @@ struct Mark {
 ///
 /// # Errors
 /// A folder or file that cannot be written.
-pub fn begin(dir: &Path, source: &str) -> Result<(), ReportError> {
+pub fn begin(dir: &Path, source: &str) -> Result<(), RecordError> {
     make_dir(dir)?;
     write_json(&dir.join(MARK), &Mark { source: source.to_string() })
 }
@@ -65,7 +66,7 @@ pub fn is_incomplete(dir: &Path) -> bool {
 ///
 /// # Errors
 /// A mark that cannot be removed.
-pub fn end(dir: &Path) -> Result<(), ReportError> {
+pub fn end(dir: &Path) -> Result<(), RecordError> {
     let mark = dir.join(MARK);
     match disk::remove(&mark) {
         Err(bad) if bad.kind() != io::ErrorKind::NotFound => Err(unwritten(&mark, bad)),
@@ -78,20 +79,20 @@ pub fn end(dir: &Path) -> Result<(), ReportError> {
 ///
 /// # Errors
 /// Invalid records or fields, two records with the same key, or a file that cannot be written.
-pub fn write_run(dir: &Path, run: &RunSet) -> Result<(), ReportError> {
+pub fn write_run(dir: &Path, run: &RunSet) -> Result<(), RecordError> {
     write_marked(dir, run)?;
     end(dir)
 }
 
 /// Writes a run as [`write_run`] does, but leaves the folder marked as incomplete, for results whose report
 /// is not yet rendered.
-pub(crate) fn write_marked(dir: &Path, run: &RunSet) -> Result<(), ReportError> {
+pub fn write_marked(dir: &Path, run: &RunSet) -> Result<(), RecordError> {
     run.records.iter().try_for_each(|r| r.check())?;
     run.fields.iter().try_for_each(|f| f.check())?;
     once(&run.records)?;
     for check in &run.checks {
         if let Some(value) = check.value.filter(|v| !v.is_finite()) {
-            return Err(ReportError::NotFinite {
+            return Err(RecordError::NotFinite {
                 case: check.case.clone(),
                 method: check.method.clone(),
                 quantity: check.metric.clone(),
@@ -133,7 +134,7 @@ pub(crate) fn write_marked(dir: &Path, run: &RunSet) -> Result<(), ReportError> 
         let name = format!("{}--{}.json", slug(&field.case), slug(&field.method));
         if taken.contains(&name) {
             let reason = format!("another field already has the file name {name}");
-            return Err(ReportError::Field {
+            return Err(RecordError::Field {
                 case: field.case.clone(),
                 method: field.method.clone(),
                 reason,
@@ -146,11 +147,11 @@ pub(crate) fn write_marked(dir: &Path, run: &RunSet) -> Result<(), ReportError> 
 }
 
 /// Rejects rows with the same key.
-fn once(records: &[Record]) -> Result<(), ReportError> {
+fn once(records: &[Record]) -> Result<(), RecordError> {
     let mut seen = HashSet::with_capacity(records.len());
     match records.iter().find(|r| !seen.insert(r.key())) {
         None => Ok(()),
-        Some(r) => Err(ReportError::Twice {
+        Some(r) => Err(RecordError::Twice {
             case: r.case.clone(),
             method: r.method.clone(),
             quantity: r.quantity.clone(),
@@ -175,10 +176,10 @@ pub fn provenance_of(dir: &Path) -> Option<Provenance> {
 ///
 /// # Errors
 /// A folder without results or marked as incomplete, or a file that cannot be read.
-pub fn read_run(dir: &Path) -> Result<RunSet, ReportError> {
+pub fn read_run(dir: &Path) -> Result<RunSet, RecordError> {
     if is_incomplete(dir) {
         let of = source_of(dir).unwrap_or_else(|| "a study".into());
-        return Err(ReportError::Incomplete { path: dir.into(), of });
+        return Err(RecordError::Incomplete { path: dir.into(), of });
     }
     read_marked(dir)
 }
@@ -187,16 +188,16 @@ pub fn read_run(dir: &Path) -> Result<RunSet, ReportError> {
 ///
 /// # Errors
 /// As for [`read_run`], and results without records.
-pub fn read_numbers(dir: &Path, to: &'static str) -> Result<RunSet, ReportError> {
+pub fn read_numbers(dir: &Path, to: &'static str) -> Result<RunSet, RecordError> {
     let set = read_run(dir)?;
-    if set.records.is_empty() { Err(ReportError::Nothing { path: dir.into(), to }) } else { Ok(set) }
+    if set.records.is_empty() { Err(RecordError::Nothing { path: dir.into(), to }) } else { Ok(set) }
 }
 
 /// Reads a run as [`read_run`] does, from a folder that may be marked as incomplete.
-pub(crate) fn read_marked(dir: &Path) -> Result<RunSet, ReportError> {
+pub fn read_marked(dir: &Path) -> Result<RunSet, RecordError> {
     let provenance = dir.join("provenance.json");
     if !provenance.exists() {
-        return Err(ReportError::NoResults(dir.into()));
+        return Err(RecordError::NoResults(dir.into()));
     }
     // The version is read first, before any content that may depend on it.
     #[derive(Deserialize)]
@@ -207,13 +208,13 @@ pub(crate) fn read_marked(dir: &Path) -> Result<RunSet, ReportError> {
     let Version { format } = read_json(&provenance)?;
     if format > FORMAT {
         let reason = format!("is of version {format}; this program reads up to {FORMAT}: take a newer one");
-        return Err(ReportError::Content { path: provenance, reason });
+        return Err(RecordError::Content { path: provenance, reason });
     }
     let fields_dir = dir.join("fields");
     let fields = if fields_dir.is_dir() { files_ending(&fields_dir, &["json"])? } else { Vec::new() };
     let run = RunSet {
         provenance: read_json(&provenance)?,
-        records: frame::read(&dir.join("records.csv"))?,
+        records: frame::read(dir)?,
         checks: read_json(&dir.join("checks.json"))?,
         fields: fields.iter().map(|path| read_json(path)).collect::<Result<_, _>>()?,
         plans: read_json(&dir.join("plans.json"))?,
@@ -230,7 +231,8 @@ pub(crate) fn read_marked(dir: &Path) -> Result<RunSet, ReportError> {
     Ok(run)
 }
 
-pub(crate) fn make_dir(dir: &Path) -> Result<(), ReportError> {
+/// Makes a folder and those above it.
+pub fn make_dir(dir: &Path) -> Result<(), RecordError> {
     fs::create_dir_all(dir).map_err(|source| unwritten(dir, source))
 }
 
@@ -238,31 +240,31 @@ pub(crate) fn make_dir(dir: &Path) -> Result<(), ReportError> {
 ///
 /// # Errors
 /// A file that cannot be written.
-pub fn write_text(path: &Path, text: impl AsRef<[u8]>) -> Result<(), ReportError> {
+pub fn write_text(path: &Path, text: impl AsRef<[u8]>) -> Result<(), RecordError> {
     disk::replace(path, |file| file.write_all(text.as_ref())).map_err(|source| unwritten(path, source))
 }
 
-pub(crate) fn unwritten(path: &Path, source: io::Error) -> ReportError {
-    ReportError::Unwritten { path: path.into(), source }
+pub(crate) fn unwritten(path: &Path, source: io::Error) -> RecordError {
+    RecordError::Unwritten { path: path.into(), source }
 }
 
 /// Replaces all but ASCII letters (in lower case), digits and dots by dashes, for use as a file name.
-pub(crate) fn slug(name: &str) -> String {
+pub fn slug(name: &str) -> String {
     let safe = |c: char| if c.is_ascii_alphanumeric() || c == '.' { c.to_ascii_lowercase() } else { '-' };
     name.chars().map(safe).collect()
 }
 
 /// Removes the files with these suffixes that are not in `kept`, so that no file of an earlier run passes for
 /// a current one.
-pub(crate) fn remove_files(dir: &Path, endings: &[&str], kept: &[PathBuf]) -> Result<(), ReportError> {
+pub fn remove_files(dir: &Path, endings: &[&str], kept: &[PathBuf]) -> Result<(), RecordError> {
     for old in files_ending(dir, endings)?.iter().filter(|old| !kept.contains(old)) {
         disk::remove(old).map_err(|source| unwritten(old, source))?;
     }
     Ok(())
 }
 
-fn files_ending(dir: &Path, endings: &[&str]) -> Result<Vec<PathBuf>, ReportError> {
-    let io = |source| ReportError::Io { path: dir.into(), source };
+fn files_ending(dir: &Path, endings: &[&str]) -> Result<Vec<PathBuf>, RecordError> {
+    let io = |source| RecordError::Io { path: dir.into(), source };
     let mut paths = Vec::new();
     for entry in fs::read_dir(dir).map_err(io)? {
         let path = entry.map_err(io)?.path();
@@ -274,15 +276,15 @@ fn files_ending(dir: &Path, endings: &[&str]) -> Result<Vec<PathBuf>, ReportErro
     Ok(paths)
 }
 
-fn write_json<T: Serialize>(path: &Path, value: &T) -> Result<(), ReportError> {
+fn write_json<T: Serialize>(path: &Path, value: &T) -> Result<(), RecordError> {
     let mut text = serde_json::to_string_pretty(value)
-        .map_err(|e| ReportError::Content { path: path.into(), reason: e.to_string() })?;
+        .map_err(|e| RecordError::Content { path: path.into(), reason: e.to_string() })?;
     text.push('\n');
     write_text(path, text)
 }
 
-fn read_json<T: DeserializeOwned>(path: &Path) -> Result<T, ReportError> {
+fn read_json<T: DeserializeOwned>(path: &Path) -> Result<T, RecordError> {
     let text = disk::read_text(path, Kind::RESULTS)
-        .map_err(|source| ReportError::Io { path: path.into(), source })?;
-    serde_json::from_str(&text).map_err(|e| ReportError::Content { path: path.into(), reason: e.to_string() })
+        .map_err(|source| RecordError::Io { path: path.into(), source })?;
+    serde_json::from_str(&text).map_err(|e| RecordError::Content { path: path.into(), reason: e.to_string() })
 }

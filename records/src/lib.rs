@@ -1,0 +1,32 @@
+//! The long table of benchmark numbers.
+//!
+//! A [`Record`] is one number of one run, a [`RunSet`] everything that a study leaves behind, a folder its stored form
+//! ([`write_run`], [`read_run`]). Two sets of numbers are compared by one paired [`difference()`].
+
+mod axis;
+mod body;
+pub mod cell;
+mod columns;
+mod difference;
+mod error;
+mod frame;
+mod provenance;
+mod record;
+mod reference;
+mod run_set;
+pub mod store;
+pub mod text;
+
+pub use axis::{Axis, Ended, Trial, Verdict as AxisVerdict};
+pub use body::{Body, BodyState, Faces, Inside, InsideState, Skin, pack};
+pub use difference::{Difference, Numbers, Pair, Paired, difference, numbers};
+pub use error::RecordError;
+pub use provenance::{FORMAT, Machine, Program, Provenance, SceneHash};
+pub use record::{Family, Key, Purpose, Record};
+pub use reference::Reference;
+pub use run_set::{
+    Check, Failure, PlanEntry, RunSet, Section, SectionCell, Status, SurfaceField, ToolHull, Warning,
+};
+pub use store::{
+    begin, end, is_incomplete, provenance_of, read_numbers, read_run, source_of, write_run, write_text,
+};
