@@ -1,8 +1,7 @@
-//! The long table as a data frame and as files: Parquet, from which it is read, and CSV beside it for people and other programs.
+//! The long table as files: CSV, which is read back, and Parquet for data-frame programs.
 
 use std::borrow::Cow;
-use std::io::{self, BufRead, BufReader, Cursor, Write};
-use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::io::{self, BufRead, BufReader, Write};
 use std::path::Path;
 
 use disk::Kind;
@@ -16,16 +15,16 @@ use crate::provenance::Provenance;
 use crate::record::Record;
 use crate::store::unwritten;
 
-/// File of the table, in the folder of a run.
-const PARQUET: &str = "records.parquet";
-
-/// The same table as text.
+/// File of the table in the folder of a run.
 const CSV: &str = "records.csv";
+
+/// The same table as a data frame.
+const PARQUET: &str = "records.parquet";
 
 /// Longest first line of a CSV file in bytes, and the size of its read buffer.
 const LONGEST_HEADER: usize = 1 << 16;
 
-/// Columns of a row that are no fields of its record: where the number comes from, so that tables of several machines can be joined.
+/// Columns of a row that are no fields of its record: the origin of the number, so that tables of several machines can be joined.
 #[derive(Serialize)]
 struct Origin<'a> {
     commit: &'a str,
@@ -106,23 +105,10 @@ fn write_csv(
     disk::replace(path, |file| rows(file)).map_err(|source| unwritten(path, source))
 }
 
-/// Reads the table of a folder: its Parquet file, or the CSV file of a folder that has none.
+/// Reads the records of `records.csv`; their provenance is in a separate file.
 pub(crate) fn read(dir: &Path) -> Result<Vec<Record>, RecordError> {
-    let path = dir.join(PARQUET);
-    if path.exists() { read_parquet(&path) } else { read_csv(&dir.join(CSV)) }
-}
-
-fn read_parquet(path: &Path) -> Result<Vec<Record>, RecordError> {
-    let bytes =
-        disk::read(path, Kind::RESULTS).map_err(|source| RecordError::Io { path: path.into(), source })?;
-    let content = |reason: String| RecordError::Content { path: path.into(), reason };
-    // The reader trusts lengths in the file: damaged ones end it in a panic.
-    let read = || ParquetReader::new(Cursor::new(bytes)).read_parallel(ParallelStrategy::None).finish();
-    let frame = catch_unwind(AssertUnwindSafe(read)).map_err(|_| content("is damaged".into()))?;
-    frame.and_then(|frame| columns::records(&frame)).map_err(|bad| content(bad.to_string()))
-}
-
-fn read_csv(path: &Path) -> Result<Vec<Record>, RecordError> {
+    let path = dir.join(CSV);
+    let path = path.as_path();
     let io = |source| RecordError::Io { path: path.into(), source };
     let mut file = BufReader::with_capacity(LONGEST_HEADER, disk::open(path, Kind::RESULTS).map_err(io)?);
     // A file of zeros would be read to its end as one name of a column.
@@ -147,4 +133,30 @@ fn read_csv(path: &Path) -> Result<Vec<Record>, RecordError> {
 
 fn content(path: &Path, error: &csv::Error) -> RecordError {
     RecordError::Content { path: path.into(), reason: error.to_string() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn both_files_have_every_digit_and_every_column() {
+        let value = f64::from_bits(0.1_f64.to_bits() + 1);
+        let one =
+            Record { run: "a".into(), quantity: "=rms".into(), value, step: Some(3), ..Record::default() };
+        let other =
+            Record { value: -0.0, basis: Some("linear".into()), polynomial: Some(true), ..one.clone() };
+        let records = vec![one, other];
+        let dir = tempfile::tempdir().unwrap();
+        write(dir.path(), records.clone(), &Provenance::default()).unwrap();
+        assert_eq!(read(dir.path()).unwrap(), records);
+        let file = std::fs::File::open(dir.path().join(PARQUET)).unwrap();
+        let frame = ParquetReader::new(file).finish().unwrap();
+        for column in columns::of(&records) {
+            assert!(frame.column(column.name()).unwrap().equals_missing(&column), "{}", column.name());
+        }
+        let csv = std::fs::read_to_string(dir.path().join(CSV)).unwrap();
+        let names: Vec<&str> = frame.get_column_names().iter().map(|name| name.as_str()).collect();
+        assert_eq!(csv.lines().next().unwrap().split(',').collect::<Vec<_>>(), names);
+    }
 }

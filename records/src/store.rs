@@ -2,8 +2,8 @@
 //!
 //! | file | content |
 //! |---|---|
-//! | `records.parquet` | the long table, one number per row, SI |
-//! | `records.csv` | the same table for people and other programs; read if there is no Parquet file |
+//! | `records.csv` | the long table, one number per row, SI |
+//! | `records.parquet` | the same table for data-frame programs; never read back |
 //! | `provenance.json` | provenance of the numbers, with the hash of every scene |
 //! | `checks.csv`, `checks.json` | every bound with its outcome |
 //! | `plans.json`, `failures.json` | stages run and skipped; runs without numbers or with a partial load |
