@@ -111,12 +111,10 @@ impl Baseline {
 
 /// Whether a quantity's numbers are the same, bit by bit or within the tolerance of two kinds of processors.
 fn is_same(paired: &Paired, bitwise: bool) -> bool {
-    paired.pairs.iter().all(|pair| match (pair.before, pair.after) {
-        (Some(a), Some(b)) => {
-            a.to_bits() == b.to_bits() || !bitwise && close(&paired.quantity, paired.scale, a, b)
-        }
-        _ => false,
-    })
+    let same = |a: f64, b: f64| {
+        a.to_bits() == b.to_bits() || !bitwise && close(&paired.quantity, paired.scale, a, b)
+    };
+    paired.pairs.iter().all(|pair| pair.before.zip(pair.after).is_some_and(|(a, b)| same(a, b)))
 }
 
 #[cfg(test)]
