@@ -198,7 +198,7 @@ fn what_is_asked_wrongly_is_refused() {
         assert_fails(&tissuebench(&[&["pick", &scene], args].concat()), 2, says);
     };
     refused(BLOCK, &["--error", "3%"], "scene.toml: key 'reference': is missing");
-    refused(&block(), &["--error", "3"], "is 300 %, more than the whole: write 3% or 0.03");
+    refused(&block(), &["--error", "3"], "is 300 %: write 3% or 0.03");
     refused(
         &block(),
         &["--error", "3%", "--quantity", "forse"],

@@ -161,6 +161,11 @@ const SCENES: [(&str, &str, &str); 24] = [
         "title",
         "check = [{ metric = \"rmss\", at_most = \"1 mm\" }]\ntitle",
     ),
+    (
+        "a key that was spelled with a hyphen",
+        "title",
+        "procedure = { kind = \"static\", on-stall = \"stop\" }\ntitle",
+    ),
     ("a text that is not TOML", "material =", "material"),
     ("a decimal comma", "poisson = 0.3", "poisson = 0,3"),
     ("a traction that is a number", "pressure = \"1 kPa\"", "traction = \"1 kPa\""),

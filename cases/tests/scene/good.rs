@@ -333,12 +333,6 @@ fn contradictions_of_a_static_scene_name_their_key() {
             "is of a displacement, and kind = \"prepare\" solves for none",
         ],
         ["steps = 10", "steps = 10\nlimit_within = 2", "procedure.limit_within", "is no part of the load"],
-        [
-            "steps = 10",
-            "steps = 10\non-stall = \"relax\"",
-            "procedure.on-stall",
-            "is an old name; write on_stall",
-        ],
         ["steps = 10", "steps = 10\niterations = 0", "procedure.iterations", "is zero"],
         ["steps = 10", "steps = 10\niterations = 4000000000", "procedure.iterations", "are too many"],
         ["steps = 10", "steps = 10\naugmentations = 4000000000", "procedure.augmentations", "are too many"],

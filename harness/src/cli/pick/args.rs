@@ -40,11 +40,11 @@ pub struct PickArgs {
     pub out: Option<PathBuf>,
 }
 
-/// Parses a percentage and returns it as a fraction.
+/// Parses a percentage or a fraction and returns the fraction. A bare 3 would be 300 %: it is refused.
 fn percent(text: &str) -> Result<f64, String> {
     let value = Dimension::None.read_positive(text).map_err(|bad| bad.to_string())?;
-    let beyond = || format!("is {} %, more than the whole: write 3% or 0.03", 100.0 * value);
-    if value <= 1.0 { Ok(value) } else { Err(beyond()) }
+    let bare = value > 1.0 && !text.contains('%');
+    if bare { Err(format!("is {} %: write {text}% or 0.03", 100.0 * value)) } else { Ok(value) }
 }
 
 /// Parses `QUANTITY=PERCENT`.
@@ -64,7 +64,7 @@ mod tests {
     #[test]
     fn an_error_is_a_percentage_above_zero() {
         assert_eq!((percent("3%"), percent(" 0.5 % "), percent("0.03")), (Ok(0.03), Ok(0.005), Ok(0.03)));
-        for bad in ["3", "101%", "%", "three%", "0%", "-1%", "nan%", "inf%"] {
+        for bad in ["3", "%", "three%", "0%", "-1%", "nan%", "inf%"] {
             assert!(percent(bad).is_err(), "{bad}");
         }
         assert_eq!(companion("force=5%"), Ok(("force".into(), 0.05)));
