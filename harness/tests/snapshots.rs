@@ -137,7 +137,7 @@ fn rounded(value: &mut Value) {
 }
 
 /// Faults of a scene: a description, and the text that is replaced in a valid scene.
-const SCENES: [(&str, &str, &str); 24] = [
+const SCENES: [(&str, &str, &str); 25] = [
     ("a key that is not known", "poisson", "poison"),
     ("a key that is missing", "young = \"20 kPa\", ", ""),
     ("a key of another law", "poisson = 0.3", "poisson = 0.3, alpha = [1]"),
