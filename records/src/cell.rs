@@ -22,7 +22,7 @@ pub(crate) fn unguarded(cell: &str) -> &str {
     cell.strip_prefix(GUARD).filter(|text| is_formula(text)).unwrap_or(cell)
 }
 
-/// One CSV line (RFC 4180): cells with a comma, quote or line break are quoted, formulas guarded.
+/// A line of CSV (RFC 4180): cells with a comma, quote or line break are quoted, and formulas are guarded.
 pub fn csv_line(cells: &[&str]) -> String {
     let quoted: Vec<String> = cells
         .iter()

@@ -1,4 +1,4 @@
-//! The paired difference of two sets of numbers: each number before beside the same number after.
+//! Paired difference of two sets of numbers: each number before with the same number after.
 
 use std::collections::BTreeMap;
 
@@ -7,10 +7,11 @@ use polars::prelude::*;
 use crate::error::RecordError;
 use crate::record::Record;
 
-/// Numbers by run and quantity, SI; the quantity has its unit behind it, as in `rms-x [m]` and `tool-force by step [N]`.
+/// Numbers by run and quantity, SI. The name of a quantity ends with its unit, as in `rms-x [m]` and
+/// `tool-force by step [N]`.
 pub type Numbers = BTreeMap<String, BTreeMap<String, Vec<f64>>>;
 
-/// The numbers of `records` that do not depend on the machine and the moment; those recorded step by step are one list.
+/// Collects the numbers of `records` that do not depend on the machine and the moment; a history is one list.
 pub fn numbers(records: &[Record]) -> Numbers {
     let mut by_index: BTreeMap<(String, String), BTreeMap<u64, f64>> = BTreeMap::new();
     for record in records.iter().filter(|r| !r.is_measured()) {
@@ -27,23 +28,23 @@ pub fn numbers(records: &[Record]) -> Numbers {
 /// A number before and after.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pair {
-    /// Before; absent if only the numbers after have it.
+    /// Value before; absent if it exists only after.
     pub before: Option<f64>,
-    /// After; absent if only the numbers before have it.
+    /// Value after; absent if it exists only before.
     pub after: Option<f64>,
 }
 
-/// A quantity of a run that both sets have, with its numbers in their order.
+/// A quantity of a run in both sets, with its numbers in order.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Paired {
-    /// The run.
+    /// Name of the run.
     pub run: String,
-    /// The quantity with its unit.
+    /// Quantity with its unit.
     pub quantity: String,
-    /// Largest number of this unit that the run had before: what is far below it is rounding. 1 for pure numbers, as an error of 1e-10
-    /// is exact whatever else the run has.
+    /// Largest number of this unit in the run before; numbers far below it are rounding. The scale is 1 for
+    /// pure numbers, because an error of 1e-10 counts as exact in any run.
     pub scale: f64,
-    /// Its numbers, one pair for each step or mode.
+    /// Numbers of the quantity, one pair for each step or mode.
     pub pairs: Vec<Pair>,
 }
 
@@ -54,14 +55,14 @@ pub struct Difference {
     pub only_before: Vec<String>,
     /// Runs without numbers before, in the order of their names.
     pub only_after: Vec<String>,
-    /// Quantities of the runs that both have, in the order of their names.
+    /// Quantities of the runs in both sets, in the order of their names.
     pub paired: Vec<Paired>,
 }
 
-/// Pairs two sets of numbers by run, quantity and place in the list.
+/// Pairs two sets of numbers by run, quantity and index in the list.
 ///
 /// # Errors
-/// A frame that can't be joined.
+/// A frame that cannot be joined.
 pub fn difference(before: &Numbers, after: &Numbers) -> Result<Difference, RecordError> {
     let keys = || [col("run"), col("quantity"), col("unit"), col("index")];
     let in_full = JoinArgs::new(JoinType::Full).with_coalesce(JoinCoalesce::CoalesceColumns);
@@ -111,7 +112,8 @@ fn column<'f>(frame: &'f DataFrame, name: &str) -> PolarsResult<&'f Float64Chunk
     frame.column(name)?.f64()
 }
 
-/// One row for each number: run, quantity, unit, index in its list, the number under the given name, and its size: 1 of pure numbers.
+/// Returns a frame with one row for each number: run, quantity, unit, index in its list, the number under the
+/// given name, and its magnitude (1 for pure numbers).
 fn frame(numbers: &Numbers, name: &str) -> PolarsResult<LazyFrame> {
     let rows: Vec<(&str, &str, u32, f64)> = numbers
         .iter()
@@ -136,7 +138,7 @@ fn frame(numbers: &Numbers, name: &str) -> PolarsResult<LazyFrame> {
     Ok(DataFrame::new(rows.len(), columns)?.lazy())
 }
 
-/// The unit behind a quantity, `m` of `rms-x [m]`.
+/// Unit of a quantity by its name, `m` for `rms-x [m]`.
 fn unit(quantity: &str) -> &str {
     quantity.rsplit_once('[').map_or("", |(_, unit)| unit.trim_end_matches(']'))
 }

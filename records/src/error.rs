@@ -86,7 +86,7 @@ pub enum RecordError {
         /// Description of the problem.
         reason: String,
     },
-    /// A data frame that could not be made, joined or written.
+    /// A data frame that could not be created, joined or written.
     #[error("records: {0}")]
     Frame(#[from] polars::error::PolarsError),
 }

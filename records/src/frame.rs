@@ -24,7 +24,8 @@ const PARQUET: &str = "records.parquet";
 /// Longest first line of a CSV file in bytes, and the size of its read buffer.
 const LONGEST_HEADER: usize = 1 << 16;
 
-/// Columns of a row that are no fields of its record: the origin of the number, so that tables of several machines can be joined.
+/// Columns of a row that are no fields of its record: the origin of the number, so that tables of several
+/// machines can be joined.
 #[derive(Serialize)]
 struct Origin<'a> {
     commit: &'a str,
@@ -33,11 +34,11 @@ struct Origin<'a> {
     cpu: &'a str,
     model: &'a str,
     instructions: &'a str,
-    /// 0 for values: only times and memory depend on the number of threads.
+    /// 0 for values, because only times and memory depend on the number of threads.
     threads: u32,
 }
 
-/// Writes both files of the table: the fields of each record, then those of its origin.
+/// Writes both files of the table: the fields of each record, followed by those of its origin.
 pub(crate) fn write(dir: &Path, records: Vec<Record>, from: &Provenance) -> Result<(), RecordError> {
     let (program, machine) = (&from.program, &from.machine);
     let commit = program.revision();
@@ -72,8 +73,8 @@ fn write_parquet(
     disk::replace(path, |file| file.write_all(&bytes)).map_err(|source| unwritten(path, source))
 }
 
-/// Numbers have the fewest digits that give the same bits when they are read again; texts that a spreadsheet would take for a formula are
-/// guarded.
+/// Writes the CSV file. Numbers have the fewest digits that preserve their bits. Texts that a spreadsheet
+/// would evaluate as a formula are guarded.
 fn write_csv(
     path: &Path,
     mut records: Vec<Record>,
@@ -111,14 +112,15 @@ pub(crate) fn read(dir: &Path) -> Result<Vec<Record>, RecordError> {
     let path = path.as_path();
     let io = |source| RecordError::Io { path: path.into(), source };
     let mut file = BufReader::with_capacity(LONGEST_HEADER, disk::open(path, Kind::RESULTS).map_err(io)?);
-    // A file of zeros would be read to its end as one name of a column.
+    // A file of zeros would be read to its end as the name of one column.
     let begin = file.fill_buf().map_err(io)?;
     if begin.len() == LONGEST_HEADER && !begin.contains(&b'\n') {
         let reason = format!("its first line has more than {LONGEST_HEADER} bytes");
         return Err(RecordError::Content { path: path.into(), reason });
     }
     let mut file = csv::Reader::from_reader(file);
-    // Any file without rows would pass for a table without records, whose file is empty.
+    // The file of a table without records is empty. Without this check, any file without rows would pass for
+    // such a table.
     let header = file.headers().map_err(|e| content(path, &e))?;
     if !header.is_empty() && header.iter().all(|name| name != "value") {
         return Err(RecordError::Content { path: path.into(), reason: "no column `value`".into() });

@@ -1,7 +1,8 @@
 //! The long table of benchmark numbers.
 //!
-//! A [`Record`] is one number of one run, a [`RunSet`] everything that a study leaves behind, a folder its stored form
-//! ([`write_run`], [`read_run`]). Two sets of numbers are compared by one paired [`difference()`].
+//! A [`Record`] is one number of one run, and a [`RunSet`] holds all results of a study. A folder is the
+//! stored form of a run set ([`write_run`], [`read_run`]). Two sets of numbers are compared by a paired
+//! [`difference()`].
 
 mod axis;
 mod body;

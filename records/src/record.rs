@@ -61,7 +61,7 @@ pub enum Family {
 }
 
 impl Family {
-    /// The word in files.
+    /// Name in files.
     pub fn name(self) -> &'static str {
         match self {
             Family::Fem => "fem",
@@ -90,7 +90,7 @@ pub enum Purpose {
 }
 
 impl Purpose {
-    /// The word in files.
+    /// Name in files.
     pub fn name(self) -> &'static str {
         match self {
             Purpose::Patch => "patch",

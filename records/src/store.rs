@@ -231,7 +231,7 @@ pub fn read_marked(dir: &Path) -> Result<RunSet, RecordError> {
     Ok(run)
 }
 
-/// Makes a folder and those above it.
+/// Creates a folder and its parents.
 pub fn make_dir(dir: &Path) -> Result<(), RecordError> {
     fs::create_dir_all(dir).map_err(|source| unwritten(dir, source))
 }

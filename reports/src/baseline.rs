@@ -1,9 +1,10 @@
-//! The baseline: every accuracy number of a study as it was when it was last accepted, to be compared with what is found now.
+//! Baseline: the accuracy numbers of a study as last accepted, compared with those of a new run.
 //!
-//! Bounds in a scene say what must hold; a fault that changes a number by a thousandth holds them all. The baseline sees it.
+//! Bounds in a scene state what must hold. A bug that changes a number by a thousandth satisfies them all,
+//! but differs from the baseline.
 //!
-//! A baseline is a TOML file: the processor it was made on, and a table for each run with one line for each quantity. What is
-//! recorded step by step is one array. Times and memory are left out.
+//! A baseline is a TOML file with the processor that computed it and a table for each run, with one line per
+//! quantity. A history is one array. Times and memory are excluded.
 
 mod compare;
 mod tolerance;
@@ -19,26 +20,33 @@ pub use compare::{Change, Comparison};
 /// Accepted numbers of a study, by run and quantity, SI.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Baseline {
-    /// The kind of processor: numbers are the same bits on the same kind.
+    /// Kind of processor; the same kind gives bitwise equal numbers.
     pub processor: String,
-    /// Numbers of each run; its name says case, method, settings and size.
+    /// Numbers of each run, by a name with its case, method, settings and size.
     pub runs: Numbers,
 }
 
 impl Baseline {
-    /// The numbers of `records` that do not depend on the moment, found on a `processor`.
+    /// Collects the numbers of `records` that do not depend on the moment, computed on a `processor`.
     pub fn of(records: &[Record], processor: &str) -> Baseline {
         Baseline { processor: processor.into(), runs: numbers(records) }
     }
 
     /// Reads a baseline file.
+    ///
+    /// # Errors
+    /// A file that cannot be read, or is not a baseline.
     pub fn load(path: &Path) -> Result<Baseline, RecordError> {
         let text = disk::read_text(path, disk::Kind::BASELINE)
             .map_err(|source| RecordError::Io { path: path.into(), source })?;
         toml::from_str(&text).map_err(|e| RecordError::Content { path: path.into(), reason: e.to_string() })
     }
 
-    /// Writes a baseline file: one line for each quantity, numbers with the fewest digits that give the same bits again.
+    /// Writes a baseline file: one line for each quantity, with the fewest digits that preserve the bits of a
+    /// number.
+    ///
+    /// # Errors
+    /// A file that cannot be written.
     pub fn save(&self, path: &Path) -> Result<(), RecordError> {
         let mut text = format!("{HEADER}processor = {}\n", quoted(&self.processor));
         for (run, numbers) in &self.runs {
@@ -51,7 +59,7 @@ impl Baseline {
         write_text(path, text)
     }
 
-    /// Number of numbers.
+    /// Total number of values.
     pub fn count(&self) -> usize {
         self.runs.values().flatten().map(|(_, values)| values.len()).sum()
     }
@@ -59,7 +67,7 @@ impl Baseline {
 
 const HEADER: &str = "# Accepted numbers of a study's quick tier, SI. Made and compared by `cargo xtask baseline`; not to be edited by hand.\n";
 
-/// A string of TOML: the escapes of JSON are among its own, and it has one more character that needs one.
+/// Quotes a string for TOML. JSON escapes are valid in TOML, which requires one more character to be escaped.
 fn quoted(text: &str) -> String {
     serde_json::Value::from(text).to_string().replace('\u{7f}', "\\u007f")
 }

@@ -1,12 +1,12 @@
-//! Records that tests fill in.
+//! Records for tests.
 
 use records::Record;
 
 pub(crate) trait Blank {
-    /// A value of a run of no size.
+    /// A record of a value of a run without a size.
     fn blank() -> Self;
 
-    /// Sets the id of its run from the settings that tell runs of tests apart.
+    /// Sets the id of the run from the properties that distinguish runs in tests.
     fn of_its_run(self) -> Self;
 }
 

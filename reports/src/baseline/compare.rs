@@ -1,60 +1,60 @@
-//! Two baselines against each other, run by run and quantity by quantity.
+//! Comparison of two baselines, run by run and quantity by quantity.
 
 use records::{Paired, RecordError, difference};
 
 use super::Baseline;
 use super::tolerance::close;
 
-/// What is different in one run.
+/// A difference in one run.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Change {
-    /// The run is new.
+    /// A new run.
     Added {
-        /// Its name.
+        /// Name of the run.
         run: String,
     },
-    /// The run is no longer there.
+    /// A run that no longer exists.
     Removed {
-        /// Its name.
+        /// Name of the run.
         run: String,
     },
-    /// The run has another name; its numbers are the same.
+    /// A run with another name and the same numbers.
     Renamed {
         /// Name in the baseline.
         from: String,
-        /// Name now.
+        /// Current name.
         to: String,
     },
-    /// A quantity of the run differs, is new or is no longer there.
+    /// A quantity that differs, is new or no longer exists.
     Number {
-        /// The run.
+        /// Name of the run.
         run: String,
         /// Quantity with its unit.
         quantity: String,
-        /// Accepted values; empty where it is new.
+        /// Accepted values; empty for a new quantity.
         before: Vec<f64>,
-        /// Values now; empty where it is no longer there.
+        /// Current values; empty for a quantity that no longer exists.
         now: Vec<f64>,
     },
 }
 
-/// What is different between a baseline and the numbers now.
+/// Differences between a baseline and current numbers.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Comparison {
     /// Differences, in the order of their runs.
     pub changes: Vec<Change>,
-    /// Whether numbers had to be the same bits: both are of the same kind of processor.
+    /// Whether equality was bitwise, because both are from the same kind of processor.
     pub bitwise: bool,
-    /// Numbers compared.
+    /// Number of values compared.
     pub compared: usize,
 }
 
 impl Baseline {
-    /// Compares accepted numbers with those of now; runs that only the baseline has are differences if `whole`, as the
-    /// numbers of now are those of the whole study.
+    /// Compares accepted numbers with current ones. If `whole`, the current numbers are those of the whole
+    /// study, and runs that only the baseline has are differences.
     ///
     /// # Errors
-    /// Numbers that can't be paired.
+    /// Numbers that cannot be paired.
     pub fn compare(&self, now: &Baseline, whole: bool) -> Result<Comparison, RecordError> {
         let bitwise = self.processor == now.processor;
         let found = difference(&self.runs, &now.runs)?;
@@ -84,7 +84,7 @@ impl Baseline {
         Ok(Comparison { changes, bitwise, compared: compared.count() })
     }
 
-    /// Takes a change over from the numbers of now.
+    /// Applies a change, with values of the current numbers.
     pub fn accept(&mut self, change: &Change, now: &Baseline) {
         match change {
             Change::Added { run } => {
@@ -109,7 +109,7 @@ impl Baseline {
     }
 }
 
-/// Whether a quantity's numbers are the same, bit by bit or within the tolerance of two kinds of processors.
+/// Whether the numbers of a quantity are equal, bitwise or within the tolerance of two kinds of processors.
 fn is_same(paired: &Paired, bitwise: bool) -> bool {
     let same = |a: f64, b: f64| {
         a.to_bits() == b.to_bits() || !bitwise && close(&paired.quantity, paired.scale, a, b)
@@ -147,11 +147,11 @@ mod tests {
         assert_eq!(before.compare(&one("a", "rms [m]", &[next], "p"), true).unwrap().changes.len(), 1);
         assert!(before.compare(&one("a", "rms [m]", &[next], "q"), true).unwrap().changes.is_empty());
         assert_eq!(before.compare(&one("a", "rms [m]", &[0.3001], "q"), true).unwrap().changes.len(), 1);
-        // A resultant that is rounding has no digits, one that is not has all.
+        // A resultant of rounding size has no significant digits; a larger one has all.
         let load = |newton: f64, processor: &str| one("a", "load-y [N]", &[newton], processor);
         assert!(load(1e-17, "p").compare(&load(-2e-17, "q"), true).unwrap().changes.is_empty());
         assert_eq!(load(1e-3, "p").compare(&load(1.1e-3, "q"), true).unwrap().changes.len(), 1);
-        // Rounding has no digits: 1e-12 of the run's largest length.
+        // Values of rounding size have no significant digits: 1e-12 of the run's largest length.
         let before = one("a", "rms [m]", &[1e-12], "p");
         assert!(before.compare(&one("a", "rms [m]", &[3e-12], "q"), true).unwrap().changes.is_empty());
     }

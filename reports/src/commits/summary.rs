@@ -8,7 +8,7 @@ use records::store::write_text;
 use records::{Machine, Numbers, Program, Record, RecordError, RunSet, Status};
 use serde::{Deserialize, Serialize};
 
-/// Results in short.
+/// Summary of the results of a study or scene.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Summary {
@@ -129,14 +129,14 @@ impl Summary {
         write_text(path, text)
     }
 
-    /// Its errors by run and quantity.
+    /// Errors by run and quantity.
     pub(super) fn errors(&self) -> Numbers {
         let listed = |(quantity, error): (&String, &f64)| (quantity.clone(), vec![*error]);
         let of = |run: &RunNumbers| run.errors.iter().map(listed).collect();
         self.runs.iter().map(|(name, run)| (name.clone(), of(run))).collect()
     }
 
-    /// Its times as the records of a run set: what two results are compared by.
+    /// The times as records of a run set, for comparisons.
     pub(super) fn times(&self) -> RunSet {
         let records = self.runs.iter().flat_map(|(name, run)| {
             let own = Record {

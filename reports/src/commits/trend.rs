@@ -162,7 +162,7 @@ impl Step {
     }
 }
 
-/// The errors that two results have in common.
+/// Errors that two results have in common.
 fn errors(old: &Summary, new: &Summary) -> Result<Vec<ErrorStep>, RecordError> {
     let found = difference(&old.errors(), &new.errors())?.paired.into_iter();
     let both = |Paired { run, quantity, pairs, .. }: Paired| {
@@ -172,7 +172,7 @@ fn errors(old: &Summary, new: &Summary) -> Result<Vec<ErrorStep>, RecordError> {
     Ok(found.filter_map(both).collect())
 }
 
-/// The trends of results in the order they were added.
+/// Trends of results, in the order in which they were added.
 pub(super) fn trends(all: Vec<(u32, Summary)>) -> Result<Vec<Trend>, RecordError> {
     let mut found: Vec<(String, String, Vec<Added>)> = Vec::new();
     for (number, summary) in all {
@@ -265,7 +265,7 @@ mod tests {
     use crate::commits::RunNumbers;
     use records::{Machine, Program};
 
-    /// Results of so many runs, each of `seconds` scattered a little, with an error.
+    /// Results of `count` runs, each of about `seconds` with some scatter, and with an error.
     fn results(commit: &str, count: usize, seconds: f64, error: f64) -> Summary {
         let run = |k: usize| {
             let time = |repeat: usize| seconds * (1.0 + 0.01 * ((7 * k + 3 * repeat) % 5) as f64);

@@ -1,7 +1,7 @@
-//! Two results against each other: numbers by a tolerance, times as paired ratios with their confidence.
+//! Comparison of two results: numbers by a tolerance, times by paired ratios with their confidence.
 //!
-//! Runs are paired by their ids, or by all but a stated setting. A time is called only outside noise, which
-//! is what the pairs themselves scatter by.
+//! Runs are paired by their ids, or by all but given settings. A change of a time is reported only if it
+//! exceeds noise, which is estimated from the scatter of the pairs.
 
 mod across;
 mod numbers;
@@ -15,22 +15,22 @@ pub use times::{Ratio, Scope, Times};
 use records::{RecordError, RunSet};
 use serde::Serialize;
 
-/// What is different between results before and after.
+/// Differences between results before and after a change.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Comparison {
     /// Numbers that do not depend on the moment.
     pub numbers: Numbers,
-    /// Times; absent where they were not asked for.
+    /// Times; absent if they were not requested.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub times: Option<Times>,
 }
 
 impl Comparison {
-    /// Of pairs of results, before and after; the first pair's numbers are compared, the times of all. A number has changed from the
-    /// relative difference `tolerance` on.
+    /// Compares pairs of results, before and after a change. The numbers are those of the first pair, the
+    /// times those of all pairs. A number has changed if its relative difference exceeds `tolerance`.
     ///
     /// # Errors
-    /// Numbers that can't be paired.
+    /// Numbers that cannot be paired.
     pub fn of(
         pairs: &[(RunSet, RunSet)],
         tolerance: f64,
@@ -41,7 +41,7 @@ impl Comparison {
         Ok(Comparison { numbers: numbers.unwrap_or_default(), times })
     }
 
-    /// Whether no number has changed, no run is missing, and no time is called.
+    /// Whether no number has changed, no run is missing, and no change of a time is reported.
     pub fn is_same(&self) -> bool {
         self.numbers.is_same() && self.times.as_ref().is_none_or(|times| times.called.is_empty())
     }

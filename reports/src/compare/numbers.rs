@@ -1,10 +1,10 @@
-//! Numbers that do not depend on the moment, by a tolerance.
+//! Comparison of the numbers that do not depend on the moment, by a tolerance.
 
 use catalogue::metric;
 use records::{Pair, Paired, RecordError, RunSet, difference, numbers};
 use serde::Serialize;
 
-/// How numbers compare.
+/// Result of a comparison of numbers.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Numbers {
     /// Relative difference above which a number has changed.
@@ -59,7 +59,7 @@ impl Numbers {
 /// Fraction of the largest number of the same unit in a run below which a number is rounding.
 const ROUNDING: f64 = 1e-9;
 
-/// The largest change among the steps of a quantity, if one is beyond the tolerance.
+/// The largest change among the steps of a quantity, if it exceeds the tolerance.
 fn change(paired: &Paired, tolerance: f64) -> Option<NumberChange> {
     let relative = |pair: &Pair| match (pair.before, pair.after) {
         (Some(a), Some(b)) if (a - b).abs() <= ROUNDING * paired.scale => 0.0,

@@ -1,4 +1,4 @@
-//! Times made up with the noise of a busy machine: what is called is called rightly.
+//! Artificial times with the noise of a busy machine, and tests that only real changes are reported.
 use crate::blank::Blank as _;
 
 use super::*;
