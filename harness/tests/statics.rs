@@ -205,7 +205,7 @@ fn errors_against_a_method_are_taken_at_equal_steps() {
     let (done, objects) = run_referenced(&dir, &text);
     // hex8 is its own reference, and its force is above 1 N.
     assert_fails(&done, 1, "FAILED: referenced hex8 tool-force: at most 1e0");
-    assert!(!done.stderr.contains("tool-force-error"), "{}", done.stderr);
+    assert!(!done.stderr.contains("FAILED: referenced hex8 tool-force-error"), "{}", done.stderr);
     assert_eq!(
         (metric(&objects[0], "tool-force-error"), metric(&objects[0], "probe-difference")),
         (0.0, 0.0)
