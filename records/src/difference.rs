@@ -188,7 +188,7 @@ mod tests {
                 5.0,
                 &[(Some(1.0), Some(1.0)), (Some(2.0), Some(2.5)), (Some(-5.0), None)],
             ),
-            paired("l2 [1]", 1.0, &[(None, Some(0.5))]),
+            paired("l2 [1]", 0.0, &[(None, Some(0.5))]),
             paired("rms [m]", 0.1, &[(Some(0.1), Some(0.2))]),
         ];
         assert_eq!(found.paired, expected);
