@@ -18,7 +18,7 @@ pub enum SurfaceError {
         /// The file.
         file: PathBuf,
         /// Problem of the surface.
-        problem: SurfaceProblem,
+        problem: Box<SurfaceProblem>,
     },
 }
 
@@ -38,7 +38,7 @@ pub enum SurfaceProblem {
         /// Ends of the edge.
         ends: [Point3; 2],
         /// Corner of another triangle on the edge, between its ends.
-        corner: Option<Point3>,
+        corner: Option<Box<Point3>>,
         /// Number of such edges.
         edges: usize,
         /// Number of holes that these edges enclose.

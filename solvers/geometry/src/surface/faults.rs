@@ -69,7 +69,7 @@ fn open(soup: &Soup, sides: &[Side]) -> SurfaceProblem {
     SurfaceProblem::Open {
         triangle: soup.faces[first.triangle as usize],
         ends: ends(first),
-        corner: corners().find(|corner| lies_on(corner, &ends(first), tolerance)),
+        corner: corners().find(|corner| lies_on(corner, &ends(first), tolerance)).map(Box::new),
         edges: edges.len(),
         holes,
         hole: hole.len(),

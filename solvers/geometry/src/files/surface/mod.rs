@@ -41,7 +41,8 @@ pub fn read_surface_bytes(bytes: &[u8], file: &Path, unit: f64) -> Result<Surfac
     };
     let at = |(place, problem)| FileError::At { file: file.to_path_buf(), place, problem };
     let soup: Soup = soup.map_err(at)?;
-    Surface::new(soup, unit).map_err(|problem| SurfaceError::Surface { file: file.to_path_buf(), problem })
+    let open = |problem| SurfaceError::Surface { file: file.to_path_buf(), problem: Box::new(problem) };
+    Surface::new(soup, unit).map_err(open)
 }
 
 /// Whether a file holds a surface, according to its first bytes; false for a file that cannot be read.
