@@ -63,9 +63,9 @@ method = [{}]
     assert_eq!(done.code, 0, "{}", done.stderr);
     let energy = |object: &serde_json::Value| {
         let energy = object["metrics"]["strain-energy"]["value"].as_f64().unwrap();
-        let told = object["warnings"].as_array().unwrap().iter();
-        let told = told.filter(|w| w["code"] == "stress-jump" || w["code"] == "few-cells");
-        let messages = told.map(|w| w["message"].as_str().unwrap().to_string()).collect();
+        let placed = object["warnings"].as_array().unwrap().iter();
+        let placed = placed.filter(|w| w["code"] == "stress-jump" || w["code"] == "few-cells");
+        let messages = placed.map(|w| w["message"].as_str().unwrap().to_string()).collect();
         (object["method"].as_str().unwrap().to_string(), energy, messages)
     };
     objects(&done.stdout).iter().map(energy).collect()
@@ -79,7 +79,7 @@ fn clouds_open_slits_as_elements_do() {
         let all = energies(&slit(2, tip, width, bend));
         let (_, exact, _) = &all[0];
         assert_eq!(all.len(), 8);
-        for (method, energy, told) in &all[1..] {
+        for (method, energy, warnings) in &all[1..] {
             let off = energy / exact - 1.0;
             let bound = match method.as_str() {
                 // Nodal smoothing is soft in bending, and its stress has few jumps that cause a warning.
@@ -88,8 +88,8 @@ fn clouds_open_slits_as_elements_do() {
                 "own" if tip < 0.0 => 0.18,
                 _ => 0.1,
             };
-            let placed = told.iter().any(|message| message.contains(" mm"));
-            assert!(off.abs() < bound || placed, "{tip} {width} {bend}, {method}: {off}, {told:?}");
+            let placed = warnings.iter().any(|message| message.contains(" mm"));
+            assert!(off.abs() < bound || placed, "{tip} {width} {bend}, {method}: {off}, {warnings:?}");
         }
     }
 }

@@ -2,8 +2,7 @@
 
 mod common;
 
-use std::fmt::Write as _;
-
+use common::implicit::stl;
 use common::{assert_fails, inside, tissuebench, write};
 use serde_json::Value;
 
@@ -31,15 +30,7 @@ fn ellipsoid(left_out: usize) -> String {
         }
     }
     triangles.truncate(triangles.len() - left_out);
-    let mut text = String::from("solid ellipsoid\n");
-    for corners in triangles {
-        text += "facet normal 0 0 0\nouter loop\n";
-        for [x, y, z] in corners {
-            writeln!(text, "vertex {x} {y} {z}").unwrap();
-        }
-        text += "endloop\nendfacet\n";
-    }
-    text + "endsolid\n"
+    stl("ellipsoid", &triangles)
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! Records as the columns of a data frame, named like their fields.
 
 use polars::prelude::*;
+use serde::Serialize;
 
 use crate::record::{Family, Purpose, Record};
 
@@ -36,12 +37,18 @@ macro_rules! plain {
 }
 plain!(f64, Option<f64>, u64, Option<u64>, u32, Option<bool>);
 
+/// Word of a field in files.
+fn word(value: &impl Serialize) -> String {
+    let written = serde_json::to_value(value).expect("a word has no keys to be written");
+    written.as_str().expect("its variants are words").to_string()
+}
+
 /// Fields whose values are words.
 macro_rules! words {
     ($($kind:ty),*) => {$(
         impl Field for $kind {
             fn column(name: &str, values: &[&Self]) -> Column {
-                let words: Vec<&str> = values.iter().map(|value| value.name()).collect();
+                let words: Vec<String> = values.iter().map(|value| word(value)).collect();
                 Column::new(name.into(), words)
             }
         }

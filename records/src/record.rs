@@ -60,20 +60,6 @@ pub enum Family {
     Reference,
 }
 
-impl Family {
-    /// Name in files.
-    pub fn name(self) -> &'static str {
-        match self {
-            Family::Fem => "fem",
-            Family::Efg => "efg",
-            Family::OverMesh => "over-mesh",
-            Family::External => "external",
-            Family::Interp => "interp",
-            Family::Reference => "reference",
-        }
-    }
-}
-
 /// Purpose of a case.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
@@ -87,18 +73,6 @@ pub enum Purpose {
     Rough,
     /// A reproduction of a published case, compared with its numbers, without a theoretical order.
     Published,
-}
-
-impl Purpose {
-    /// Name in files.
-    pub fn name(self) -> &'static str {
-        match self {
-            Purpose::Patch => "patch",
-            Purpose::Smooth => "smooth",
-            Purpose::Rough => "rough",
-            Purpose::Published => "published",
-        }
-    }
 }
 
 /// One number of one run. Settings that a method does not have are `None`.

@@ -1,8 +1,8 @@
 //! Turns records into tables, figures and a page.
 //!
-//! The harness writes a [`records::RunSet`] to a folder. [`render`] turns the folder into CSV, Markdown and LaTeX
-//! tables, SVG, PNG and PDF figures and a self-contained HTML report. Rendering only reads: nothing is solved or
-//! timed again.
+//! The harness writes a [`records::RunSet`] to a folder. [`render`] turns the folder into CSV, Markdown and
+//! LaTeX tables, SVG, PNG and PDF figures and a self-contained HTML report. Rendering only reads: nothing is
+//! solved or timed again.
 //!
 //! ```
 //! use records::{Family, Record, RunSet, read_run, write_run};

@@ -64,8 +64,8 @@ fn code(status: ExitStatus) -> u8 {
     status.code().and_then(|code| u8::try_from(code).ok()).unwrap_or(1)
 }
 
-/// Kills the group that this process leads, including this process. A group led by another process is left
-/// alone.
+/// Kills the process group of this process, and with it the process, if the process is the group leader.
+/// Another group is not touched.
 fn end_own_group() {
     #[cfg(unix)]
     if rustix::process::getpgrp() == rustix::process::getpid() {

@@ -97,7 +97,7 @@ pub fn surface(inside: &dyn Fn(Vector) -> f64, [low, high]: [Vector; 2], cells: 
             }
         }
     }
-    stl(&triangles)
+    stl("body", &triangles)
 }
 
 /// A body that turns about z: radius and height of its outline, from the bottom up, with flat ends or tips.
@@ -116,11 +116,12 @@ pub fn turned(outline: &[[f64; 2]], sectors: usize) -> String {
         }
     }
     triangles.retain(|[a, b, c]| a != b && b != c && c != a);
-    stl(&triangles)
+    stl("body", &triangles)
 }
 
-fn stl(triangles: &[Triangle]) -> String {
-    let mut text = String::from("solid body\n");
+/// Writes triangles as the text of an STL file with one solid of that name.
+pub fn stl(name: &str, triangles: &[Triangle]) -> String {
+    let mut text = format!("solid {name}\n");
     for corners in triangles {
         text += "facet normal 0 0 0\nouter loop\n";
         for [x, y, z] in corners {
