@@ -167,7 +167,7 @@ fn a_tool_that_loses_its_contact_is_named_and_exits_with_3() {
         assert_eq!(object["status"], "contact-lost", "{object}");
         let message = object["message"].as_str().unwrap();
         // The limit is half of the ball's radius.
-        assert!(message.contains("(limit 2.5e-3 m, half its inradius)"), "{message}");
+        assert!(message.contains("(limit 2.5e-3 m, half the tool's inradius)"), "{message}");
         // The ball touches the block at 1 mm or somewhat later. If the block does not yield, this depth is
         // reached at 3.5 mm. States are 0.9 mm apart.
         let (states, closure) = (object["steps"].as_array().unwrap().len(), metric(object, "closure"));
@@ -184,7 +184,7 @@ fn a_tool_that_loses_its_contact_is_named_and_exits_with_3() {
     let still = coarse.replace("kind = \"explicit\", duration = \"20 ms\"", "kind = \"static\"");
     for (scene, status) in [(&coarse, "contact-lost"), (&still, "stalled")] {
         let (done, told) = run(scene);
-        assert_fails(&done, 3, "out of the body from within");
+        assert_fails(&done, 3, "acts outwards from inside the body");
         assert_eq!((&told[0]["method"], &told[0]["status"]), (&"hex8".into(), &status.into()));
         let carried = metric(&told[0], "load-carried");
         assert!((0.5..0.75).contains(&carried) && metric(&told[0], "tool-force") > 0.0, "{carried}");
@@ -199,7 +199,7 @@ fn a_tool_that_loses_its_contact_is_named_and_exits_with_3() {
     assert_fails(&done, 3, "key 'procedure': ");
     for object in &told {
         assert_eq!(object["status"], "contact-lost", "{object}");
-        assert!(object["message"].as_str().unwrap().contains("give it more mass"), "{object}");
+        assert!(object["message"].as_str().unwrap().contains("give the tool more mass"), "{object}");
     }
 }
 

@@ -128,6 +128,6 @@ fn explicit_tools_are_no_faster_than_their_thickness() {
         .replace(r#"closure = "20 mm""#, r#"closure = "20 mm", over = "50 us""#)
         .replace(STATIC, r#"kind = "explicit", duration = "1 ms", steps = 2"#);
     let done = run(&fast);
-    assert_fails(&done, 3, "would go straight through the tool");
+    assert_fails(&done, 3, "would pass through the tool");
     assert_fails(&done, 3, "key 'tool[0]'");
 }

@@ -281,7 +281,7 @@ fn bad_tools_are_refused_with_their_numbers() {
     assert_eq!(rounded, ContactError::Rounding { radius: 1.5e-3, half: 1e-3 });
     assert_eq!(
         rounded.to_string(),
-        "the box's edges are rounded by 0.0015 m; it must be between 0 and the least half extent, 0.001 m"
+        "the rounding radius of the box is 0.0015 m; it must be between 0 and the smallest half extent, 0.001 m"
     );
     assert!(matches!(
         shape(ToolShape::RoundedBox(RoundedBox { half: [1.0; 3], radius: f64::NAN })),

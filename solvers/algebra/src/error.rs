@@ -5,7 +5,8 @@
 pub enum AlgebraError {
     /// A pivot is so small relative to its diagonal entry that the solution would be noise.
     #[error(
-        "the stiffness is singular to rounding: smallest pivot over diagonal {ratio:e} (limit {limit:e})"
+        "the stiffness matrix is numerically singular: smallest ratio of pivot to diagonal {ratio:e} (limit \
+         {limit:e})"
     )]
     NearlySingular {
         /// Smallest ratio of pivot to diagonal entry.
@@ -27,8 +28,8 @@ pub enum AlgebraError {
     /// The solution does not even solve a nearby system: the constraints are dependent, contradictory or
     /// badly scaled.
     #[error(
-        "the solution is that of no system near this one: backward error {backward_error:e} (limit {limit:e}), relative \
-         residual {residual:e}"
+        "the solution of the linear system is inaccurate: backward error {backward_error:e} (limit \
+         {limit:e}), relative residual {residual:e}"
     )]
     BackwardError {
         /// Smallest relative change of matrix and right-hand side that makes the solution exact.
@@ -40,7 +41,8 @@ pub enum AlgebraError {
     },
     /// The matrix is so close to singular that rounding takes every digit.
     #[error(
-        "the stiffness is singular to rounding: {digits:.1} digits are left of the solution (backward error {backward_error:e})"
+        "the stiffness matrix is numerically singular: the solution has {digits:.1} correct digits (backward \
+         error {backward_error:e})"
     )]
     NoDigits {
         /// Expected number of correct decimal digits.
@@ -49,7 +51,7 @@ pub enum AlgebraError {
         backward_error: f64,
     },
     /// The eigenvalue decomposition did not converge.
-    #[error("no frequencies: the eigenvalues of {dofs} degrees of freedom did not converge")]
+    #[error("the eigenvalues of {dofs} degrees of freedom did not converge")]
     NoEigenvalues {
         /// Number of degrees of freedom.
         dofs: usize,
@@ -61,7 +63,7 @@ pub enum AlgebraError {
         status: i32,
     },
     /// Memory is exhausted, or the factor is too large to index.
-    #[error("the factor of a matrix of {dofs} degrees of freedom does not fit: {why}")]
+    #[error("the matrix of {dofs} degrees of freedom is too large to factor: {why}")]
     TooLarge {
         /// Number of degrees of freedom.
         dofs: usize,

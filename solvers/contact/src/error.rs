@@ -15,7 +15,8 @@ pub enum ContactError {
     },
     /// The rounding radius of a box is negative or too large for the box.
     #[error(
-        "the box's edges are rounded by {radius} m; it must be between 0 and the least half extent, {half} m"
+        "the rounding radius of the box is {radius} m; it must be between 0 and the smallest half extent, \
+         {half} m"
     )]
     Rounding {
         /// Given rounding radius, m.
@@ -53,7 +54,8 @@ pub enum ContactError {
     },
     /// The coefficient of friction is negative, zero or not finite.
     #[error(
-        "the coefficient of friction is {value}; it must be positive and finite (without friction: none)"
+        "the coefficient of friction is {value}; it must be positive and finite (leave it out for \
+         frictionless contact)"
     )]
     Friction {
         /// Given coefficient.
@@ -77,8 +79,8 @@ pub enum ContactError {
     },
     /// A point is so deep in a tool that it would soon be pushed out on the far side.
     #[error(
-        "surface point {point} is {penetration:e} m deep in the tool (limit {limit:e} m, half its inradius): \
-         a smaller step or a larger penalty is needed"
+        "surface point {point} lies {penetration:e} m inside the tool (limit {limit:e} m, half the tool's \
+         inradius): a smaller step or a larger penalty is needed"
     )]
     PassedThrough {
         /// The point (the lowest, if there are several).
@@ -90,8 +92,9 @@ pub enum ContactError {
     },
     /// A tool passes through the surface within one step and touches nothing afterwards.
     #[error(
-        "the surface near ({:.4}, {:.4}, {:.4}) m would go straight through the tool, {depth:.3e} m below its surface on the way: \
-         they move {travel:.3e} m against each other in this step, and a smaller one is needed",
+        "the surface near ({:.4}, {:.4}, {:.4}) m would pass through the tool in this step, as deep as \
+         {depth:.3e} m below the tool's surface: the step moves tool and body by {travel:.3e} m relative to \
+         each other; a smaller step is needed",
         at.x, at.y, at.z
     )]
     JumpedOver {
@@ -104,8 +107,9 @@ pub enum ContactError {
     },
     /// A tool overlaps the body but touches no point of its surface.
     #[error(
-        "it overlaps the body by {depth:.3e} m near ({:.4}, {:.4}, {:.4}) m and touches no contact point, so without any force: \
-         the nearest one is {apart:.3e} m from there, and a finer surface is needed",
+        "the tool overlaps the body by {depth:.3e} m near ({:.4}, {:.4}, {:.4}) m but touches no contact \
+         point, so the contact force is zero: the nearest contact point is {apart:.3e} m away; a finer \
+         surface is needed",
         at.x, at.y, at.z
     )]
     Overlap {
@@ -118,8 +122,8 @@ pub enum ContactError {
     },
     /// A tool pushes out of the body from within.
     #[error(
-        "{:.0} % of the tool's force push out of the body from within, at surface point {point} near ({:.4}, {:.4}, {:.4}) m: it has \
-         slipped through between the points of the surface, and a finer surface is needed",
+        "{:.0} % of the tool's force acts outwards from inside the body, at surface point {point} near \
+         ({:.4}, {:.4}, {:.4}) m: the tool has slipped between the contact points; a finer surface is needed",
         100.0 * share, at.x, at.y, at.z
     )]
     WithinBody {

@@ -65,5 +65,5 @@ pub(crate) fn irregular(of: &Metadata) -> &'static str {
             return "a device";
         }
     }
-    if of.is_dir() { "a folder" } else { "no regular file" }
+    if of.is_dir() { "a folder" } else { "a special file" }
 }

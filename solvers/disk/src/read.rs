@@ -54,7 +54,7 @@ fn regular(of: &Metadata, kind: Kind) -> io::Result<u64> {
         return Err(ErrorKind::IsADirectory.into());
     }
     if !of.is_file() {
-        let problem = format!("is {}, which is not read; give a regular file", irregular(of));
+        let problem = format!("is {}; give a regular file", irregular(of));
         return Err(io::Error::new(ErrorKind::InvalidInput, problem));
     }
     fits(of.len(), kind)
@@ -64,6 +64,6 @@ fn fits(bytes: u64, kind: Kind) -> io::Result<u64> {
     if bytes <= kind.most {
         return Ok(bytes);
     }
-    let problem = format!("has more than {} bytes, the most of {}", kind.most, kind.name);
+    let problem = format!("has more than {} bytes, the size limit of {}", kind.most, kind.name);
     Err(io::Error::new(ErrorKind::FileTooLarge, problem))
 }

@@ -16,7 +16,7 @@ pub fn create(path: &Path) -> io::Result<File> {
     let opened = without_waiting(OpenOptions::new().write(true).create(true).truncate(true)).open(path);
     let file = opened.map_err(|bad| match fs::metadata(path) {
         Ok(of) if !of.is_file() && !of.is_dir() && bad.kind() != ErrorKind::PermissionDenied => {
-            io::Error::new(bad.kind(), format!("is {} that nobody reads: {bad}", irregular(&of)))
+            io::Error::new(bad.kind(), format!("is {} without a reader: {bad}", irregular(&of)))
         }
         _ => bad,
     })?;
@@ -102,7 +102,7 @@ pub fn create_lock(path: &Path) -> io::Result<File> {
     if file.metadata()?.is_file() {
         return Ok(file);
     }
-    Err(io::Error::new(ErrorKind::InvalidInput, "is no regular file"))
+    Err(io::Error::new(ErrorKind::InvalidInput, "is not a regular file"))
 }
 
 /// Sets the flags with which opening a pipe does not wait for its other end.

@@ -40,7 +40,7 @@ pub enum EfgError {
     },
     /// A node without cells, or with flat cells.
     #[error(
-        "the cells around node {node} are flat, or there are none; a support that follows them needs cells with a volume"
+        "node {node} has no adjacent cell with a volume; an ellipsoidal support is computed from the adjacent cells"
     )]
     FlatCells {
         /// Node index.
@@ -58,7 +58,8 @@ pub enum EfgError {
     },
     /// A point covered by too few nodes, even with the largest allowed enlargement of supports.
     #[error(
-        "point ({:e}, {:e}, {:e}) m has {found} neighbours with supports enlarged {enlargement:.2} times; {needed} are needed",
+        "point ({:e}, {:e}, {:e}) m has {found} neighbours even with supports enlarged {enlargement:.2} \
+         times; {needed} are needed",
         point.x, point.y, point.z
     )]
     TooFewNeighbours {
@@ -74,8 +75,9 @@ pub enum EfgError {
     /// A point whose neighbours do not span the basis (for example because they lie in one plane), even after
     /// all remedies.
     #[error(
-        "the {found} neighbours of point ({:e}, {:e}, {:e}) m do not span the linear basis, supports enlarged {enlargement:.2} times \
-         (do they lie in one plane?); the basis asked for has {needed} terms",
+        "the {found} neighbours of point ({:e}, {:e}, {:e}) m do not span the linear basis, even with \
+         supports enlarged {enlargement:.2} times (do the neighbours lie in one plane?); the requested basis \
+         has {needed} terms",
         point.x, point.y, point.z
     )]
     SingularMoment {
@@ -91,8 +93,9 @@ pub enum EfgError {
     /// A point outside the convex hull of its neighbours, at which no positive functions reproduce linear
     /// fields.
     #[error(
-        "point ({:e}, {:e}, {:e}) m lies outside the convex hull of its {found} neighbours: no mean of theirs came nearer \
-         than {gap:e} m in {iterations} steps (maximum-entropy functions are positive and cannot extrapolate)",
+        "point ({:e}, {:e}, {:e}) m lies outside the convex hull of its {found} neighbours: after \
+         {iterations} Newton steps the weighted mean of the neighbours is still {gap:e} m away \
+         (maximum-entropy functions are positive and cannot extrapolate)",
         point.x, point.y, point.z
     )]
     OutsideHull {
@@ -134,7 +137,7 @@ pub enum EfgError {
         face: u8,
     },
     /// A number of points for which there is no rule.
-    #[error("no {what} rule has {points} points; offered: {offered}")]
+    #[error("there is no {what} rule with {points} points; available: {offered}")]
     NoRule {
         /// Shape of the cell or face.
         what: &'static str,
@@ -154,7 +157,7 @@ pub enum EfgError {
         spacing: f64,
     },
     /// A grid with too many points.
-    #[error("a grid spacing of {spacing:e} m makes {points:e} points; at most {limit:e} are allowed")]
+    #[error("a grid spacing of {spacing:e} m gives {points:e} points; at most {limit:e} are allowed")]
     HugeGrid {
         /// Number of grid points that would be needed.
         points: f64,
@@ -164,11 +167,12 @@ pub enum EfgError {
         limit: f64,
     },
     /// Shape functions that cannot be coupled to finite elements.
-    #[error("only moving least squares with the linear basis are coupled to finite elements")]
+    #[error("only moving least squares with the linear basis can be coupled to finite elements")]
     NotCoupled,
     /// An invalid list of finite-element nodes.
     #[error(
-        "vertex {vertex} of the background can't be a finite-element node: there are {count}, to be listed ascending, each once"
+        "vertex {vertex} of the background mesh cannot be a finite-element node: the mesh has {count} \
+         vertices, and the list must be ascending without repetition"
     )]
     BadVertex {
         /// The vertex.

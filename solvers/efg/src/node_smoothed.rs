@@ -148,7 +148,7 @@ pub fn node_smoothed_regions(background: &Mesh, stabilisation: f64) -> Vec<u16> 
 }
 
 fn check(value: f64) -> Result<(), EfgError> {
-    let allowed = "a share of at least 0 and below 1";
+    let allowed = "a fraction of at least 0 and below 1";
     let sound = (0.0..1.0).contains(&value);
     if sound { Ok(()) } else { Err(EfgError::BadParameter { what: "stabilisation", value, allowed }) }
 }

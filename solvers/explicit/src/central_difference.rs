@@ -439,7 +439,7 @@ pub(super) fn constrained(
             return bad("there is no such node or axis");
         }
         if std::mem::replace(&mut constrained[3 * node as usize + axis as usize], true) {
-            return bad("it is prescribed twice");
+            return bad("the displacement is prescribed twice");
         }
     }
     Ok(constrained)

@@ -26,7 +26,7 @@ pub enum ExplicitError {
         expected: usize,
     },
     /// A region index has no law.
-    #[error("point {point} lies in region {region}, but there are {laws} laws")]
+    #[error("point {point} lies in region {region}, but only {laws} laws are given")]
     NoLaw {
         /// Quadrature point.
         point: usize,
@@ -90,7 +90,10 @@ pub enum ExplicitError {
         node: usize,
     },
     /// The time step exceeds the critical step: the motion would grow without bound.
-    #[error("step {step} (t = {time:e} s): the time step {dt:e} s exceeds the critical {critical:e} s")]
+    #[error(
+        "step {step} (t = {time:e} s): the time step {dt:e} s exceeds the critical time step \
+         {critical:e} s"
+    )]
     StepTooLarge {
         /// Step.
         step: usize,
@@ -115,8 +118,9 @@ pub enum ExplicitError {
     },
     /// A tool is so light that it would jump off the tissue within a step.
     #[error(
-        "step {step} (t = {time:e} s): tool {tool} of {mass:e} kg swings on its contact with a critical step of \
-         {critical:e} s; it must be at least twice the time step {dt:e} s: give it more mass"
+        "step {step} (t = {time:e} s): tool {tool} of {mass:e} kg vibrates on its contact stiffness with a \
+         critical time step of {critical:e} s, which must be at least twice the time step {dt:e} s: give the \
+         tool more mass"
     )]
     LightTool {
         /// Step.
@@ -133,7 +137,10 @@ pub enum ExplicitError {
         critical: f64,
     },
     /// The relaxation has not come to rest.
-    #[error("not at rest after {steps} steps: estimated relative error {error:e} (tolerance {tolerance:e})")]
+    #[error(
+        "the body is not at rest after {steps} steps: estimated relative error {error:e} (tolerance \
+         {tolerance:e})"
+    )]
     NotRelaxed {
         /// Number of steps made.
         steps: usize,

@@ -34,7 +34,7 @@ pub enum FemError {
         cells: usize,
     },
     /// There is no rule with that number of points.
-    #[error("no quadrature rule of {points} {counted} for {kind}; there are {known}")]
+    #[error("there is no quadrature rule of {points} {counted} for {kind}; available: {known}")]
     NoRule {
         /// Cell or face kind.
         kind: &'static str,

@@ -80,8 +80,10 @@ impl Graph {
     /// Returns the order found by METIS: the vertex at each position.
     fn dissect(&self) -> Result<Vec<usize>, AlgebraError> {
         let count = self.weights.len();
-        let too_large =
-            |_| AlgebraError::TooLarge { dofs: count, why: "its graph has more than 2^31 edges".into() };
+        let too_large = |_| AlgebraError::TooLarge {
+            dofs: count,
+            why: "the graph of the matrix has more than 2^31 edges".into(),
+        };
         let mut offsets = self
             .offsets
             .iter()

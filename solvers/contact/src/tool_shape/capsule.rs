@@ -18,7 +18,8 @@ pub struct Capsule {
 
 pub(super) const ENTRY: ToolShapeEntry = Entry {
     name: "capsule",
-    meaning: "a cylinder with half spheres at its ends; its length is that between their centres",
+    meaning: "a cylinder with hemispherical ends; the length is the distance between the centres of the \
+              hemispheres",
     source: "",
     parameters: &[RADIUS, LENGTH, AXIS],
     build: |values| {

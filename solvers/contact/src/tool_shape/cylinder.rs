@@ -21,7 +21,7 @@ pub struct Cylinder {
 
 pub(super) const ENTRY: ToolShapeEntry = Entry {
     name: "cylinder",
-    meaning: "a cylinder with flat ends and sharp rims; longer than the body it is a roller",
+    meaning: "a cylinder with flat ends and sharp rims; a roller if it is longer than the body",
     source: "",
     parameters: &[RADIUS, LENGTH, AXIS],
     build: |values| {

@@ -18,7 +18,7 @@ const AXIS: Parameter = Parameter::optional(
 
 pub(super) const ENTRY: ToolShapeEntry = Entry {
     name: "plate",
-    meaning: "a half space: a flat face without end",
+    meaning: "a half space, bounded by an infinite flat face",
     source: "",
     parameters: &[AXIS],
     build: |_| Ok(Plate.into()),

@@ -19,18 +19,18 @@ pub struct RoundedBox {
     pub radius: f64,
 }
 
-const HALF: Parameter = Parameter::required("half", Dimension::Length, "half extents, rounding included")
+const HALF: Parameter = Parameter::required("half", Dimension::Length, "half extents, including the rounding")
     .of(Kind::Vector)
     .within(Range::Positive);
 
 pub(super) const ENTRY: ToolShapeEntry = Entry {
     name: "rounded-box",
-    meaning: "a box along the axes of the scene with rounded edges and corners",
+    meaning: "an axis-parallel box with rounded edges and corners",
     source: "",
     parameters: &[HALF, RADIUS],
     build: |values| {
         let &[x, y, z] = values.list("half").unwrap_or_default() else {
-            return Err(Problem::new("has not three half extents").of("half"));
+            return Err(Problem::new("does not have three half extents").of("half"));
         };
         let shape = RoundedBox { half: [x, y, z], radius: values.number("radius")? };
         shape.check().map_err(|bad| Problem::new(bad.to_string()).of("radius"))?;

@@ -16,7 +16,7 @@ const POWER: Parameter = Parameter::default("power", Dimension::None, 2.0, "expo
 pub(super) const ENTRY: KernelEntry = Entry {
     name: "exponential",
     meaning: "(e^-(q/alpha)^2k - e^-(1/alpha)^2k) / (1 - e^-(1/alpha)^2k)",
-    source: "Belytschko, Lu and Gu (1994), at a free power k",
+    source: "Belytschko, Lu and Gu (1994), with a free power k",
     parameters: &[gaussian::width(0.5), POWER],
     build: |values: &Values| -> Result<_, Problem> {
         let (alpha, power) = (values.number("alpha")?, values.number("power")?);

@@ -10,12 +10,12 @@ pub struct RegularisedInterpolating {
 }
 
 const EPS: Parameter =
-    Parameter::default("eps", Dimension::None, 1e-5, "regularisation: what keeps the peak finite")
+    Parameter::default("eps", Dimension::None, 1e-5, "regularisation parameter, which keeps the peak finite")
         .within(Range::Within(1e-8, 1.0));
 
 pub(super) const ENTRY: KernelEntry = Entry {
     name: "regularised-interpolating",
-    meaning: "((q^2 + eps)^-2 - (1 + eps)^-2) / (eps^-2 - (1 + eps)^-2): almost interpolating",
+    meaning: "((q^2 + eps)^-2 - (1 + eps)^-2) / (eps^-2 - (1 + eps)^-2); nearly interpolating",
     source: "Most and Bucher (2005)",
     parameters: &[EPS],
     build: |values: &Values| -> Result<_, Problem> {
