@@ -78,7 +78,11 @@ fn mirrored_cells_are_turned_on_request() {
     let text = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n4\n1 0 0 0\n2 -3 0 0\n3 0 2 0\n4 0 0 1\n$EndNodes\n\
                 $Elements\n1\n1 4 2 1 1 1 2 3 4\n$EndElements\n";
     let (mirrored, turned) = (write(&dir, "mirrored.msh", text), inside(&dir, "turned.msh"));
-    assert_fails(&tissuebench(&["mesh", "info", &mirrored]), 2, "tissuebench mesh convert --turn turns them");
+    assert_fails(
+        &tissuebench(&["mesh", "info", &mirrored]),
+        2,
+        "reverse it with tissuebench mesh convert --turn",
+    );
     let done = tissuebench(&["mesh", "convert", &mirrored, &turned, "--turn"]);
     assert_eq!(done.code, 0, "{}", done.stderr);
     let info = tissuebench(&["mesh", "info", &turned]);

@@ -186,9 +186,12 @@ fn every_rule_on_offer_integrates_and_others_are_refused() {
     }
     assert_eq!(VolumeRule::FINE.with(CellKind::Hex8, 5).unwrap().points(CellKind::Hex8), 125);
     let message = VolumeRule::FINE.with(CellKind::Tet4, 5).unwrap_err().to_string();
-    assert!(message.contains("no quadrature rule of 5 points for tet4; there are 1, 4, 8, 14"), "{message}");
+    assert!(
+        message.contains("there is no quadrature rule of 5 points for tet4; available: 1, 4, 8, 14"),
+        "{message}"
+    );
     let message = SurfaceRule::FINE.with(FaceKind::Quad8, 0).unwrap_err().to_string();
-    assert!(message.contains("0 points per axis for quad8; there are 1 to 16"), "{message}");
+    assert!(message.contains("0 points per axis for quad8; available: 1 to 16"), "{message}");
     assert!(VolumeRule::FINE.with(CellKind::Hex20, 17).is_err());
 }
 

@@ -28,7 +28,7 @@ pub struct Neighbour {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum SearchError {
     /// No points, or more points than 32-bit indices allow.
-    #[error("{count} points cannot be searched; there have to be 1 to {}", u32::MAX)]
+    #[error("{count} points cannot be searched; the number of points has to be 1 to {}", u32::MAX)]
     Count {
         /// Number of points.
         count: usize,

@@ -138,7 +138,7 @@ fn bad_requests_are_named() {
     assert!(matches!(cloud(&Kidney, usize::MAX, 1, &[]), Err(CloudError::TooMany { .. })));
     assert!(refine(Point3::new(f64::NAN, 0.0, 0.0), 1.0, 1.0, 2.0).contains("centre of refinement 0"));
     assert!(refine(o, -1.0, 1.0, 2.0).contains("radius of refinement 0 is -1"));
-    assert!(refine(o, 1.0, 0.0, 2.0).contains("reach"));
+    assert!(refine(o, 1.0, 0.0, 2.0).contains("transition width"));
     assert!(refine(o, 1.0, 1.0, 0.5).contains("ratio"));
     assert!(refine(o, 1.0, 1.0, f64::NAN).contains("NaN"));
     let flat = Cuboid { min: o, max: Point3::new(1.0, 1.0, 0.0) };

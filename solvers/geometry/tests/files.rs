@@ -218,39 +218,44 @@ fn at_line<'a>((from, to, line, says): (&'a str, &'a str, u32, &str)) -> (&'a st
 #[test]
 fn broken_decks_name_the_line() {
     let cases = [
-        ("*heading", "heading", 1, "'heading' begins no mesh file"),
-        ("*Node, NSET", "*Nodes, NSET", 4, "*NODES is no keyword of Abaqus or CalculiX; did you mean *NODE?"),
+        ("*heading", "heading", 1, "no supported mesh format begins with 'heading'"),
+        (
+            "*Node, NSET",
+            "*Nodes, NSET",
+            4,
+            "*NODES is not a keyword of Abaqus or CalculiX; did you mean *NODE?",
+        ),
         ("1.D0", "1,D0", 6, "expected a coordinate, found 'D0'"),
         ("1.0d+0", "nan", 7, "expected a coordinate, found 'nan'"),
         ("1.0d+0", "1e999", 7, "node 3 has a coordinate that is not finite"),
-        ("4, 0, 0, 1", "3, 0, 0, 1", 8, "node 3 comes a second time"),
+        ("4, 0, 0, 1", "3, 0, 0, 1", 8, "node 3 occurs a second time"),
         ("4, 0, 0, 1", "-4, 0, 0, 1", 8, "expected a node number, found '-4'"),
         ("TYPE=C3D4", "TYPE=C3D6", 12, "element 11 has type C3D6; C3D4, C3D10"),
         ("TYPE=C3D4, ", "", 10, "expected TYPE, found '*ELEMENT'"),
         ("12, 2, 3, 4,5", "12, 2, 3, 4,5,6", 14, "element 12 of type C3D4 has 6 numbers"),
         ("12, 2, 3, 4,5", "12, 2, 3, 4,6", 14, "element 12 names node 6"),
         ("12, 2, 3, 4,5", "12, 2, 3, 4,4", 14, "element 12 names node 4 twice"),
-        ("12, 2, 3, 4,5", "11, 2, 3, 4,5", 14, "element 11 comes a second time"),
+        ("12, 2, 3, 4,5", "11, 2, 3, 4,5", 14, "element 11 occurs a second time"),
         ("12, 2, 3, 4,5", "12, 4, 3, 2, 1", 14, "element 12 has the same nodes as element 11 (line 12)"),
         ("\n 12\n", "\n 14\n", 18, "element set 'second' names element 14"),
         ("\n 12\n", "\n first\n", 18, "element set 'second' names set first"),
-        ("11, 12, 1", "12, 11, 1", 20, "a last one not below it"),
+        ("11, 12, 1", "12, 11, 1", 20, "a last number not below the first"),
         ("11, 12, 1", "11, 12, 0", 20, "a step of 1 or more"),
         ("11, 12, 1", "1, 4000000000", 20, "too many numbers to generate: 3999999999"),
         ("SECOND, s3", "SECOND, s5", 24, "expected a face that the element has"),
         ("SECOND, s3", "SECOND, 3", 24, "expected the face of an element, such as S1, found '3'"),
         ("SECOND, s3", "third, s3", 24, "surface 'slanted face' names set third"),
         ("*MATERIAL", "*SOLID SECTION, ELSET=none\n*MATERIAL", 25, "'none' names set none"),
-        ("*MATERIAL", "*NGEN\n*MATERIAL", 25, "*NGEN is not read; write the deck with all nodes"),
+        ("*MATERIAL", "*NGEN\n*MATERIAL", 25, "*NGEN is not supported; write a deck that lists all nodes"),
         (
             "*MATERIAL",
             "*NSET, NSET=a, INPUT=b.txt\n*MATERIAL",
             25,
-            "INPUT of *NSET is not read; put the lines",
+            "INPUT of *NSET is not supported; copy the lines",
         ),
         ("*MATERIAL", "*INCLUDE, INPUT=../other.inp\n*MATERIAL", 25, "lie in the folder of the deck"),
         ("*MATERIAL", "*INCLUDE, INPUT=/etc/passwd\n*MATERIAL", 25, "lie in the folder of the deck"),
-        ("*MATERIAL", "*INCLUDE, INPUT=nothing.inp\n*MATERIAL", 25, "there is no such file"),
+        ("*MATERIAL", "*INCLUDE, INPUT=nothing.inp\n*MATERIAL", 25, "the file does not exist"),
         ("*MATERIAL", "*INSTANCE, NAME=a, PART=b\n*MATERIAL", 25, "names part b"),
         ("*MATERIAL", "*END PART\n*MATERIAL", 25, "expected *PART before *END PART"),
         ("*ELEMENT,\nTYPE=C3D4", "*ELEMENT,\n TYPE=T3D2", 1, "no tetrahedra or hexahedra"),
@@ -267,7 +272,7 @@ fn nodes_without_elements_are_refused_or_left_out() {
     };
     let lone = with("77, 2, 2, 2\n78, 3, 2, 2");
     let bad = deck(&lone).unwrap_err();
-    assert!(bad.starts_with("deck.inp:10: no element names node 77 (and 1 others)"), "{bad}");
+    assert!(bad.starts_with("deck.inp:10: node 77 (and 1 others) belongs to no element"), "{bad}");
     for named in [
         "*NSET, NSET=reference\n77, 78",
         "*ELEMENT, TYPE=T3D2\n99, 77, 78",
@@ -319,7 +324,7 @@ fn files_that_decks_include_are_read_and_named() {
     assert_eq!(files::included(&file), [folder.path().join("nodes.inp")]);
     write("nodes.inp", &nodes.replace("3, 0", "2, 0"));
     let bad = files::read(&file, 1.0).unwrap_err().to_string();
-    assert!(bad.ends_with("deck.inp:1: in nodes.inp, line 4: node 2 comes a second time"), "{bad}");
+    assert!(bad.ends_with("deck.inp:1: in nodes.inp, line 4: node 2 occurs a second time"), "{bad}");
     write("deck.inp", "*INCLUDE, INPUT=deck.inp\n");
     let bad = files::read(&file, 1.0).unwrap_err().to_string();
     assert!(bad.contains("more than eight deep"), "{bad}");
@@ -380,10 +385,14 @@ fn broken_grids_name_the_place() {
             ":1: expected <VTKFile type=\"UnstructuredGrid\">, found 'PolyData'",
         ),
         ("<Piece", "<Peace", "expected 'Peace' tag, not 'Piece'"),
-        ("NumberOfPoints=\"45\"", "NumberOfPoints=\"46\"", "an array of 135 where 138 should be"),
+        ("NumberOfPoints=\"45\"", "NumberOfPoints=\"46\"", "the array has length 135 instead of 138"),
         ("NumberOfPoints=\"45\"", "NumberOfPoints=\"18446744073709551615\"", "too many nodes"),
         ("NumberOfPoints=\"45\"", "NumberOfPoints=\"-1\"", "expected NumberOfPoints, found '-1'"),
-        ("NumberOfCells=\"24\"", "NumberOfCells=\"4000000000\"", "an array of 24 where 4000000000 should be"),
+        (
+            "NumberOfCells=\"24\"",
+            "NumberOfCells=\"4000000000\"",
+            "the array has length 24 instead of 4000000000",
+        ),
         ("Name=\"types\"", "Name=\"kinds\"", "the file has no types section"),
         ("<Cells>", "<Cell>", "expected 'Cell' tag"),
         (
@@ -398,7 +407,10 @@ fn broken_grids_name_the_place() {
     });
     let other = b"<febio_spec version=\"4.0\"></febio_spec>";
     let bad = files::read_bytes(other, Path::new("a.feb"), 1.0).unwrap_err().to_string();
-    assert!(bad.starts_with("a.feb:1: '<febio_spec>' begins no mesh file that is read: Gmsh .msh"), "{bad}");
+    assert!(
+        bad.starts_with("a.feb:1: no supported mesh format begins with '<febio_spec>'; supported: Gmsh .msh"),
+        "{bad}"
+    );
     let packed = |from: &str, to: &str| {
         let file = made(CellKind::Hex8).into_iter().find(|f| f.ends_with("hex8-vtk-raw-zlib.vtu")).unwrap();
         let bytes = std::fs::read(&file).unwrap();
@@ -407,7 +419,7 @@ fn broken_grids_name_the_place() {
         files::read_bytes(&spoiled, &file, 1.0).unwrap_err().to_string()
     };
     let bad = packed("vtkZLibDataCompressor", "vtkLZMADataCompressor");
-    assert!(bad.contains("vtkLZMADataCompressor is not read; write the file with zlib, lz4"), "{bad}");
+    assert!(bad.contains("vtkLZMADataCompressor is not supported; write the file with zlib, lz4"), "{bad}");
     let bad = packed("vtkZLibDataCompressor", "vtkLZ4DataCompressor");
-    assert!(bad.contains("expected a block that unpacks to the length stated, found 'block 0'"), "{bad}");
+    assert!(bad.contains("expected a block that unpacks to the stated length, found 'block 0'"), "{bad}");
 }

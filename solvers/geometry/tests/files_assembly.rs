@@ -60,7 +60,7 @@ fn instances_of_one_part_have_their_own_names() {
     assert_eq!(plain.region_names(), ["body"]);
     let same = assembly(&part("P", SETS), &[("a", "P"), ("A", "P")], "");
     let bad = deck(&same).unwrap_err();
-    assert!(bad.starts_with("deck.inp:24: instance 'A' comes a second time"), "{bad}");
+    assert!(bad.starts_with("deck.inp:24: instance 'A' occurs a second time"), "{bad}");
 }
 
 /// A set of the assembly is separate from the sets of its parts, even with the same name.

@@ -100,11 +100,11 @@ fn raised(line: &mut String, nth: usize) -> Option<()> {
 const TEXT_2: [Edit; 10] = [
     (|l| before(l, "$EndNodes", Some(1), "nan"), "has a coordinate that is not finite"),
     (|l| before(l, "$EndNodes", Some(3), "-1e999"), "has a coordinate that is not finite"),
-    (|l| before(l, "$EndNodes", Some(0), "1"), "node 1 comes a second time"),
+    (|l| before(l, "$EndNodes", Some(0), "1"), "node 1 occurs a second time"),
     (|l| before(l, "$EndNodes", Some(3), ""), "expected a coordinate, found 'the end of the line'"),
     (|l| at(l, "$Nodes").and_then(|n| raised(&mut l[n + 1], 0)), "expected a node number, found '$EndNodes'"),
     (|l| before(l, "$EndElements", None, "999999"), "names node 999999, which the file does not have"),
-    (|l| before(l, "$EndElements", Some(0), "1"), "element 1 comes a second time"),
+    (|l| before(l, "$EndElements", Some(0), "1"), "element 1 occurs a second time"),
     (|l| before(l, "$EndElements", Some(1), "6"), "has type 6"),
     (
         |l| {
@@ -115,14 +115,14 @@ const TEXT_2: [Edit; 10] = [
         },
         "element 999999 has the same nodes as element",
     ),
-    (|l| at(l, "$EndElements").map(|end| l.truncate(end)), "the file ends where $EndElements should come"),
+    (|l| at(l, "$EndElements").map(|end| l.truncate(end)), "the file ends before $EndElements"),
 ];
 
 /// Edits of versions 4.0 and 4.1 in text.
 const TEXT_4: [Edit; 8] = [
-    (|l| word(&mut l[1], 0, "4.2"), "of Gmsh 1, 2.2, 4.0 and 4.1 are read"),
+    (|l| word(&mut l[1], 0, "4.2"), "supported Gmsh formats: 1, 2.2, 4.0 and 4.1"),
     (|l| before(l, "$EndElements", None, "999999"), "names node 999999, which the file does not have"),
-    (|l| before(l, "$EndElements", Some(0), "1"), "element 1 comes a second time"),
+    (|l| before(l, "$EndElements", Some(0), "1"), "element 1 occurs a second time"),
     (
         |l| {
             let (head, place) = (at(l, "$Elements")? + 2, usize::from(!l[1].starts_with("4.1")));
@@ -152,14 +152,14 @@ const TEXT_4: [Edit; 8] = [
 const DECK: [Edit; 6] = [
     (
         |l| at(l, "*NODE").map(|n| l[n].push('S')),
-        "*NODES is no keyword of Abaqus or CalculiX; did you mean *NODE?",
+        "*NODES is not a keyword of Abaqus or CalculiX; did you mean *NODE?",
     ),
     (|l| at(l, "*NODE").and_then(|n| word(&mut l[n + 1], 1, "nan,")), "expected a coordinate, found 'nan'"),
     (
         |l| at(l, "*NODE").and_then(|n| word(&mut l[n + 1], 1, "1d999,")),
         "node 1 has a coordinate that is not finite",
     ),
-    (|l| at(l, "*NODE").and_then(|n| word(&mut l[n + 2], 0, "1,")), "node 1 comes a second time"),
+    (|l| at(l, "*NODE").and_then(|n| word(&mut l[n + 2], 0, "1,")), "node 1 occurs a second time"),
     (
         |l| {
             let line = l.iter().position(|line| line.starts_with("*ELEMENT") && line.contains("C3D"))?;
@@ -173,7 +173,7 @@ const DECK: [Edit; 6] = [
             l.push("*NSET,".into());
             Some(())
         },
-        "the file ends where the rest of a keyword line",
+        "the file ends before the rest of a keyword line",
     ),
 ];
 
@@ -195,7 +195,7 @@ const XML: [Edit; 3] = [
             *line = line.replacen("NumberOfPoints=\"", "NumberOfPoints=\"1", 1);
             Some(())
         },
-        "an array of",
+        "the array has length",
     ),
     (
         |l| {

@@ -146,15 +146,15 @@ fn broken_files_name_the_line() {
     // (text to replace, replacement, line of the error, words of the message)
     let cases = [
         ("$MeshFormat", "$Mesh", 1, "expected $MeshFormat"),
-        ("2.2 0 8", "3.0 0 8", 2, "of Gmsh 1, 2.2, 4.0 and 4.1 are read"),
-        ("2.2 0 8", "2.2 7 8", 2, "of Gmsh 1, 2.2, 4.0 and 4.1 are read"),
+        ("2.2 0 8", "3.0 0 8", 2, "supported Gmsh formats: 1, 2.2, 4.0 and 4.1"),
+        ("2.2 0 8", "2.2 7 8", 2, "supported Gmsh formats: 1, 2.2, 4.0 and 4.1"),
         ("$EndMeshFormat", "$EndFormat", 3, "expected $EndMeshFormat, found '$EndFormat'"),
-        ("$EndComments", "$EndComment", 27, "file ends where the end of a section"),
+        ("$EndComments", "$EndComment", 27, "file ends before the end of a section"),
         ("$Comments", "Comments", 4, "expected the start of a section, found 'Comments'"),
         ("2\n2 7", "two\n2 7", 8, "expected the number of physical names, found 'two'"),
         ("\"outer face\"", "outer", 9, "expected a name in quotes, found 'outer'"),
         ("\"outer face\"", "\"", 9, "expected a name in quotes"),
-        ("3 9 \"soft", "2 7 \"soft", 10, "physical tag 7 comes a second time"),
+        ("3 9 \"soft", "2 7 \"soft", 10, "physical tag 7 occurs a second time"),
         ("2 7 \"outer", "2 x \"outer", 9, "expected the tag of a physical name, found 'x'"),
         ("5\n10 0", "-5\n10 0", 13, "expected the number of nodes, found '-5'"),
         ("5\n10 0", "6\n10 0", 19, "expected a node number, found '$EndNodes'"),
@@ -165,8 +165,8 @@ fn broken_files_name_the_line() {
         ("20 1e1 0 0", "20 1e1 0 0 0", 15, "expected the end of the line, found '0'"),
         ("20 1e1 0 0", "20 nan 0 0", 15, "node 20 has a coordinate that is not finite"),
         ("20 1e1 0 0", "20 1e999 0 0", 15, "node 20 has a coordinate that is not finite"),
-        ("20 1e1 0 0", "10 1e1 0 0", 15, "node 10 comes a second time"),
-        ("$EndNodes\n", "$EndNodes\n$Nodes\n0\n$EndNodes\n", 20, "section $Nodes comes a second time"),
+        ("20 1e1 0 0", "10 1e1 0 0", 15, "node 10 occurs a second time"),
+        ("$EndNodes\n", "$EndNodes\n$Nodes\n0\n$EndNodes\n", 20, "section $Nodes occurs a second time"),
         ("4\n1 15", "5\n1 15", 26, "expected an element number, found '$EndElements'"),
         ("4\n1 15", "3\n1 15", 25, "expected $EndElements"),
         (
@@ -186,10 +186,10 @@ fn broken_files_name_the_line() {
         ("4 4 3 9 1 0 10 20 30 40", "4 4 3 9 1 0 10 20 30 30", 25, "element 4 names node 30 twice"),
         ("4 4 3 9 1 0 10 20 30 40", "4 4 3 nine 1 0 10 20 30 40", 25, "expected a tag, found 'nine'"),
         ("4 4 3 9 1 0 10 20 30 40", "4 6 3 9 1 0 10 20 30 40", 25, "element 4 has type 6"),
-        ("4 4 3 9 1 0 10 20 30 40", "3 4 3 9 1 0 10 20 30 40", 25, "element 3 comes a second time"),
+        ("4 4 3 9 1 0 10 20 30 40", "3 4 3 9 1 0 10 20 30 40", 25, "element 3 occurs a second time"),
         ("4 4 3 9 1 0 10 20 30 40", "4 2 2 0 0 10 20 30", 26, "no tetrahedra or hexahedra"),
         ("3 2 2 7 1 10 30 20", "3 2 2 7 1 10 30 99", 24, "surface element 3 is not a face of any cell"),
-        ("\n$EndElements", "", 26, "file ends where $EndElements"),
+        ("\n$EndElements", "", 26, "file ends before $EndElements"),
     ];
     for (from, to, line, words) in cases {
         assert!(GOOD.contains(from), "{from}");
@@ -206,7 +206,7 @@ fn broken_files_name_the_line() {
     let elements = GOOD.find("$Elements").unwrap();
     let swapped = format!("{}{}", &GOOD[..nodes], &GOOD[elements..]);
     assert!(parse(&swapped).unwrap_err().to_string().contains(":12: the file has no $Nodes section"));
-    assert!(parse("").unwrap_err().to_string().contains(":1: '' begins no mesh file that is read"));
+    assert!(parse("").unwrap_err().to_string().contains(":1: no supported mesh format begins with ''"));
 }
 
 #[test]
@@ -216,7 +216,9 @@ fn files_units_and_names_that_cannot_be() {
     let folder = tempfile::tempdir().unwrap();
     let binary = folder.path().join("binary.msh");
     std::fs::write(&binary, [0xff, 0xfe, 0x00]).unwrap();
-    assert!(files::read(&binary, 1.0).unwrap_err().to_string().contains("begins no mesh file"));
+    assert!(
+        files::read(&binary, 1.0).unwrap_err().to_string().contains("no supported mesh format begins with")
+    );
     let mesh = box_mesh(CellKind::Tet4, Point3::origin(), Point3::new(1.0, 1.0, 1.0), [1; 3], [1.0; 3], None)
         .unwrap();
     let named = folder.path().join("named.msh");

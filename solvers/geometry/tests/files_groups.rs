@@ -158,7 +158,11 @@ fn middle_nodes_in_another_order_are_put_in_their_places() {
         let found = left_out(&other, "a.vtk");
         assert_eq!(found[0].kind, Kind::Changed);
         let count = mesh.cell_count();
-        assert!(found[0].what.contains(&format!("middle nodes of {count} {}", kind.name())), "{}", found[0]);
+        assert!(
+            found[0].what.contains(&format!("mid-edge nodes of {count} {}", kind.name())),
+            "{}",
+            found[0]
+        );
     }
 }
 

@@ -162,12 +162,12 @@ fn ranges_end_at_nodes_and_elements_that_are_there() {
         (
             "10, 30, 10",
             "10, 30, 7",
-            "a.inp:11: expected a last number that the steps from the first one reach, found '10, 30, 7'",
+            "a.inp:11: expected a last number that is a whole number of steps from the first, found '10, 30, 7'",
         ),
         ("10, 30, 10", "1000, 2000, 10", "node set 'face' names node 1000"),
         ("100, 300, 100", "100, 400, 100", "a.inp:13: element set 'all' names element 400"),
         ("100, 300, 100", "100, 301", "a.inp:13: element set 'all' names element 301"),
-        ("100, 300, 100", "100, 300, 150", "a last number that the steps from the first one reach"),
+        ("100, 300, 100", "100, 300, 150", "a last number that is a whole number of steps from the first"),
     ];
     let refusal = |text: &str| read("a.inp", text).err();
     assert_refused(DECK, changes.map(|(from, to, says)| (from, to, [says.into()])), refusal);

@@ -101,7 +101,7 @@ fn regions_are_numbered_by_whole_numbers_of_any_type() {
     assert_eq!(mesh.region_names(), ["body"]);
     let older = GRID.replace("material 1 3 int\n7 8 9", "material 1 3 double\n7 8.5 9");
     let bad = refusal(&older).unwrap();
-    assert!(bad.starts_with("m:24: cell 1 has 8.5 in the array 'material'"), "{bad}");
+    assert!(bad.starts_with("m:24: cell 1 has the value 8.5 in the array 'material'"), "{bad}");
     let whole = read(older.replace("8.5", "8.0").as_bytes()).unwrap();
     assert_eq!(whole.region_names(), ["region-7", "region-8"]);
 }
@@ -137,7 +137,7 @@ fn two_arrays_of_materials_have_to_agree() {
     assert_eq!(read(both("3 4").as_bytes()).unwrap().region_names(), ["region-3", "region-4"]);
     let bad = refusal(&both("3 5")).unwrap();
     let says =
-        "cell 1 is in region 5 by the array 'MaterialIds' and in 4 by 'material': leave one of the two out";
+        "cell 1 is in region 5 by the array 'MaterialIds' and in 4 by 'material': remove or rename one";
     assert!(bad.starts_with("m:") && bad.contains(says), "{bad}");
 }
 
@@ -162,7 +162,7 @@ fn binary_grids_are_read() {
     let mesh = read(&binary()).unwrap();
     assert_eq!((mesh.points()[3].z, mesh.region_names()), (1.0, &["region--3".to_string()][..]));
     let bad = read(&binary()[..170]).unwrap_err();
-    assert!(bad.contains("too many numbers for the bytes of the file: 12"), "{bad}");
+    assert!(bad.contains("too many numbers for the size of the file: 12"), "{bad}");
 }
 
 #[test]
@@ -183,10 +183,10 @@ fn broken_grids_are_refused_with_their_place() {
         ("POINTS 5", "POINTS 4", "expected a part of the format, such as POINTS or CELL_DATA, found '1'"),
         ("1 1 1", "1 nan 1", "m: node 4: node 4 has a coordinate that is not finite"),
         ("1 1 1", "1 x 1", "m:10: expected a number, found 'x'"),
-        ("CELLS 3 14", "CELLS 3 13", "m: cell 2: the file ends where the points of the cell"),
-        ("CELLS 3 14", "CELLS 2 14", "an array of 10 where 14 should be"),
+        ("CELLS 3 14", "CELLS 3 13", "m: cell 2: the file ends before the points of the cell"),
+        ("CELLS 3 14", "CELLS 2 14", "the array has length 10 instead of 14"),
         ("4 1 2 3 4", "4 1 2 3 5", "m: cell 1: element 1 names node 5"),
-        ("4 1 2 3 4", "4 1 2 3 -4", "m: cell 1: expected nodes from 0 on"),
+        ("4 1 2 3 4", "4 1 2 3 -4", "m: cell 1: expected node numbers of 0 or more"),
         ("4 1 2 3 4", "4 1 2 3 3", "m: cell 1: element 1 names node 3 twice"),
         ("4 1 2 3 4", "4 3 2 1 0", "m: cell 1: element 1 has the same nodes as element 0"),
         ("10 10 5", "10 10 7", "m: cell 2: element 2 has type 7"),
@@ -211,7 +211,7 @@ fn broken_grids_are_refused_with_their_place() {
     assert!(read(apart.as_bytes()).unwrap() == read(GRID.as_bytes()).unwrap());
     for offsets in ["0 4 8 12", "1 4 8 11", "0 8 4 11"] {
         let bad = read(apart.replace("0 4 8 11", offsets).as_bytes()).unwrap_err();
-        assert!(bad.contains("offsets that grow from 0"), "{bad}");
+        assert!(bad.contains("offsets that ascend from 0"), "{bad}");
     }
 }
 
@@ -250,12 +250,12 @@ fn the_first_format_of_gmsh_is_read() {
             "m:13: element 3 of type 4 has 8 numbers on its line instead of 9",
         ),
         ("3 4 7 1 4 2 3 4 9", "3 4 7 1 5 2 3 4 9", "m:13: element 3 of type 4 has 9 numbers"),
-        ("3 4 7 1 4 2 3 4 9", "2 4 7 1 4 2 3 4 9", "m:13: element 2 comes a second time"),
+        ("3 4 7 1 4 2 3 4 9", "2 4 7 1 4 2 3 4 9", "m:13: element 2 occurs a second time"),
         ("3 4 7 1 4 2 3 4 9", "3 6 7 1 4 2 3 4 9", "m:13: element 3 has type 6"),
-        ("9 1 1 1", "4 1 1 1", "m:7: node 4 comes a second time"),
+        ("9 1 1 1", "4 1 1 1", "m:7: node 4 occurs a second time"),
         ("9 1 1 1", "9 1 nan 1", "m:7: node 9 has a coordinate that is not finite"),
         ("$ENDNOD\n", "", "m:8: expected $ENDNOD, found '$ELM'"),
-        ("$ENDELM\n", "", "the file ends where $ENDELM should come"),
+        ("$ENDELM\n", "", "the file ends before $ENDELM"),
         ("$ENDELM\n", "$ENDELM\n$MORE\n", "m:15: expected the end of the file, found '$MORE'"),
         ("5\n1 0", "many\n1 0", "m:2: expected the number of nodes, found 'many'"),
     ];

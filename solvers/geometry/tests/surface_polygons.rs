@@ -124,7 +124,7 @@ fn faces_that_are_not_simple_are_refused_with_their_line() {
         let bad = refusal("a.obj", &text);
         let line = 1 + 2 * outline.len();
         assert!(bad.starts_with(&format!("a.obj:{line}: edges ")), "{bad}");
-        assert!(bad.contains("of face 1, from its corners of these numbers on, cross or touch"), "{bad}");
+        assert!(bad.contains("of face 1 (numbered by their first corners) cross or touch"), "{bad}");
         let top = text
             .lines()
             .filter(|line| !line.starts_with('f'))
@@ -132,7 +132,7 @@ fn faces_that_are_not_simple_are_refused_with_their_line() {
             .collect::<Vec<_>>();
         let bad = refusal("a.obj", &top.join("\n"));
         assert!(bad.starts_with(&format!("a.obj:{line}: edges {edges} of face 1")), "{bad}");
-        assert!(refusal("a.ply", &ply(&text)).contains("of face 1, from"));
+        assert!(refusal("a.ply", &ply(&text)).contains("of face 1 (numbered"));
     }
     let large: Vec<[f64; 2]> = (0..1200)
         .map(|k| {

@@ -129,7 +129,7 @@ fn every_broken_text_is_refused_with_its_place() {
         (" endloop\n", "", "a.stl:7: expected endloop"),
         ("outer loop", "outer", "a.stl:3: expected outer loop"),
         ("facet normal", "face", "a.stl:2: expected facet or endsolid, found 'face"),
-        ("endsolid tet\n", "", "the file ends where endsolid should come"),
+        ("endsolid tet\n", "", "the file ends before endsolid"),
         ("endsolid tet\n", "endsolid tet\nfacet\n", "a.stl:31: expected solid, found 'facet'"),
     ];
     assert_text_refused("a.stl", &stl_text(&FACES), stl);
@@ -142,7 +142,7 @@ fn every_broken_text_is_refused_with_its_place() {
         ("f 1 3 2", "f 1 3", "a.obj:10: expected a face of three corners or more"),
         ("f 1 3 2", "f 1 x 2", "a.obj:10: expected the number of a corner, found 'x'"),
         ("s off", "wobble 3", "a.obj:9: expected v, f or another word of the format, found 'wobble 3'"),
-        ("3/1/1\n", "3/1/1 \\\n", "the file ends where the rest of a line should come"),
+        ("3/1/1\n", "3/1/1 \\\n", "the file ends before the rest of a line"),
     ];
     assert_text_refused("a.obj", &obj(OBJ_FACES), obj_changes);
     let ply = [
@@ -152,7 +152,7 @@ fn every_broken_text_is_refused_with_its_place() {
         ("vertex 4", "vertex 4000000000", "a.ply:4: too many elements for the bytes of the file: 4000000000"),
         ("vertex 4", "vertex 5", "a.ply:"),
         ("vertex 4", "vertex 3", "a.ply:"),
-        ("face 4", "face 5", "a.ply:20: the file ends where a value of an element should come"),
+        ("face 4", "face 5", "a.ply:20: the file ends before a value of an element"),
         ("face 4", "face 3", "a.ply:19: expected the end of the file, found '3'"),
         ("float z", "float w", "no vertex with x, y and z section"),
         ("int vertex_indices", "int corners", "no face with a list vertex_indices section"),
@@ -179,12 +179,12 @@ fn every_broken_binary_is_refused_with_its_place() {
         ("a.stl", stl, "a.stl: byte 80: 4 triangles take 284 bytes, but the file has 283"),
         ("a.stl", many, "4294967295 triangles take 214748364834 bytes"),
         ("a.stl", nan, "a.stl: byte 134: triangle 2 has a coordinate that is not finite"),
-        ("a.stl", stl_text(&FACES).as_bytes()[..150].to_vec(), "a.stl:12: the file ends where vertex"),
+        ("a.stl", stl_text(&FACES).as_bytes()[..150].to_vec(), "a.stl:12: the file ends before vertex"),
         ("a.stl", b"nonsense".to_vec(), "a comment of 80 bytes"),
         ("a.stl", b"solid nothing\nendsolid\n".to_vec(), "0 triangles enclose nothing"),
-        ("a.ply", cut(ply_binary(false)), "the file ends where a value of an element should come"),
+        ("a.ply", cut(ply_binary(false)), "the file ends before a value of an element"),
         ("a.ply", longer, "expected the end of the file, found '3 bytes more'"),
-        ("a.off", b"OFF\n4 4 6\n".to_vec(), "'OFF' begins no mesh file"),
+        ("a.off", b"OFF\n4 4 6\n".to_vec(), "no supported mesh format begins with 'OFF'"),
     ] {
         let bad = read(name, &bytes).err().unwrap_or_else(|| panic!("read, but {says}"));
         assert!(bad.contains(says), "{bad}\n  has no: {says}");
@@ -212,7 +212,9 @@ fn surfaces_that_enclose_nothing_are_refused_with_triangle_and_place() {
     assert!(matches!(open, SurfaceProblem::Open { edges: 3, .. }), "{open}");
     let turned = of(&[FACES[0], FACES[1], FACES[2], [0, 2, 3]]);
     assert!(
-        turned.contains("triangles 1 and 4 turn opposite ways along their edge (0, 0, 0) to (0, 1, 0)"),
+        turned.contains(
+            "triangles 1 and 4 have opposite orientations along their common edge (0, 0, 0) to (0, 1, 0)"
+        ),
         "{turned}"
     );
     let twice = of(&[FACES[0], FACES[1], FACES[2], FACES[3], FACES[3]]);
@@ -225,8 +227,8 @@ fn surfaces_that_enclose_nothing_are_refused_with_triangle_and_place() {
 /// Each repairable error states the number and position of the triangles, and a workaround.
 #[test]
 fn what_a_repair_would_have_to_do_is_said() {
-    const EDITOR: &str = "yet: mend the file in a mesh editor";
-    const REGIONS: &str = "yet: take a volume mesh with a region for each";
+    const EDITOR: &str = "yet: repair the file in a mesh editor";
+    const REGIONS: &str = "yet: give a volume mesh with a region for each body";
     let ball = || sphere_like(2, |n| n);
     let turn = |soup: &mut Soup, triangle: usize| soup.triangles[triangle].swap(1, 2);
     let edit = |change: &dyn Fn(&mut Soup)| {
@@ -265,7 +267,7 @@ fn what_a_repair_would_have_to_do_is_said() {
         soup.triangles.push([new, b, c]);
         soup.faces.push(1);
     });
-    assert!(split.contains("the corner (") && split.contains("which does not end there (3 edges"), "{split}");
+    assert!(split.contains("the corner (") && split.contains("between its ends (3 edges"), "{split}");
     for said in [holes, some, most, inwards, twice, split] {
         assert!(said.ends_with(EDITOR), "{said}");
     }
@@ -282,7 +284,7 @@ fn what_a_repair_would_have_to_do_is_said() {
         ..tet.clone()
     };
     let touching = refused(joined(tet, mirrored)).to_string();
-    assert!(touching.contains("closed parts touch there"), "{touching}");
+    assert!(touching.contains("closed parts touch at the edge"), "{touching}");
     for said in [body_in_body, touching] {
         assert!(said.contains(REGIONS), "{said}");
     }

@@ -34,7 +34,7 @@ pub struct Refinement {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum CloudError {
     /// Fewer nodes than the least number.
-    #[error("a cloud of {nodes} nodes was asked for; at least {least} are needed")]
+    #[error("a cloud of {nodes} nodes was requested; at least {least} are needed")]
     TooFew {
         /// Number asked for.
         nodes: usize,
@@ -42,7 +42,7 @@ pub enum CloudError {
         least: usize,
     },
     /// More nodes than the generator supports.
-    #[error("a cloud of {nodes} nodes was asked for; at most {most} can be generated")]
+    #[error("a cloud of {nodes} nodes was requested; at most {most} can be generated")]
     TooMany {
         /// Number asked for.
         nodes: usize,
@@ -62,7 +62,10 @@ pub enum CloudError {
         needed: &'static str,
     },
     /// A body whose bounding box is empty or not finite.
-    #[error("the body's bounding box measures {x} x {y} x {z} m; a cloud needs a body with an inside")]
+    #[error(
+        "the body's bounding box measures {x} x {y} x {z} m; a cloud needs a body of nonzero extent \
+         along every axis"
+    )]
     NoExtent {
         /// Extent along x (m).
         x: f64,
@@ -72,7 +75,7 @@ pub enum CloudError {
         z: f64,
     },
     /// Two nodes at the same position.
-    #[error("nodes {first} and {second} are in the same place")]
+    #[error("nodes {first} and {second} are at the same position")]
     Coincident {
         /// Lower index.
         first: usize,
@@ -263,7 +266,7 @@ fn check_refinements(refinements: &[Refinement]) -> Result<(), CloudError> {
             return bad("the radius", r.radius, "0 or more");
         }
         if r.reach.is_nan() || r.reach <= 0.0 || r.reach.is_infinite() {
-            return bad("the reach", r.reach, "positive");
+            return bad("the transition width", r.reach, "positive");
         }
         if !(1.0..=10.0).contains(&r.ratio) {
             return bad("the ratio", r.ratio, "between 1 and 10");

@@ -38,7 +38,7 @@ pub enum PointFileError {
         problem: PointProblem,
     },
     /// A file without positions.
-    #[error("{file}: holds no positions", file = file.display())]
+    #[error("{file}: contains no positions", file = file.display())]
     Empty {
         /// The file.
         file: PathBuf,
@@ -49,7 +49,7 @@ pub enum PointFileError {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum PointProblem {
     /// Text where a number belongs.
-    #[error("has '{found}' where a number belongs")]
+    #[error("is '{found}', not a number")]
     NotANumber {
         /// Text found.
         found: String,
@@ -61,7 +61,7 @@ pub enum PointProblem {
         found: String,
     },
     /// A line that ends too early.
-    #[error("is missing: the line has {found} values, {expected} are needed")]
+    #[error("is missing: the line has {found} values instead of {expected}")]
     Missing {
         /// Values found.
         found: usize,
@@ -69,7 +69,7 @@ pub enum PointProblem {
         expected: usize,
     },
     /// A value too many.
-    #[error("is one too many: the line has {found} values, {expected} are needed")]
+    #[error("is one too many: the line has {found} values instead of {expected}")]
     TooMany {
         /// Values found.
         found: usize,
@@ -77,7 +77,7 @@ pub enum PointProblem {
         expected: usize,
     },
     /// Column names that lack x, y or z.
-    #[error("should be named {name}: of the columns none is")]
+    #[error("should be named {name}, but no column has this name")]
     NoColumn {
         /// Name of the missing column.
         name: &'static str,

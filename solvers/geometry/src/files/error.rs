@@ -62,7 +62,9 @@ pub enum FileError {
         source: MeshError,
     },
     /// A region or group name that the format cannot represent.
-    #[error("{file}: the name {name:?} is empty, holds a quotation mark or a line break, or for .inp a comma, blanks at an end, a letter that is not ASCII, or differs from another in its case alone", file = file.display())]
+    #[error("{file}: the name {name:?} cannot be written: names must not be empty or contain quotation marks \
+             or line breaks; for .inp also no commas, no blanks at either end and only ASCII, and two names \
+             must not differ in case only", file = file.display())]
     Name {
         /// The file.
         file: PathBuf,
@@ -78,7 +80,8 @@ pub enum FileError {
         unit: f64,
     },
     /// A file name whose suffix belongs to no format.
-    #[error("{file}: meshes are written as .msh (Gmsh 2.2 or 4.1), .inp (Abaqus, CalculiX), .vtu (VTK) and .stl (the boundary alone); end the name with one of them", file = file.display())]
+    #[error("{file}: meshes are written as .msh (Gmsh 2.2 or 4.1), .inp (Abaqus, CalculiX), .vtu (VTK) and \
+             .stl (the boundary only); give a name with one of these suffixes", file = file.display())]
     Suffix {
         /// The file.
         file: PathBuf,
@@ -98,7 +101,9 @@ fn short(place: Place) -> String {
 pub enum Problem {
     /// A file in none of the supported formats.
     #[error(
-        "'{found}' begins no mesh file that is read: Gmsh .msh ($MeshFormat, 2.2, 4.0 or 4.1; $NOD), Abaqus .inp (*HEADING, *NODE), VTK .vtu (<VTKFile) and .vtk (# vtk DataFile) are, and surfaces: STL, OBJ, PLY"
+        "no supported mesh format begins with '{found}'; supported: Gmsh .msh ($MeshFormat, 2.2, 4.0 or 4.1; \
+         $NOD), Abaqus .inp (*HEADING, *NODE), VTK .vtu (<VTKFile) and .vtk (# vtk DataFile), and the \
+         surfaces STL, OBJ, PLY"
     )]
     Format {
         /// The beginning of the file.
@@ -108,7 +113,7 @@ pub enum Problem {
     #[error("is a surface, not a mesh; `tissuebench mesh make` fills it with tetrahedra")]
     Surface,
     /// An unsupported version of a format.
-    #[error("format '{found}'; of Gmsh 1, 2.2, 4.0 and 4.1 are read")]
+    #[error("format '{found}' is not supported; supported Gmsh formats: 1, 2.2, 4.0 and 4.1")]
     Version {
         /// Line found.
         found: String,
@@ -122,13 +127,13 @@ pub enum Problem {
         found: String,
     },
     /// A file that ends too early.
-    #[error("the file ends where {expected} should come")]
+    #[error("the file ends before {expected}")]
     End {
         /// Expected item.
         expected: &'static str,
     },
     /// A section that occurs twice.
-    #[error("section {section} comes a second time")]
+    #[error("section {section} occurs a second time")]
     Repeated {
         /// Name of the section.
         section: &'static str,
@@ -140,7 +145,7 @@ pub enum Problem {
         section: &'static str,
     },
     /// A number that is used twice.
-    #[error("{what} {number} comes a second time")]
+    #[error("{what} {number} occurs a second time")]
     Duplicate {
         /// Node or element.
         what: &'static str,
@@ -191,7 +196,8 @@ pub enum Problem {
     },
     /// A face that is not a simple polygon.
     #[error(
-        "edges {} and {} of face {face}, from its corners of these numbers on, cross or touch: give each corner once, in order around the face, or cut it into triangles", edges[0], edges[1]
+        "edges {} and {} of face {face} (numbered by their first corners) cross or touch: give each corner \
+         once, in order around the face, or cut the face into triangles", edges[0], edges[1]
     )]
     CrossedFace {
         /// Number of the face in the file, from 1.
@@ -241,7 +247,7 @@ pub enum Problem {
     },
     /// A node that no element uses.
     #[error(
-        "no element names node {number}{}; leave such nodes out: tissuebench mesh convert --drop-unused", match others {
+        "node {number}{} belongs to no element; drop such nodes with tissuebench mesh convert --drop-unused", match others {
             0 => String::new(),
             others => format!(" (and {others} others)"),
         }
@@ -302,20 +308,21 @@ pub enum Problem {
     },
     /// A surface of the free faces of elements that have no free face.
     #[error(
-        "surface '{name}' has no face: give the faces (S1, S2, ..), or elements with a face that no other element has"
+        "surface '{name}' has no face: give the faces (S1, S2, ..), or elements with a face that belongs to \
+         no other element"
     )]
     NoFreeFace {
         /// Name of the surface.
         name: String,
     },
     /// An instance with the name of another instance.
-    #[error("instance '{name}' comes a second time; give each its own name")]
+    #[error("instance '{name}' occurs a second time; give each instance its own name")]
     SameInstance {
         /// Name of the instance.
         name: String,
     },
     /// A keyword of the format that changes the mesh and is not supported.
-    #[error("{what} is not read; {help}")]
+    #[error("{what} is not supported; {help}")]
     Unread {
         /// The keyword.
         what: String,
@@ -323,7 +330,7 @@ pub enum Problem {
         help: &'static str,
     },
     /// A keyword that neither Abaqus nor CalculiX knows.
-    #[error("*{found} is no keyword of Abaqus or CalculiX{}", match nearest {
+    #[error("*{found} is not a keyword of Abaqus or CalculiX{}", match nearest {
         Some(nearest) => format!("; did you mean *{nearest}?"),
         None => String::new(),
     })]
@@ -362,7 +369,7 @@ pub enum Problem {
         problem: String,
     },
     /// An array whose length contradicts the file.
-    #[error("an array of {found} where {expected} should be (numbers in text, bytes else)")]
+    #[error("the array has length {found} instead of {expected} (numbers if text, bytes if binary)")]
     ArrayLength {
         /// Length found.
         found: usize,
@@ -371,7 +378,7 @@ pub enum Problem {
     },
     /// An array of region or surface numbers with values that are not whole numbers.
     #[error(
-        "cell {cell} has {value} in the array '{array}', which numbers regions or surfaces: give whole numbers, or give the array another name"
+        "cell {cell} has the value {value} in the array '{array}', which numbers regions or surfaces: give whole numbers, or rename the array"
     )]
     NotWhole {
         /// Name of the array.
@@ -383,7 +390,7 @@ pub enum Problem {
     },
     /// Two arrays of region numbers that disagree.
     #[error(
-        "cell {cell} is in region {} by the array '{}' and in {} by '{}': leave one of the two out, or give it another name",
+        "cell {cell} is in region {} by the array '{}' and in {} by '{}': remove or rename one of the two arrays",
         values[0], arrays[0], values[1], arrays[1]
     )]
     TwoRegions {

@@ -36,9 +36,9 @@ pub enum Kind {
 impl Kind {
     fn words(self) -> &'static str {
         match self {
-            Kind::Joins => "joins or carries parts of the body, which changes the answer",
-            Kind::Model => "a scene has its own",
-            Kind::Regions => "whole numbers: name the array 'region' to have regions",
+            Kind::Joins => "joins or supports parts of the body, so the result changes",
+            Kind::Model => "defined by the scene instead",
+            Kind::Regions => "whole numbers; if these are regions, name the array 'region'",
             Kind::Values => "not used",
             Kind::Changed => "",
         }

@@ -38,8 +38,8 @@ pub fn inverted(file: &Path, bad: &InvertedElement) -> String {
     match (bad.inverted, bad.cells) {
         (some, all) if some == all => {
             format!(
-                "all {all} cells are inverted (first: {row}): the order of their corners is mirrored; tissuebench mesh convert --turn \
-                 turns them"
+                "all {all} cells are inverted (first: {row}): the order of their corners is mirrored; \
+                 reverse it with tissuebench mesh convert --turn"
             )
         }
         (1, all) => format!("1 of {all} cells is inverted ({row})"),

@@ -185,7 +185,7 @@ fn cells(scanner: &mut Scanner, found: &mut Found) -> Parsed<()> {
                 found.ends = Some(ends[1..].to_vec());
                 Ok(())
             }
-            None => scanner.fail("offsets that grow from 0 to the length of CONNECTIVITY", "others"),
+            None => scanner.fail("offsets that ascend from 0 to the length of CONNECTIVITY", "others"),
         };
     }
     let all = scanner.whole(size, "int")?;
@@ -194,8 +194,7 @@ fn cells(scanner: &mut Scanner, found: &mut Found) -> Parsed<()> {
         let length = all.get(at).and_then(|&length| usize::try_from(length).ok());
         let points = length.and_then(|length| all.get(at + 1..(at + 1).checked_add(length)?));
         let Some(points) = points else {
-            let problem =
-                Problem::End { expected: "the points of the cell, within the size that CELLS gives" };
+            let problem = Problem::End { expected: "the points of the cell, within the size given by CELLS" };
             return Err((Place::Cell(cell), problem));
         };
         found.list.extend(points);
@@ -335,10 +334,7 @@ impl Scanner<'_> {
         // Each number takes at least one byte in text, or its size in binary.
         let room = (self.bytes.len() - self.at) / if self.binary { size } else { 1 };
         if count > room {
-            return Err((
-                self.place(),
-                Problem::TooMany { what: "numbers for the bytes of the file", count },
-            ));
+            return Err((self.place(), Problem::TooMany { what: "numbers for the size of the file", count }));
         }
         if !self.binary {
             return (0..count).map(|_| self.number()).collect();

@@ -21,7 +21,7 @@ const REGIONS: [&[&str]; 8] = [
 ];
 
 /// Cell types that are read, for the message about other types.
-const KNOWN: &str = "types 10, 12, 24, 25 (solids), 5, 9, 22, 23 (faces), lines and points are read";
+const KNOWN: &str = "supported types: 10, 12, 24, 25 (solids), 5, 9, 22, 23 (faces), lines and points";
 
 /// Node order of the files, which is that of [`CellKind`].
 const ORDER: [usize; 20] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19];
@@ -120,7 +120,7 @@ impl Cells {
             let nodes: Option<Vec<u64>> =
                 own.iter().map(|&node| Some(self.first + u64::try_from(node).ok()?)).collect();
             let Some(nodes) = nodes else {
-                let expected = "nodes from 0 on";
+                let expected = "node numbers of 0 or more";
                 return Err((row.place, Problem::Expected { expected, found: format!("{own:?}") }));
             };
             start = end;

@@ -62,13 +62,13 @@ pub struct Stuffed {
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum StuffingError {
     /// A spacing that is not positive and finite.
-    #[error("a spacing of {spacing} m is none; it has to be positive")]
+    #[error("the spacing is {spacing} m; it has to be positive and finite")]
     Spacing {
         /// Spacing, m.
         spacing: f64,
     },
     /// Too many nodes.
-    #[error("a spacing of {spacing} m makes about {nodes:.1e} nodes")]
+    #[error("a spacing of {spacing} m gives about {nodes:.1e} nodes, which is too many")]
     TooFine {
         /// Spacing, m.
         spacing: f64,
@@ -76,7 +76,7 @@ pub enum StuffingError {
         nodes: f64,
     },
     /// Cells larger than the thickness of the body.
-    #[error("a spacing of {spacing} m is too large for the surface: no part of it holds eight nodes")]
+    #[error("a spacing of {spacing} m is too large for the surface: no part of the mesh has eight nodes")]
     TooCoarse {
         /// Spacing, m.
         spacing: f64,

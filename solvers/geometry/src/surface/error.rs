@@ -111,11 +111,11 @@ pub enum SurfaceProblem {
 }
 
 /// Advice for the repair of a surface.
-const EDITOR: &str = "mend the file in a mesh editor";
+const EDITOR: &str = "repair the file in a mesh editor";
 
 /// Advice for regions without their own surfaces.
-const REGIONS: &str = "take a volume mesh with a region for each (.msh, .inp, .vtu), or the outer surface alone and a region \
-                       of the scene by where";
+const REGIONS: &str = "give a volume mesh with a region for each body (.msh, .inp, .vtu), or the outer \
+                       surface only, with a [[region]] of the scene (where = ...)";
 
 impl fmt::Display for SurfaceProblem {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -131,8 +131,8 @@ impl fmt::Display for SurfaceProblem {
                 };
                 write!(
                     f,
-                    "the surface is open: the corner {} lies on the edge {} of triangle {triangle}, which does not end \
-                     there{more}; this program does not divide triangles yet: {EDITOR}",
+                    "the surface is open: the corner {} lies on the edge {} of triangle {triangle}, between its \
+                     ends{more}; this program does not divide triangles yet: {EDITOR}",
                     point(corner),
                     line(ends)
                 )
@@ -157,54 +157,66 @@ impl fmt::Display for SurfaceProblem {
             SurfaceProblem::Turned { triangles, ends, turned, all, orientable } => {
                 write!(
                     f,
-                    "triangles {} turn opposite ways along their edge {}; all have to be counter-clockwise seen from outside: ",
+                    "triangles {} have opposite orientations along their common edge {}; all triangles have \
+                     to be counter-clockwise seen from outside: ",
                     list(triangles),
                     line(ends)
                 )?;
                 if !orientable {
-                    return write!(f, "no turning does that, so the surface has no outside");
+                    return write!(
+                        f,
+                        "no reversal of triangles achieves this, so the surface has no outside"
+                    );
                 }
                 let (count, numbers) = (turned.len(), list(turned));
                 write!(
                     f,
-                    "{count} of {all} are not ({numbers}), and this program does not turn them yet: {EDITOR}"
+                    "{count} of {all} are clockwise ({numbers}); this program does not reverse triangles \
+                     yet: {EDITOR}"
                 )
             }
             SurfaceProblem::Crossing { triangles, at, places } => {
                 let more = if *places > 1 { format!(" ({places} such places)") } else { String::new() };
                 let triangles = list(triangles);
-                write!(f, "the surface crosses itself: triangles {triangles} do, near {}{more}", point(at))
+                write!(
+                    f,
+                    "the surface crosses itself: triangles {triangles} intersect near {}{more}",
+                    point(at)
+                )
             }
             SurfaceProblem::InsideOut { triangle, at, volume, within: 0, part: [part, all] } => write!(
                 f,
-                "the surface is inside out at triangle {triangle}, {}: its triangles turn clockwise seen from outside, the \
-                 volume is {volume:.6e}; {part} of {all} face inwards, and this program does not turn them yet: {EDITOR}",
+                "the surface is inside out at triangle {triangle}, {}: the triangles are clockwise seen from \
+                 outside, and the volume is {volume:.6e}; {part} of {all} triangles face inwards; this \
+                 program does not reverse triangles yet: {EDITOR}",
                 point(at)
             ),
             SurfaceProblem::InsideOut { triangle, at, within, .. } => {
                 let at = point(at);
                 write!(
                     f,
-                    "the part with triangle {triangle}, {at}, lies within {within} others and turns the wrong way: a \
-                     cavity is clockwise seen from outside of it, what is outside or within a cavity counter-clockwise"
+                    "the part with triangle {triangle}, {at}, lies within {within} others and has the wrong \
+                     orientation: triangles of a cavity have to be clockwise seen from outside the cavity, all \
+                     other triangles counter-clockwise"
                 )?;
                 if within.is_multiple_of(2) {
                     return Ok(());
                 }
                 write!(
                     f,
-                    "; if it is a body in a body, such as a tumour in an organ, this program does not make regions of the \
-                     two yet: {REGIONS}"
+                    "; if the part is a body within a body, such as a tumour in an organ, this program does \
+                     not make two regions of them yet: {REGIONS}"
                 )
             }
             SurfaceProblem::Tangled { triangles, pairs } => {
                 write!(
                     f,
-                    "{triangles} triangles lie so close that {pairs} pairs may cross: it is no surface of a body"
+                    "{triangles} triangles lie so close together that {pairs} pairs may cross: they do not \
+                     form the surface of a body"
                 )
             }
             SurfaceProblem::Parts { parts, most } => {
-                write!(f, "the surface has {parts} parts that nothing connects; at most {most} are taken")
+                write!(f, "the surface has {parts} unconnected parts; at most {most} are supported")
             }
             SurfaceProblem::Flat => write!(f, "the surface encloses no volume"),
         }
@@ -220,20 +232,32 @@ fn branched(
     twice: Option<&[u32; 2]>,
 ) -> fmt::Result {
     let (all, ends) = (list(triangles), line(ends));
-    write!(f, "triangles {all} meet at one edge, {ends}; two do in a closed surface: ")?;
+    write!(
+        f,
+        "triangles {all} meet at one edge, {ends}; in a closed surface two triangles meet at each \
+               edge: "
+    )?;
     match twice {
         Some(pair) => {
             let pair = list(pair);
-            write!(f, "{pair} have the same corners, and this program does not remove one yet: {EDITOR}")
+            write!(
+                f,
+                "triangles {pair} have the same corners; this program does not remove duplicates yet: \
+                       {EDITOR}"
+            )
         }
         None if triangles.len().is_multiple_of(2) => {
             write!(
                 f,
-                "closed parts touch there, and this program does not make regions of them yet: {REGIONS}"
+                "closed parts touch at the edge; this program does not make regions of them yet: {REGIONS}"
             )
         }
         None => {
-            write!(f, "a wall ends there, and this program does not make regions of its sides yet: {REGIONS}")
+            write!(
+                f,
+                "a wall ends at the edge; this program does not make regions of its two sides yet: \
+                       {REGIONS}"
+            )
         }
     }
 }

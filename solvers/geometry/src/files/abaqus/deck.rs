@@ -88,7 +88,7 @@ impl Deck {
         let scope = self.open.as_mut().map_or(&mut self.flat, |(_, scope)| scope);
         match card.keyword.as_str() {
             "NODE" | "ELEMENT" | "ELSET" | "NSET" | "SURFACE" if card.get("INPUT").is_some() => {
-                let help = "put the lines of that file below the keyword";
+                let help = "copy the lines of that file below the keyword";
                 Err((card.place, Problem::Unread { what: format!("INPUT of *{}", card.keyword), help }))
             }
             "NODE" => scope.nodes(card),
@@ -122,7 +122,7 @@ impl Deck {
             }
             "SYSTEM" | "NGEN" | "NFILL" | "NCOPY" | "NMAP" | "ELGEN" | "ELCOPY" | "SUBMODEL"
             | "TRANSFORM SHELL" => {
-                let help = "write the deck with all nodes and elements in it, in one system of coordinates";
+                let help = "write a deck that lists all nodes and elements, in one coordinate system";
                 Err((card.place, Problem::Unread { what: format!("*{}", card.keyword), help }))
             }
             keyword if keywords::known(keyword).is_none() => {
@@ -198,7 +198,7 @@ impl Deck {
             && axis.norm() == 0.0
         {
             let expected = "two different points of an axis";
-            return Err((card.place, Problem::Expected { expected, found: "twice the same".into() }));
+            return Err((card.place, Problem::Expected { expected, found: "the same point twice".into() }));
         }
         // An instance without a name has the name of its part.
         let name =
@@ -216,7 +216,7 @@ impl Deck {
         let name = card.need("INPUT")?.to_string();
         let unread = |help| Err((card.place, Problem::Unread { what: format!("*INCLUDE of {name}"), help }));
         if depth == DEEPEST {
-            return unread("files include files more than eight deep");
+            return unread("included files are nested more than eight deep");
         }
         let bytes = match self.includes.read(&self.folder, &name) {
             Ok((_, bytes)) => bytes,

@@ -24,11 +24,11 @@ impl Includes {
         let path = within(folder, name)?;
         self.files += 1;
         if self.files > MOST {
-            return Err("a deck includes at most a thousand files");
+            return Err("a deck may include at most a thousand files");
         }
         let left = Kind::MESH.most().saturating_sub(self.bytes);
         let bytes = disk::read(&path, Kind::MESH.at_most(left))
-            .map_err(|_| "it is no regular file that can be read, or too large")?;
+            .map_err(|_| "the file is not a readable regular file, or is too large")?;
         self.bytes += bytes.len() as u64;
         Ok((path, bytes))
     }
@@ -37,7 +37,7 @@ impl Includes {
 /// Path of a file in the folder of the deck. Links are resolved before the check, because they may lead
 /// outside.
 fn within(folder: &Path, name: &str) -> Result<PathBuf, &'static str> {
-    const OUTSIDE: &str = "it has to lie in the folder of the deck";
+    const OUTSIDE: &str = "the file has to lie in the folder of the deck";
     if !Path::new(name).components().all(|part| matches!(part, Component::Normal(_) | Component::CurDir)) {
         return Err(OUTSIDE);
     }
@@ -46,6 +46,6 @@ fn within(folder: &Path, name: &str) -> Result<PathBuf, &'static str> {
     match (path.canonicalize(), home.canonicalize()) {
         (Ok(file), Ok(home)) if file.starts_with(&home) => Ok(path),
         (Ok(_), Ok(_)) => Err(OUTSIDE),
-        _ => Err("there is no such file that can be read"),
+        _ => Err("the file does not exist or cannot be read"),
     }
 }

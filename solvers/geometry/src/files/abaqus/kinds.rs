@@ -3,8 +3,8 @@
 use crate::CellKind;
 
 /// Element types that are read, for the message about other types.
-pub(super) const KNOWN: &str = "C3D4, C3D10, C3D8 and C3D20 with their variants (R, I, H, M) are read, shells as faces, beams and others \
-                                are read over";
+pub(super) const KNOWN: &str = "supported types: C3D4, C3D10, C3D8 and C3D20 with their variants (R, I, H, \
+                                M), and shells as faces; beams and others are skipped";
 
 /// Class of an element type.
 pub(super) enum Type {

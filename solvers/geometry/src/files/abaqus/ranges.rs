@@ -24,10 +24,10 @@ impl Range {
         let step = word(2).map_or(Ok(1), |word| whole(place, word, "the step between numbers"))?;
         let wrong = |expected| Err((place, Problem::Expected { expected, found: words.join(", ") }));
         let Some(span) = last.checked_sub(first).filter(|_| step > 0) else {
-            return wrong("a first number, a last one not below it, and a step of 1 or more");
+            return wrong("a first number, a last number not below the first, and a step of 1 or more");
         };
         if !span.is_multiple_of(step) {
-            return wrong("a last number that the steps from the first one reach");
+            return wrong("a last number that is a whole number of steps from the first");
         }
         let steps = span / step;
         if steps >= MOST {

@@ -44,7 +44,7 @@ impl Content {
         self.left_out.extend(orders.into_iter().map(|(kind, cells)| LeftOut {
             place: Place::Cell(0),
             what: format!(
-                "the middle nodes of {cells} {} stand in another order than that of the format: each is taken for the edge that it halves",
+                "the mid-edge nodes of {cells} {} are not in the order of the format; each node was assigned to the edge that it halves",
                 kind.name()
             ),
             kind: Kind::Changed,

@@ -327,7 +327,7 @@ impl Reader<'_> {
             let [kind, count, tags] = self.ints("the head of elements of one type")?;
             let count = usize::try_from(count).ok().filter(|count| (1..=left).contains(count));
             let (Some(count), 0..=64) = (count, tags) else {
-                let expected = "as many elements as the section has, with a few tags";
+                let expected = "no more elements than the section has, and few tags";
                 return self
                     .scanner
                     .fail(Problem::Expected { expected, found: format!("{count:?}, {tags} tags") });

@@ -115,7 +115,7 @@ fn header(bytes: &[u8]) -> Parsed<(Vec<Element>, Values<'_>)> {
                 if count > bytes.len() {
                     return Err((
                         place,
-                        Problem::TooMany { what: "elements for the bytes of the file", count },
+                        Problem::TooMany { what: "elements for the size of the file", count },
                     ));
                 }
                 elements.push(Element { name: (*name).into(), count, properties: Vec::new() });

@@ -236,7 +236,7 @@ fn unpacked(bytes: &mut impl Bytes, wanted: usize, coding: Coding, place: Place)
         match unpacked.filter(|found| found.len() == room) {
             Some(found) => all.extend(found),
             None => {
-                let expected = "a block that unpacks to the length stated";
+                let expected = "a block that unpacks to the stated length";
                 return Err((place, Problem::Expected { expected, found: format!("block {block}") }));
             }
         }

@@ -170,7 +170,7 @@ impl<'a> File<'a> {
         let ends: Option<Vec<usize>> = offsets.iter().map(|&end| usize::try_from(end).ok()).collect();
         let ends = ends.filter(|ends| ends.is_sorted());
         let Some(ends) = ends else {
-            let expected = "offsets that grow";
+            let expected = "ascending offsets";
             return Err((
                 self.place(named("offsets")?),
                 Problem::Expected { expected, found: "others".into() },
@@ -253,7 +253,7 @@ impl<'a> File<'a> {
                 let bytes = offset.and_then(|offset| self.bytes.get(start.checked_add(offset)?..));
                 let Some(bytes) = bytes else {
                     let found = node.attribute("offset").unwrap_or_default().into();
-                    return Err((place, Problem::Expected { expected: "an offset within the file", found }));
+                    return Err((place, Problem::Expected { expected: "an offset inside the file", found }));
                 };
                 let source = if base64 { Source::Base64(bytes) } else { Source::Raw(bytes) };
                 read(&source, kind, count, self.coding, place)
