@@ -343,10 +343,10 @@ fn unusable_problems_are_refused() {
     let good = params(1.0, 1, 0.5);
     let refused = |params: TimeParams| solve_in_time(&problem, &params, |_, _, _| ()).unwrap_err();
     for (what, params) in [
-        ("the end", TimeParams { end: 0.0, ..good }),
+        ("the end time", TimeParams { end: 0.0, ..good }),
         ("rho_inf", TimeParams { rho_inf: 1.1, ..good }),
         ("rho_inf", TimeParams { rho_inf: f64::NAN, ..good }),
-        ("the smallest part of a step", TimeParams { smallest: 0.0, ..good }),
+        ("the smallest step fraction", TimeParams { smallest: 0.0, ..good }),
         ("the accuracy", TimeParams { accuracy: Some(0.0), ..good }),
     ] {
         assert!(matches!(refused(params), TimeError::Parameter { what: found, .. } if found == what));
@@ -359,7 +359,7 @@ fn unusable_problems_are_refused() {
     let bad = moving(&jump, &mass, &[], &[]);
     assert!(matches!(
         solve_in_time(&bad, &good, |_, _, _| ()).unwrap_err(),
-        TimeError::Parameter { what: "a support put on at once", .. }
+        TimeError::Parameter { what: "the displacement of a support without a ramp", .. }
     ));
     // Row sums of a tet10 are negative at its corners; four points give a singular mass matrix.
     assert!(matches!(

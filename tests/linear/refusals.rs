@@ -116,7 +116,7 @@ fn each_piece_is_checked() {
     };
     match attempt(body, &[], &hold(0..4), &[], &[]) {
         Err(e @ SolveError::RigidMotion { node: 4, piece_nodes: 4, nodes: 8, .. }) => {
-            assert!(e.to_string().ends_with("(of the piece of 4 nodes that holds node 4)"), "{e}");
+            assert!(e.to_string().ends_with("(of the piece of 4 nodes that contains node 4)"), "{e}");
         }
         other => panic!("{other:?}"),
     }

@@ -371,13 +371,13 @@ fn contradictions_of_a_material_name_their_key() {
             "law = \"linear\"\nyoung = \"20 kPa\"\npoisson = 0.45",
             "law = \"ogden\"\nmu = [\"1 kPa\"]\nalpha = [-2]\nbulk = \"1 MPa\"",
             "material.mu",
-            "gives no shear modulus above zero",
+            "does not give a positive shear modulus",
         ],
         [
             "law = \"linear\"\nyoung = \"20 kPa\"\npoisson = 0.45",
             "law = \"mooney-rivlin\"\nyoung = \"20 kPa\"\npoisson = 0.45",
             "material.law",
-            "has not the constants it needs",
+            "does not have the constants of this law",
         ],
         [
             "poisson = 0.45\n",

@@ -54,8 +54,8 @@ pub enum InterpError {
     },
     /// Radial functions so wide that those of neighbouring nodes cannot be distinguished.
     #[error(
-        "{scheme}: {what} {width} (in mean spacings of the nodes) makes a system so nearly singular that values at \
-         the nodes are missed by {miss:e} of themselves; take less"
+        "{scheme}: {what} {width} (in mean node spacings) makes the system nearly singular: the values at \
+         the nodes are reproduced with a relative error of {miss:e} only; take a smaller value"
     )]
     TooWide {
         /// Scheme.
@@ -80,8 +80,8 @@ pub enum InterpError {
     },
     /// A dense table that would not fit into memory.
     #[error(
-        "{scheme}: {nodes} nodes and {targets} targets make a dense table of {entries} entries; \
-         at most {limit} are allowed"
+        "{scheme}: {nodes} nodes and {targets} targets give a dense table of {entries} entries; at most \
+         {limit} are allowed"
     )]
     TooLarge {
         /// Scheme.
@@ -97,20 +97,23 @@ pub enum InterpError {
     },
     /// A scheme without gradients in closed form.
     #[error(
-        "{scheme} has no gradients; moving least squares, radial bases and barycentric interpolation have"
+        "{scheme} has no gradients; take moving least squares, a radial basis or barycentric interpolation"
     )]
     NoGradient {
         /// Scheme.
         scheme: &'static str,
     },
     /// A scheme that needs a mesh but was given none.
-    #[error("{scheme} needs a mesh of tetrahedra over the nodes; none is given")]
+    #[error("{scheme} needs a mesh of tetrahedra over the nodes, but no mesh is given")]
     NeedsMesh {
         /// Scheme.
         scheme: &'static str,
     },
     /// A mesh whose points differ from the nodes.
-    #[error("the {nodes} nodes are not the {mesh} points of the mesh: they differ from number {first} on")]
+    #[error(
+        "the {nodes} nodes are not the {mesh} points of the mesh: the first difference is at number \
+         {first}"
+    )]
     MeshMismatch {
         /// Number of points of the mesh.
         mesh: usize,

@@ -30,7 +30,7 @@ pub(crate) const ENTRY: SchemeEntry = Entry {
 };
 
 const NEIGHBOURS: Parameter =
-    Parameter::default("neighbours", Dimension::None, 4.0, "how many nearest nodes count")
+    Parameter::default("neighbours", Dimension::None, 4.0, "number of nearest nodes")
         .of(Kind::Count)
         .within(Range::AtLeast(1.0));
 const POWER: Parameter =

@@ -19,7 +19,8 @@ pub struct NaturalNeighbour;
 
 pub(crate) const ENTRY: SchemeEntry = Entry {
     name: SCHEME,
-    meaning: "volumes that the target's Voronoi cell takes from those of the nodes; C1 but at the nodes",
+    meaning: "mean weighted by the volumes that the target's Voronoi cell takes from the cells of the nodes; \
+              C1 except at the nodes",
     source: "Sibson (1980, 1981)",
     parameters: &[],
     build: |_| Ok(NaturalNeighbour.into()),

@@ -134,7 +134,8 @@ impl Transfer for Radial {
 }
 
 const fn width(default: f64) -> Parameter {
-    Parameter::default("shape", Dimension::None, default, "width c over mean spacing").within(Range::Positive)
+    Parameter::default("shape", Dimension::None, default, "ratio of width c to mean node spacing")
+        .within(Range::Positive)
 }
 
 const POLYNOMIAL: Parameter =
@@ -177,7 +178,7 @@ pub(crate) const GAUSSIAN: SchemeEntry = Entry {
 
 pub(crate) const WENDLAND_C2: SchemeEntry = Entry {
     name: "wendland-c2",
-    meaning: "radial basis (1 - q)^4 (4q + 1), zero from the support radius on",
+    meaning: "radial basis (1 - q)^4 (4q + 1), zero beyond the support radius",
     source: "Wendland (1995)",
     parameters: &[support_scale(4.0), POLYNOMIAL],
     build: |values| {

@@ -157,6 +157,11 @@ pub(crate) fn scaled(factor: f64) -> Support {
 
 /// Returns the parameter of this multiple.
 pub(crate) const fn support_scale(default: f64) -> Parameter {
-    Parameter::default("support_scale", Dimension::None, default, "support radius over mean spacing")
-        .within(Range::Positive)
+    Parameter::default(
+        "support_scale",
+        Dimension::None,
+        default,
+        "ratio of support radius to mean node spacing",
+    )
+    .within(Range::Positive)
 }

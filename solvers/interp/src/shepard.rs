@@ -25,7 +25,7 @@ pub struct Shepard {
 
 pub(crate) const ENTRY: SchemeEntry = Entry {
     name: "shepard",
-    meaning: "mean of the nodes that reach the target, weighted by cubic splines; smooth",
+    meaning: "mean of the nodes whose supports contain the target, weighted by cubic splines; smooth",
     source: "Shepard (1968), with compact kernels",
     parameters: &[support_scale(1.6)],
     build: |values| Ok(Shepard { support_scale: values.number("support_scale")? }.into()),

@@ -18,7 +18,7 @@ pub enum MaterialError {
         poisson: f64,
     },
     /// Constants whose shear modulus is not positive and finite.
-    #[error("the constants amount to a shear modulus of {mu} Pa; it must be positive and finite")]
+    #[error("the constants give a shear modulus of {mu} Pa; it must be positive and finite")]
     Shear {
         /// `2 (C10 + C01)` or `sum mu_p alpha_p / 2`, Pa.
         mu: f64,
@@ -56,7 +56,7 @@ pub enum MaterialError {
         tau: f64,
     },
     /// A Prony series whose shares leave nothing that does not relax.
-    #[error("the shares of the Prony series sum to {sum}; the sum must be below 1")]
+    #[error("the coefficients g of the Prony series sum to {sum}; the sum must be below 1")]
     PronySum {
         /// `sum g_i`.
         sum: f64,

@@ -21,7 +21,7 @@ pub enum Unity {
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum ShapeError {
     /// Offsets that do not start at 0, decrease, or do not end at the number of entries.
-    #[error("row offsets are broken at row {row}: {offset} (entries: {entries})")]
+    #[error("row offsets are inconsistent at row {row}: {offset} (entries: {entries})")]
     BrokenOffsets {
         /// Row index.
         row: usize,
@@ -31,7 +31,7 @@ pub enum ShapeError {
         entries: usize,
     },
     /// Two arrays that should have the same length.
-    #[error("{what} has {found} entries, {expected} are needed")]
+    #[error("{what} has {found} entries instead of {expected}")]
     Length {
         /// Name of the array.
         what: &'static str,
@@ -59,7 +59,7 @@ pub enum ShapeError {
         row: usize,
     },
     /// A row whose sum violates the promise of one.
-    #[error("row {row} sums to {sum}, promised is 1 within {tolerance:e}")]
+    #[error("row {row} sums to {sum}; the sum must be 1 within {tolerance:e}")]
     NotUnity {
         /// Row index.
         row: usize,

@@ -44,7 +44,7 @@ pub enum SolveError {
         axis: u8,
     },
     /// A region index beyond the materials.
-    #[error("point {point} lies in region {region}, but there are {materials} materials")]
+    #[error("point {point} lies in region {region}, but only {materials} materials are given")]
     NoMaterial {
         /// Quadrature point.
         point: usize,
@@ -66,7 +66,10 @@ pub enum SolveError {
         second: f64,
     },
     /// A constraint row that no free degree of freedom can satisfy.
-    #[error("constraint row {row} has no free term left, and its fixed terms miss its value by {gap:e}")]
+    #[error(
+        "constraint row {row} has no free term, and the sum of its prescribed terms differs from its \
+         value by {gap:e}"
+    )]
     Inconsistent {
         /// Row index.
         row: usize,
@@ -74,7 +77,7 @@ pub enum SolveError {
         gap: f64,
     },
     /// A constraint row that depends on the others but prescribes a different value.
-    #[error("constraint row {row} depends on the others, which miss its value by {gap:e}")]
+    #[error("constraint row {row} depends linearly on the others and contradicts them by {gap:e}")]
     Dependent {
         /// Row index.
         row: usize,
@@ -100,7 +103,7 @@ pub enum SolveError {
         volume: f64,
     },
     /// A node to which no integration point contributes and that is not fixed along every axis.
-    #[error("node {node} has no stiffness: no integration point sees it")]
+    #[error("node {node} has no stiffness: no integration point contributes to it")]
     OrphanNode {
         /// The node.
         node: usize,
@@ -120,20 +123,20 @@ pub enum SolveError {
     /// A zero or negative pivot although no rigid motion is free. Either the integration is too poor
     /// (zero-energy modes), or parts of the body are joined by a hinge only.
     #[error(
-        "the stiffness is not positive definite though no rigid motion is free: zero-energy modes of a reduced \
-         integration, or parts joined along an edge or at a point"
+        "the stiffness matrix is not positive definite although no rigid motion is free; possible causes: \
+         zero-energy modes of a reduced integration, or parts joined only along an edge or at a point"
     )]
     NotPositiveDefinite,
     /// Conjugate gradients over the nodal parameters, which cannot enforce constraint rows.
-    #[error("{rows} constraint rows need a direct solver, iterations don't do")]
+    #[error("{rows} constraint rows need a direct solver; the iterative solver does not support constraints")]
     RowsNeedFactor {
         /// Number of rows.
         rows: usize,
     },
     /// As [`SolveError::NotPositiveDefinite`], with Nitsche supports whose stabilisation is too small.
     #[error(
-        "the stiffness with Nitsche supports is not positive definite: gamma = {gamma} is too small (or the \
-             boundary quadrature too poor), raise it"
+        "the stiffness matrix with Nitsche supports is not positive definite: gamma = {gamma} is too small \
+         (or the boundary quadrature too coarse); raise gamma"
     )]
     NotCoercive {
         /// The smallest stabilisation factor among the supports.
@@ -141,7 +144,8 @@ pub enum SolveError {
     },
     /// A motion without stiffness and mass, whose frequency is undefined.
     #[error(
-        "some motion has neither stiffness nor mass: no frequency; integrate one of them with more points"
+        "some motion has neither stiffness nor mass, so its frequency is undefined; integrate the stiffness \
+         or the mass with more points"
     )]
     NoFrequency,
     /// The linear system could not be solved.
@@ -157,6 +161,6 @@ fn piece(node: usize, piece_nodes: usize, nodes: usize) -> String {
     if piece_nodes == nodes {
         String::new()
     } else {
-        format!(" (of the piece of {piece_nodes} nodes that holds node {node})")
+        format!(" (of the piece of {piece_nodes} nodes that contains node {node})")
     }
 }

@@ -23,7 +23,7 @@ pub struct MooneyRivlin {
 }
 
 const SHARE: Parameter =
-    Parameter::optional("share", Dimension::None, "part of the second constant: c01 / (c10 + c01)")
+    Parameter::optional("share", Dimension::None, "fraction of the second constant, c01 / (c10 + c01)")
         .within(Range::Within(0.0, 1.0));
 
 pub(super) const ENTRY: LawEntry = Entry {
@@ -49,13 +49,13 @@ fn build(values: &Values) -> Result<super::Law, Problem> {
             MooneyRivlin::from_young(young, poisson, share)
         }
         _ => {
-            let help = "give c10, c01 and bulk, or young, poisson and share; nothing else";
-            return Err(Problem::new("has not the constants it needs").help(help));
+            let help = "give either c10, c01 and bulk, or young, poisson and share";
+            return Err(Problem::new("does not have the constants of this law").help(help));
         }
     };
     law.map(Into::into).map_err(|bad| match bad {
-        MaterialError::Shear { .. } => Problem::new("gives no shear modulus above zero")
-            .help("c10 + c01 is half the shear modulus")
+        MaterialError::Shear { .. } => Problem::new("does not give a positive shear modulus")
+            .help("c10 + c01, which is half the shear modulus, must be positive")
             .of("c10"),
         bad => bad.into(),
     })

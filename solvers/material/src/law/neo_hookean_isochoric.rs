@@ -22,7 +22,7 @@ pub struct NeoHookeanIsochoric {
 
 pub(super) const ENTRY: LawEntry = Entry {
     name: "neo-hookean-isochoric",
-    meaning: "C10 (J^(-2/3) I1 - 3) + (J - 1)^2 / D1, as Abaqus and CalculiX have it",
+    meaning: "C10 (J^(-2/3) I1 - 3) + (J - 1)^2 / D1, as in Abaqus and CalculiX",
     source: "Abaqus Theory Guide, Hyperelastic material behavior",
     parameters: MODULI,
     build: |values| {

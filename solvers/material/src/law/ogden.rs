@@ -32,7 +32,7 @@ pub(super) const ENTRY: LawEntry = Entry {
     source: "Ogden, Proc. R. Soc. A 326 (1972) 565-584",
     parameters: &[
         Parameter::required("mu", Dimension::Pressure, "constant of each term").of(Kind::List),
-        Parameter::required("alpha", Dimension::None, "exponent of each term, none of them 0").of(Kind::List),
+        Parameter::required("alpha", Dimension::None, "exponent of each term, not 0").of(Kind::List),
         BULK,
     ],
     build,
@@ -45,11 +45,11 @@ fn build(values: &Values) -> Result<super::Law, Problem> {
     }
     let terms: Vec<(f64, f64)> = mu.iter().copied().zip(alpha.iter().copied()).collect();
     Ogden::new(&terms, values.number("bulk")?).map(Into::into).map_err(|bad| match bad {
-        MaterialError::Shear { .. } => Problem::new("gives no shear modulus above zero")
-            .help("the sum of mu times alpha must be positive: twice the shear modulus")
+        MaterialError::Shear { .. } => Problem::new("does not give a positive shear modulus")
+            .help("the sum of mu times alpha, which is twice the shear modulus, must be positive")
             .of("mu"),
         MaterialError::OgdenTerm { .. } => {
-            Problem::new("holds a zero").help("give exponents other than 0").of("alpha")
+            Problem::new("contains a zero").help("give exponents other than 0").of("alpha")
         }
         bad => bad.into(),
     })

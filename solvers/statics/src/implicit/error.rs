@@ -29,8 +29,8 @@ pub enum TimeError {
     /// The mass matrix cannot be inverted for the initial accelerations: there are too few integration
     /// points.
     #[error(
-        "no accelerations at the start: relative residual {residual:.1e} after {iterations} iterations with the mass \
-         matrix; a mass table with more points per node is needed"
+        "the initial accelerations did not converge: relative residual {residual:.1e} after {iterations} \
+         iterations with the mass matrix; a mass table with more points per node is needed"
     )]
     SingularMass {
         /// Iterations of conjugate gradients.
@@ -39,7 +39,7 @@ pub enum TimeError {
         residual: f64,
     },
     /// A step whose estimated local error exceeds the limit.
-    #[error("local error {error:.2e} m of the step, allowed {allowed:.2e} m")]
+    #[error("the local error of the step is {error:.2e} m; at most {allowed:.2e} m is allowed")]
     Inaccurate {
         /// Estimate, m.
         error: f64,
@@ -47,7 +47,7 @@ pub enum TimeError {
         allowed: f64,
     },
     /// A step that failed at the smallest allowed length.
-    #[error("stopped at {time:.6e} s: a step of {step:.1e} s failed too ({cause})")]
+    #[error("stopped at {time:.6e} s: even a step of {step:.1e} s failed ({cause})")]
     Stalled {
         /// Time reached, s.
         time: f64,

@@ -109,10 +109,10 @@ impl TimeProblem<'_> {
     pub(super) fn check(&self, params: &TimeParams) -> Result<(), TimeError> {
         let refuse = |what, value, need| Err(TimeError::Parameter { what, value, need });
         if !(params.end > 0.0 && params.end.is_finite()) {
-            return refuse("the end", params.end, "it must be positive and finite");
+            return refuse("the end time", params.end, "it must be positive and finite");
         }
         if !(params.smallest > 0.0) {
-            return refuse("the smallest part of a step", params.smallest, "it must be positive");
+            return refuse("the smallest step fraction", params.smallest, "it must be positive");
         }
         if !(params.rho_inf >= 0.0 && params.rho_inf <= 1.0) {
             return refuse("rho_inf", params.rho_inf, "it must be between 0 and 1");
@@ -129,7 +129,7 @@ impl TimeProblem<'_> {
         let laws = self.body.solid.laws.len();
         if !self.relaxation.is_empty() && self.relaxation.len() != laws {
             let value = self.relaxation.len() as f64;
-            return refuse("the number of relaxations", value, "there must be one for each law, or none");
+            return refuse("the number of relaxations", value, "give one for each law, or none");
         }
         let Some(inertia) = &self.inertia else { return Ok(()) };
         if !(inertia.damping >= 0.0 && inertia.damping.is_finite()) {
@@ -137,15 +137,18 @@ impl TimeProblem<'_> {
         }
         let jump = self.body.fixed.iter().find(|f| f.value != 0.0);
         if let (None, Some(jump)) = (supports.over(), jump) {
-            return refuse("a support put on at once", jump.value, "a body with mass needs time to follow");
+            return refuse(
+                "the displacement of a support without a ramp",
+                jump.value,
+                "a body with mass needs a ramp",
+            );
         }
         let nodes = self.body.nodes.len();
         let check = crate::body::check_len;
         check("nodes of the mass table", inertia.mass.node_count(), nodes)?;
-        for (what, field) in [
-            ("displacements at the start", inertia.displacement),
-            ("velocities at the start", inertia.velocity),
-        ] {
+        for (what, field) in
+            [("initial displacements", inertia.displacement), ("initial velocities", inertia.velocity)]
+        {
             if !field.is_empty() {
                 check(what, field.len(), nodes)?;
             }

@@ -60,15 +60,15 @@ pub enum StaticError {
     },
     /// A tangent that no tested shift of the diagonal makes definite.
     #[error(
-        "the body is unstable here: its tangent is not positive definite, not even with the diagonal doubled, and \
-         shows no way down to a stable equilibrium"
+        "the body is unstable at this step: the tangent is not positive definite, even with the diagonal \
+         doubled, and gives no descent direction towards a stable equilibrium"
     )]
     Unstable,
     /// Newton's method did not converge.
     #[error(
-        "no equilibrium after {iterations} iterations: relative residual {residual:.2e} (limit {tolerance:.0e}), \
-         largest at node {} near ({:.4}, {:.4}, {:.4}) m with {:.2e} N; smallest J {smallest:.3} at quadrature \
-         point {smallest_at}",
+        "no equilibrium after {iterations} iterations: relative residual {residual:.2e} (limit \
+         {tolerance:.0e}), largest at node {} near ({:.4}, {:.4}, {:.4}) m: {:.2e} N; smallest J \
+         {smallest:.3} at quadrature point {smallest_at}",
         worst.node, worst.at.x, worst.at.y, worst.at.z, worst.force
     )]
     NotConverged {
@@ -86,7 +86,7 @@ pub enum StaticError {
         smallest_at: usize,
     },
     /// A load step that failed at the smallest allowed length.
-    #[error("stopped at {time:.4} of the load: a step of {step:.1e} failed too ({cause})")]
+    #[error("stopped at {time:.4} of the load: even a step of {step:.1e} failed ({cause})")]
     Stalled {
         /// Applied load fraction reached, 0 to 1.
         time: f64,
