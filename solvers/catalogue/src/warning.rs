@@ -36,81 +36,96 @@ macro_rules! warnings {
 
 warnings! {
     NOTHING_MOVES: "nothing-moves", None,
-        "no load, no tool and no moved support: every displacement is 0";
+        "the scene has no load, no tool and no moving support, so every displacement is 0; no value";
     EXACT_MISFIT: "exact-misfit", None,
-        "the exact solution has other displacements or tractions on the surface than the scene prescribes; the largest root mean \
-         square difference on a surface over the largest value on any";
+        "the exact solution has other displacements or tractions on the surface than the scene prescribes; \
+         value: the largest root mean square difference on a surface divided by the largest value on any \
+         surface";
     PROBE_OUTSIDE: "probe-outside", Length,
-        "a probe lies outside the mesh and has the values of the mesh's nearest point; the distance";
+        "a probe lies outside the mesh and takes the values at the nearest point of the mesh; value: the \
+         distance to this point";
     REGION_CUT: "region-cut", None,
-        "the border of a region runs through cells, each of which is of the material at its centre; the share of such cells";
+        "the border of a region runs through cells, and each of these cells has the material at its centre; \
+         value: the fraction of such cells";
     REGIONS_BLENDED: "regions-blended", None,
-        "shape functions of a cloud reach across the border of two materials and smooth the jump of the strain there; the \
-         stiffer's modulus over the softer's";
+        "shape functions of a cloud extend across the border of two materials and smooth the strain jump \
+         there; value: the ratio of the stiffer modulus to the softer";
     FEW_POINTS: "few-points", None,
-        "a cloud has too few integration points to see all its motions; points per node";
+        "a cloud has too few integration points to resist every nodal motion; value: the number of \
+         integration points per node";
     PATCH_TEST: "patch-test", None,
-        "the integration of a cloud does not see constant stress in balance; the error that makes in the gradient of a linear \
-         field";
+        "the integration of a cloud fails the patch test, so constant stress is not in equilibrium; value: \
+         the resulting relative error in the gradient of a linear field";
     SUPPORT_GIVES: "support-gives", None,
-        "a support held weakly gives way; the root mean square gap there over the largest displacement";
+        "the displacement at a weakly imposed support differs from the prescribed displacement; value: the \
+         root mean square difference divided by the largest displacement";
     SUPPORT_LEAKS: "support-leaks", None,
-        "a support held weakly gives way by much for a flat body or one that is hard to compress; the root of the energy lost by \
-         that over the strain energy";
+        "the displacement at a weakly imposed support differs from the prescribed displacement by much for a \
+         flat or nearly incompressible body, so the stress may be wrong; value: the square root of the ratio \
+         of the energy of the difference to the strain energy";
     NITSCHE_FACTOR: "nitsche-factor", None,
-        "the factor of Nitsche's method is barely large enough for a definite form; the factor over the one needed";
+        "the factor of Nitsche's method is barely large enough for a definite form; value: the ratio of the \
+         factor to the smallest sufficient factor";
     FEW_CONTACT_POINTS: "few-contact-points", None,
-        "fewer than three contact points carry the force of a tool, which depends on where they are; how many carry it";
+        "fewer than three contact points carry the force of a tool, so the force depends on their positions; \
+         value: the number of points that carry the force";
     FOLDED: "folded", None,
-        "the body is turned inside out between the integration points; the smallest J at the points of a finer quadrature";
+        "the body is inverted between the integration points; value: the smallest J at the points of a finer quadrature";
     LARGE_STRAIN: "large-strain", None,
-        "a law of small strain strains by more than 10 %, where a law of large strain gives other numbers; the largest principal \
-         strain at the integration points";
+        "a material with a small-strain law is strained by more than 10 %, at which a large-strain law gives \
+         other results; value: the largest principal strain at the integration points";
     LARGE_ROTATION: "large-rotation", None,
-        "a law of small strain, or the linear procedure, turns by more than 0.2 rad, which it takes for a strain; the largest rotation \
-         at the integration points, rad";
+        "a material with a small-strain law, or in the linear procedure, rotates by more than 0.2 rad, and \
+         the rotation is taken for strain; value: the largest rotation at the integration points, rad";
     DEAD_PRESSURE: "dead-pressure", None,
-        "a pressure keeps the direction and the area of the undeformed faces, which turn by more than 10 degrees or change their area \
-         by more than 10 %; the largest change of a face's directed area over its area";
+        "a pressure keeps the direction and the area of the undeformed faces, but the faces rotate by more \
+         than 10 degrees or change their area by more than 10 %; value: the largest change of a face's area \
+         vector divided by its area";
     NODES_DIFFER: "nodes-differ", None,
-        "a mesh has more than 10 % more or fewer nodes than the scene asks for, as sizes of cells come in steps; nodes got over asked";
+        "the number of nodes of a mesh differs by more than 10 % from the requested number, because cell \
+         sizes come in steps; value: the ratio of actual to requested nodes";
     VOLUME_DIFFERS: "volume-differs", None,
-        "a mesh made inside a surface has 5 % less or more volume than that encloses, as parts thinner than its cells are left out; volume \
-         got over enclosed";
+        "the volume of a mesh made inside a surface differs by more than 5 % from the enclosed volume, \
+         because parts thinner than the cells are left out; value: the ratio of mesh volume to enclosed \
+         volume";
     LEFT_OUT: "left-out", None,
-        "the file of the mesh has parts that are not read, such as the model of a deck or arrays that may number regions; how many of \
-         them join or carry parts of the body";
+        "the mesh file has parts that are not read, such as the model of a deck or arrays that may number \
+         regions; value: the number of these parts that join or support parts of the body";
     PIECES_APART: "pieces-apart", None,
-        "the body is in pieces without a node in common, which do not feel each other, also where their faces coincide; how many there \
-         are";
+        "the body consists of pieces without a common node, which do not interact even if their faces \
+         coincide; value: the number of pieces";
     DEEP_PENETRATION: "deep-penetration", None,
-        "a tool sinks into the surface by more than 5 % of the way that the tools close, as the penalty is too small; the penetration \
-         over that way";
+        "a tool penetrates the surface by more than 5 % of the distance that the tools close, because the \
+         penalty is too small; value: the ratio of penetration to this distance";
     TOOL_UNTOUCHED: "tool-untouched", None,
-        "a tool of a static path touches nothing at the end, where its force is 0; no number";
+        "a tool touches nothing at the end of a static path, so its force is 0; no value";
     TOOL_INSIDE: "tool-inside", Length,
-        "a tool stands in the body before anything moves, so that the first step has all of that to press out; how deep";
+        "a tool overlaps the undeformed body, so the first step has to remove the whole overlap; value: the \
+         depth of the overlap";
     STEP_ERROR: "step-error", None,
-        "time steps are too long: the estimated error of one step over the largest displacement";
+        "time steps are too long; value: the estimated error of one step divided by the largest displacement";
     REFERENCE_COARSER: "reference-coarser", None,
-        "a run has more nodes than the reference that it is compared with, whose error its own may be; nodes over those of the reference";
+        "a run has more nodes than its reference, so the reported error may be that of the reference; value: \
+         the ratio of the run's nodes to the reference's nodes";
     MACHINE_BUSY: "machine-busy", None,
-        "other programs had the processors while runs were timed; the largest ratio of a run's time to its seconds of the processors";
+        "other programs used the processors while runs were timed; value: the largest ratio of wall-clock time to CPU time of a run";
     ADAPTER_UNCHECKED: "adapter-unchecked", None,
-        "a solver outside this program has not passed `tissuebench adapter check` as it is now; no number";
+        "an external solver has not passed `tissuebench adapter check` in its present state; no value";
     STABILITY_LOST: "stability-lost", None,
-        "the body loses its stability on a path that goes on: beyond that there are several equilibria, of which the mesh chooses one; \
-         the part of the load at the last stable step";
+        "the body loses stability before the end of the load path, and the mesh decides which of several \
+         equilibria the run follows from there; value: the load fraction at the last stable step";
     ZERO_ENERGY_MODES: "zero-energy-modes", None,
-        "modes of vibration strain the body without energy, which its supports do not leave free: the frequency of 0 is the \
-         method's own; how many";
+        "vibration modes deform the body without energy although they are not rigid motions, so their \
+         frequency of 0 is an artefact of the method; value: the number of such modes";
     FEW_CELLS: "few-cells", None,
-        "fewer than three cells lie across what bends or is pressed, along its displacement, quadratic ones counted twice; how many, \
-         the median by strain energy";
+        "the body has fewer than three cells across a section that bends or is compressed, counted along the \
+         displacement and twice if quadratic; value: the number of cells across, median by strain energy";
     FEW_DIGITS: "few-digits", None,
-        "the matrix is so near to a singular one that rounding takes most digits of a linear solution; how many are certain";
+        "the matrix is nearly singular, so rounding leaves few correct digits in a linear solution; value: \
+         the number of correct digits";
     STRESS_JUMP: "stress-jump", None,
-        "the stress is far from smooth: its distance from the stress recovered from it over the norm of both; no error by itself";
+        "the stress is far from smooth; value: the distance between the stress and the smooth stress \
+         recovered from it, divided by the norm of both, which is not an error";
 }
 
 #[cfg(test)]

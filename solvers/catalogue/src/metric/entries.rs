@@ -31,15 +31,18 @@ metrics! {
     RMS_Z: "rms-z", "RMS error along z", Length, Error, Reference,
         "root mean square error of the displacement along z";
     RMS: "rms", "RMS error", Length, Error, Reference,
-        "root mean square error of the displacement; of a transfer, of the displacement after it: the method's error and the transfer's together";
+        "root mean square error of the displacement; for a transfer, of the transferred displacement, which \
+         includes the errors of the method and of the transfer";
     MAX_ERROR: "max-error", "largest error", Length, Error, Reference,
         "largest error of the displacement";
     RELATIVE_MAX: "relative-max", "relative largest error", None, Error, Reference,
-        "largest error over the largest exact displacement";
+        "largest error of the displacement divided by the largest exact displacement";
     RELATIVE_RMS: "relative-rms", "relative RMS error", None, Error, Reference,
-        "root mean square error of the displacement over the root mean square of the reference's";
+        "root mean square error of the displacement divided by the root mean square of the reference \
+         displacement";
     PEAK_ERROR: "peak-error", "relative error of the peak", None, Error, Reference,
-        "error of the largest displacement, wherever it is, over the reference's largest";
+        "error of the largest displacement, wherever it occurs, divided by the largest displacement of the \
+         reference";
     L2: "l2", "relative L2 error", None, Error, Reference,
         "relative L2 error of the displacement";
     ENERGY: "energy", "relative energy error", None, Error, Reference,
@@ -51,9 +54,10 @@ metrics! {
     PROBE_ERROR: "probe-error", "relative error at probes", None, Error, Probes,
         "largest relative error at the probes";
     HISTORY_ERROR: "history-error", "relative error over time", None, Error, Exact,
-        "largest error at the probes in all recorded states, over the largest exact displacement there";
-    TIP: "tip", "computed over exact", None, Value, Probes,
-        "computed over exact displacement at the first probe";
+        "largest error at the probes in all recorded states, divided by the largest exact displacement at \
+         the probes";
+    TIP: "tip", "ratio of computed to exact", None, Value, Probes,
+        "ratio of computed to exact displacement at the first probe";
     // Parts of an error, and distances from a secondary reference.
     INTEGRATION_RMS_X: "integration-rms-x", "integration error along x", Length, Error, Reference,
         "root mean square difference along x from the same method with the study's integration rule";
@@ -81,7 +85,9 @@ metrics! {
         "root mean square difference from the secondary reference (output.beside)";
     // Transfers to other points.
     TRANSFER_RMS: "transfer-rms", "RMS change made by a transfer", Length, Error, Transfer,
-        "root mean square difference of the transferred displacement from that of the method's own shape functions: what the transfer changes, without the method's error; the worst of all schemes in a check";
+        "root mean square difference between the transferred displacement and the displacement by the \
+         method's own shape functions, which excludes the error of the method; in a check, the worst of all \
+         schemes";
     LINEAR_RMS: "linear-rms", "RMS error of a linear field", Length, Error, Transfer,
         "root mean square error of a transferred linear field of 10 % strain";
     TRANSFER_ONLY_RMS_X: "transfer-only-rms-x", "RMS error of the reference's field after transfer along x", Length, Error, Transfer,
@@ -110,33 +116,34 @@ metrics! {
     ORDER_PRESSURE: "order-pressure", "order of the pressure error", None, Order, Levels,
         "observed order of the pressure error";
     ORDER_FREQUENCY_ERROR: "order-frequency-error", "order of the frequency error", None, Order, Levels,
-        "observed order of the frequency's error";
+        "observed order of the frequency error";
     // Many clouds.
-    CARRIED_SHARE: "carried-share", "share of clouds that carried the load", None, Value, Seeds,
-        "share of the clouds of a study's seeds that gave numbers and carried the whole load, 0 to 1";
+    CARRIED_SHARE: "carried-share", "fraction of clouds that reached the full load", None, Value, Seeds,
+        "fraction of the clouds of a study's seeds that gave results and reached the full load, 0 to 1";
     // Vibrations.
-    FREQUENCY_RATIO: "frequency-ratio", "computed over exact frequency", None, Value, ModesReference,
-        "computed over exact frequency, the worst of the modes nearest to the exact ones of that frequency";
+    FREQUENCY_RATIO: "frequency-ratio", "ratio of computed to exact frequency", None, Value, ModesReference,
+        "ratio of computed to exact frequency, the worst of the modes nearest to the exact modes of this \
+         frequency";
     FREQUENCY_ERROR: "frequency-error", "relative frequency error", None, Error, ModesReference,
-        "distance of frequency-ratio from 1";
+        "absolute difference between frequency-ratio and 1";
     MODE_OVERLAP: "mode-overlap", "mode overlap", None, Value, ModesReference,
-        "least share of their displacement that lies in the exact modes";
+        "smallest squared cosine between a mode of frequency-ratio and the space of the exact modes";
     SPECTRUM_ERROR: "spectrum-error", "relative error of the spectrum", None, Error, ModesReference,
         "largest relative error of the reported frequencies, compared one by one in ascending order";
     SLOW_MODES: "slow-modes", "spurious slow modes", None, Count, ModesReference,
-        "modes slower than 0.9 of the slowest exact one";
+        "modes with a frequency below 0.9 of the lowest exact frequency";
     RIGID_MODES: "rigid-modes", "rigid modes", None, Count, Modes,
-        "modes slower than a thousandth of a shear wave across the body";
+        "modes with a frequency below a thousandth of that of a shear wave across the body";
     MASSLESS: "massless", "massless motions", None, Count, Modes,
         "motions that have stiffness but no mass";
     MODE: "mode", "mode", None, Count, Modes,
-        "number of a mode, from 1, slowest first";
+        "number of a mode, from 1, by ascending frequency";
     OMEGA: "omega", "angular frequency", AngularFrequency, Value, Modes,
         "angular frequency of a mode";
     FREQUENCY: "frequency", "frequency", Frequency, Value, Modes,
-        "frequency of a mode, its angular frequency over 2 pi";
-    OMEGA_RATIO: "omega-ratio", "computed over exact angular frequency", None, Value, ModesReference,
-        "angular frequency of a mode over the exact one of the same number";
+        "frequency of a mode, its angular frequency divided by 2 pi";
+    OMEGA_RATIO: "omega-ratio", "ratio of computed to exact angular frequency", None, Value, ModesReference,
+        "ratio of the angular frequency of a mode to the exact angular frequency with the same number";
     // Tools and contact.
     CLOSURE: "closure", "tool displacement", Length, Tool, Tool,
         "displacement of the tool along its direction";
@@ -145,10 +152,11 @@ metrics! {
     CONTACT_POINTS: "contact-points", "points in contact", None, Tool, Tool,
         "surface points in contact with the tool";
     TOOL_FORCE_ERROR: "tool-force-error", "relative force error", None, Tool, ToolReference,
-        "relative error of the tool's force against the reference method, at the same part of the load";
+        "relative error of the tool's force against the reference method, at the same load fraction";
     // ANCHOR: contact_radius_error
     CONTACT_RADIUS_ERROR: "contact-radius-error", "relative error of the contact's radius", None, Error, ExactContact,
-        "relative error of the contact's radius, sqrt(A / A exact) - 1, A the area of the points in contact: its edge is known to half a cell's width";
+        "relative error of the contact radius, sqrt(A / A exact) - 1, with the area A of the points in \
+         contact, whose edge is known to half a cell's width";
     // ANCHOR_END: contact_radius_error
     PENETRATION: "penetration", "deepest penetration", Length, Value, Tool,
         "deepest penetration of a tool";
@@ -158,36 +166,36 @@ metrics! {
         "force of the tool at the last stable step before the body first lost stability";
     // Supports and faces.
     REACTION_X: "reaction-x", "support force along x", Force, Place, Support,
-        "force along x with which a support holds the body, at the end: with the loads, the tools and the other supports it is in balance";
+        "force along x of a support on the body, at the end; the forces of all supports, loads and tools are in equilibrium";
     REACTION_Y: "reaction-y", "support force along y", Force, Place, Support,
-        "force along y with which a support holds the body, at the end";
+        "force along y of a support on the body, at the end";
     REACTION_Z: "reaction-z", "support force along z", Force, Place, Support,
-        "force along z with which a support holds the body, at the end";
+        "force along z of a support on the body, at the end";
     MEAN_X: "mean-x", "mean displacement along x", Length, Place, Mean,
-        "mean displacement along x of a face that output.means names, by its area, at the end";
+        "area-weighted mean displacement along x of a face listed in output.means, at the end";
     MEAN_Y: "mean-y", "mean displacement along y", Length, Place, Mean,
-        "mean displacement along y of a face that output.means names, by its area, at the end";
+        "area-weighted mean displacement along y of a face listed in output.means, at the end";
     MEAN_Z: "mean-z", "mean displacement along z", Length, Place, Mean,
-        "mean displacement along z of a face that output.means names, by its area, at the end";
+        "area-weighted mean displacement along z of a face listed in output.means, at the end";
     // Load steps, Newton's method, relaxation.
     LOAD_CARRIED: "load-carried", "applied load fraction", None, Value, Steps,
-        "part of the loading that was reached, 0 to 1";
+        "fraction of the load that was reached, 0 to 1";
     LIMIT_LOAD: "limit-load", "load fraction at the limit", None, Value, Steps,
-        "part of the loading at the last stable step before the body first lost stability";
+        "fraction of the load at the last stable step before the body first lost stability";
     LOAD_STEPS: "load-steps", "recorded states", None, Count, Steps,
         "load steps or recorded states";
     SMALLEST_J: "smallest-j", "smallest volume ratio", None, Value, Steps,
         "smallest volume ratio J of all quadrature points";
     STRAIN_ENERGY_ERROR: "strain-energy-error", "relative energy error", None, Error, StepsReference,
-        "relative error of the strain energy against the reference method, at the same part of the load";
+        "relative error of the strain energy against the reference method, at the same load fraction";
     PROBE_DIFFERENCE: "probe-difference", "largest difference at probes", Length, Error, ProbesReference,
-        "largest distance from the reference method's displacement at the probes, at the same part of the load";
+        "largest distance from the reference method's displacement at the probes, at the same load fraction";
     PROBE_BAND: "probe-band", "uncertainty of the reference at probes", Length, Value, ProbesReference,
         "largest distance between the solutions that a stored reference is made of, at the probes";
     NEWTON_ITERATIONS: "newton-iterations", "Newton iterations", None, Count, Newton,
-        "linear systems that Newton's method solved, of all steps";
+        "number of linear systems solved by Newton's method in all steps";
     CUT_BACKS: "cut-backs", "cut-back steps", None, Count, Newton,
-        "steps that failed and were cut";
+        "number of steps that failed and were repeated with a shorter length";
     RELAXATION_STEPS: "relaxation-steps", "relaxation steps", None, Count, Steps,
         "pseudo-time steps of dynamic relaxation";
     RELAXATION_ERROR: "relaxation-error", "relaxation error", None, Error, Steps,
@@ -195,26 +203,28 @@ metrics! {
     RELAXATION_RESIDUAL: "relaxation-residual", "relaxation residual", None, Error, Steps,
         "relative residual at which dynamic relaxation stopped";
     REPEATED_ERROR: "repeated-error", "relative error of a repeated frame", None, Error, Run,
-        "largest difference at the probes between a frame of the repeated loading and the direct solution, over the largest displacement there";
+        "largest difference at the probes between a frame of the repeated loading and the direct solution, \
+         divided by the largest displacement at the probes";
     // Dynamics.
     TIME: "time", "time", Time, Cost, Run,
-        "seconds of a phase; of a recorded state in dynamics, the model's own time";
+        "duration of a phase; for a recorded state in dynamics, the time of the model";
     TIME_STEPS: "time-steps", "time steps", None, Count, Dynamics,
-        "time steps made";
+        "number of time steps";
     TIME_REACHED: "time-reached", "time reached", Time, Value, Dynamics,
-        "time up to which the motion was followed";
+        "time up to which the motion was computed";
     CRITICAL_STEP: "critical-step", "critical time step", Time, Value, Explicit,
-        "smallest critical time step estimated; of vibrations 2 / omega of the fastest";
+        "smallest estimated critical time step; for vibrations, 2 / omega of the highest mode";
     STEP_ERROR: "step-error", "error of a time step", Length, Error, Dynamics,
         "largest estimated error of the displacement in one implicit time step";
     ENERGY_DRIFT: "energy-drift", "relative energy drift", None, Error, Dynamics,
-        "largest error of the energy balance over its largest term; with implicit steps what the scheme dissipates";
+        "largest error of the energy balance divided by its largest term; with implicit steps, this error is \
+         the energy dissipated by the scheme";
     MAX_OVER_TIME: "max-over-time", "largest displacement over time", Length, Value, Dynamics,
-        "largest displacement in all recorded states, where the largest at the end is looked for";
+        "largest displacement in all recorded states, at the points at which max is evaluated";
     TIME_OF_MAX: "time-of-max", "time of the largest displacement", Time, Value, Dynamics,
         "time of the recorded state with the largest displacement";
     PERIOD: "period", "period", Time, Value, Motion,
-        "mean period of the first probe: between its passages upwards through the middle of its recorded displacement";
+        "mean period of the first probe, between upward crossings of the middle of its recorded displacement range";
     MASS: "mass", "mass", Mass, Value, Dynamics,
         "mass of the body";
     TOOL_MASS: "tool-mass", "tool mass", Mass, Value, Explicit,
@@ -237,11 +247,11 @@ metrics! {
         "energy dissipated by the implicit time-stepping scheme";
     // Any run.
     MAX_X: "max-x", "largest displacement along x", Length, Value, Run,
-        "largest displacement along x, either way, at the end";
+        "largest absolute displacement along x at the end";
     MAX_Y: "max-y", "largest displacement along y", Length, Value, Run,
-        "largest displacement along y, either way, at the end";
+        "largest absolute displacement along y at the end";
     MAX_Z: "max-z", "largest displacement along z", Length, Value, Run,
-        "largest displacement along z, either way, at the end";
+        "largest absolute displacement along z at the end";
     MAX: "max", "largest displacement", Length, Value, Run,
         "largest displacement at the end";
     STRAIN_ENERGY: "strain-energy", "strain energy", Energy, Value, Run,
@@ -261,44 +271,47 @@ metrics! {
     FACTOR_NONZEROS: "factor-nonzeros", "nonzeros of the factor", None, Count, Run,
         "stored entries of the matrix factor, or of the matrices of all levels of a multigrid solver";
     LINEAR_ITERATIONS: "linear-iterations", "iterations of the linear solver", None, Count, Run,
-        "iterations with multigrid, of conjugate gradients or with pressures";
+        "iterations of the multigrid-preconditioned solver: conjugate gradients, or the solver for systems \
+         with pressures";
     OPERATOR_COMPLEXITY: "operator-complexity", "operator complexity", None, Value, Run,
-        "entries of the matrices of all levels of a multigrid solver over those of the finest";
+        "matrix entries of all levels of a multigrid solver divided by the entries of the finest level";
     STRESS_JUMP: "stress-jump", "jump of the stress", None, Value, Run,
-        "distance between a method's own stress and the smooth one recovered from it, over the norm of both; no error, which can be a \
-         fraction of it or several times as large";
-    SMALLEST_FINE_J: "smallest-fine-j", "least J between points", None, Value, Steps,
+        "distance between a method's own stress and the smooth stress recovered from it, divided by the norm \
+         of both; the error can be a fraction of this value or several times as large";
+    SMALLEST_FINE_J: "smallest-fine-j", "smallest J between points", None, Value, Steps,
         "smallest J at the points of a finer quadrature than the method's own, at the end";
     NITSCHE_FACTOR_NEEDED: "nitsche-factor-needed", "needed factor of Nitsche's method", None, Value, Run,
-        "estimated factor below which Nitsche's form is not definite, with the rules and materials of the run";
+        "estimated factor below which Nitsche's form is not definite, for the quadrature rules and materials \
+         of the run";
     SUPPORT_GAP: "support-gap", "gap at supports", Length, Error, Run,
-        "root mean square distance between the displacement and what supports held weakly prescribe";
-    SILENT_WRONG: "silent-wrong", "wrong without a word", None, Count, Axis,
-        "runs of one method along an axis of a study that are wrong and have neither a warning nor another status";
+        "root mean square difference between the displacement and the values prescribed at weakly imposed \
+         supports";
+    SILENT_WRONG: "silent-wrong", "wrong without a warning", None, Count, Axis,
+        "runs of one method along an axis of a study that are wrong but have neither a warning nor another status";
     WARNINGS: "warnings", "warnings", None, Count, Run,
         "warnings of the run";
     TARGETS_OUTSIDE: "targets-outside", "targets outside the mesh", None, Count, Run,
-        "points of comparison outside the mesh, where the nearest element is continued";
+        "comparison points outside the mesh, at which the nearest element is extrapolated";
     CONSTRAINTS_ELIMINATED: "constraints-eliminated", "eliminated constraints", None, Count, Run,
         "rows of essential conditions that were eliminated";
     CONSTRAINTS_DROPPED: "constraints-dropped", "redundant constraints", None, Count, Run,
-        "rows of eliminated essential conditions that follow from the others";
+        "rows of eliminated essential conditions that depend linearly on the others";
     FINITE_ELEMENT_NODES: "finite-element-nodes", "finite-element nodes", None, Count, Run,
-        "nodes of finite elements that a cloud is coupled to";
+        "nodes of finite elements coupled to a cloud";
     NEIGHBOURS_MIN: "neighbours-min", "fewest neighbours", None, Count, Run,
-        "fewest nodes that reach a quadrature point";
+        "smallest number of nodes whose supports contain a quadrature point";
     NEIGHBOURS_MEAN: "neighbours-mean", "mean neighbours", None, Value, Run,
-        "mean number of nodes that reach a quadrature point";
+        "mean number of nodes whose supports contain a quadrature point";
     NEIGHBOURS_MAX: "neighbours-max", "most neighbours", None, Count, Run,
-        "most nodes that reach a quadrature point";
+        "largest number of nodes whose supports contain a quadrature point";
     CONDITION: "condition", "largest condition", None, Value, Run,
-        "largest condition estimate of a moment matrix; in records condition-max";
+        "largest condition estimate of a moment matrix; called condition-max in records";
     CONDITION_MEDIAN: "condition-median", "median condition", None, Value, Run,
         "median condition estimate of the moment matrices";
     CONDITION_MAX: "condition-max", "largest condition", None, Value, Run,
         "largest condition estimate of a moment matrix";
     FALLBACKS: "fallbacks", "fallbacks", None, Count, Run,
-        "points at which the approximation had to fall back";
+        "points at which the approximation used a fallback";
     FALLBACKS_ENLARGED: "fallbacks-enlarged", "enlarged supports", None, Count, Run,
         "points at which the support was enlarged";
     FALLBACKS_REGULARISED: "fallbacks-regularised", "regularised moments", None, Count, Run,
@@ -307,7 +320,7 @@ metrics! {
         "points at which the basis was reduced";
     // Costs.
     MEMORY: "memory", "memory", Bytes, Cost, Run,
-        "most memory allocated at once in the run, beyond its input";
+        "peak memory allocated in the run, excluding its input";
     TIME_PREPARE: "time-prepare", "time to prepare", Time, Cost, Run,
         "seconds for search and shape functions";
     TIME_ASSEMBLE: "time-assemble", "time to assemble", Time, Cost, Run,
@@ -319,7 +332,7 @@ metrics! {
     TIME_TRANSFER: "time-transfer", "time to transfer", Time, Cost, Transfer,
         "seconds to apply the transfer";
     TIME_TOTAL: "time-total", "total time", Time, Cost, Run,
-        "seconds for all phases but reading files";
+        "seconds for all phases except reading files";
 }
 
 /// Four parts of [`RMS`]: along x, y and z, and of the magnitude.
