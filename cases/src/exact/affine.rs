@@ -54,14 +54,14 @@ impl Exact for Affine {
 
 pub(super) const ENTRY: SolutionEntry = Entry {
     name: "affine",
-    meaning: "u = H x + t, or a generic field of that kind",
+    meaning: "u = H x + t, or a generic field of this form",
     source: "",
     parameters: &[
         Parameter::default(
             "hxx",
             Dimension::None,
             0.0,
-            "du_x/dx; with no component given, a generic field is taken",
+            "du_x/dx; if no component is given, a generic field is taken",
         ),
         Parameter::default("hxy", Dimension::None, 0.0, "du_x/dy"),
         Parameter::default("hxz", Dimension::None, 0.0, "du_x/dz"),

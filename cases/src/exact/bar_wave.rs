@@ -130,17 +130,17 @@ impl Exact for BarWave {
 
 pub(super) const ENTRY: SolutionEntry = Entry {
     name: "bar-wave",
-    meaning: "waves in a bar that is pulled at its end x = L",
+    meaning: "waves in a bar under a traction on its end x = L",
     source: "d'Alembert; Graff, Wave Motion in Elastic Solids (1975), ch. 2",
     parameters: &[
         Parameter::required(
             "pull",
             Dimension::Pressure,
-            "traction along x on the end, as large as it becomes",
+            "final traction along x on the end",
         ),
         Parameter::required("length", Dimension::Length, "length along x, from 0"),
         Parameter::required("density", Dimension::Density, "mass per volume"),
-        Parameter::default("over", Dimension::Time, 0.0, "time over which the pull grows"),
+        Parameter::default("over", Dimension::Time, 0.0, "time over which the traction grows"),
     ],
     build: |medium, values| {
         let [pull, length, density, over] = numbers(values, ["pull", "length", "density", "over"])?;

@@ -123,16 +123,17 @@ impl Exact for Hertz {
 
 pub(super) const ENTRY: SolutionEntry = Entry {
     name: "hertz",
-    meaning: "a rigid sphere pressed without friction into the half space z <= 0, which it touches at the origin",
+    meaning: "a rigid sphere pressed without friction into the half space z <= 0, with first contact at the \
+              origin",
     source: "Hertz (1882); Johnson, Contact Mechanics (1985), ch. 3 and 4",
     parameters: &[
         Parameter::required("radius", Dimension::Length, "radius of the sphere"),
-        Parameter::required("depth", Dimension::Length, "how far it is pressed in"),
+        Parameter::required("depth", Dimension::Length, "indentation depth of the sphere"),
         Parameter::default(
             "share",
             Dimension::None,
             1.0,
-            "part of the half space that the body is, the rest left out for its symmetry",
+            "fraction of the half space that the body represents; less than 1 with planes of symmetry",
         )
         .within(Range::Within(0.25, 1.0)),
     ],

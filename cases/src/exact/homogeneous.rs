@@ -95,24 +95,24 @@ impl Exact for Homogeneous {
 }
 
 const STRETCH: Parameter =
-    Parameter::required("stretch", Dimension::None, "length over undeformed length along z")
+    Parameter::required("stretch", Dimension::None, "ratio of deformed to undeformed length along z")
         .within(Range::Within(0.1, 10.0));
 
 pub(super) const FREE_SLIP: SolutionEntry = Entry {
     name: "free-slip-stretch",
-    meaning: "a prism pressed or drawn along z at large strain, its sides free",
+    meaning: "a prism compressed or stretched along z at large strain, with free sides",
     source: "Ogden, Non-linear Elastic Deformations (1984), ch. 2.2 and 4.4",
     parameters: &[STRETCH],
     build: |medium, values| {
         let state = Homogeneous::free_slip(medium.hyperelastic()?, values.number("stretch")?);
-        let none = || Problem::new("leaves the bar of this law without width").of("stretch");
+        let none = || Problem::new("leaves the bar with no positive width under this law").of("stretch");
         Ok(Box::new(state.ok_or_else(none)?))
     },
 };
 
 pub(super) const CONFINED: SolutionEntry = Entry {
     name: "confined-stretch",
-    meaning: "a prism pressed or drawn along z at large strain between walls that hold x and y",
+    meaning: "a prism compressed or stretched along z at large strain, constrained along x and y",
     source: "Ogden, Non-linear Elastic Deformations (1984), ch. 2.2 and 4.4",
     parameters: &[STRETCH],
     build: |medium, values| {
@@ -124,7 +124,7 @@ pub(super) const SIMPLE_SHEAR: SolutionEntry = Entry {
     name: "simple-shear",
     meaning: "planes of constant y sheared along x at large strain",
     source: "Ogden, Non-linear Elastic Deformations (1984), ch. 2.2 and 4.4",
-    parameters: &[Parameter::required("shear", Dimension::None, "displacement along x per length along y")
+    parameters: &[Parameter::required("shear", Dimension::None, "displacement along x per unit length along y")
         .within(Range::Within(-10.0, 10.0))],
     build: |medium, values| {
         Ok(Box::new(Homogeneous::simple_shear(medium.hyperelastic()?, values.number("shear")?)))

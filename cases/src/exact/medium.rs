@@ -15,8 +15,10 @@ pub struct Medium {
 impl Medium {
     /// The law for solutions at large strain; an error if there is none.
     pub(super) fn hyperelastic(&self) -> Result<&Hyperelastic, Problem> {
-        let help = "take law = \"neo-hookean\" or another of large strain";
-        self.law.as_ref().ok_or_else(|| Problem::new("is at large strain, which the law is not").help(help))
+        let help = "take law = \"neo-hookean\" or another large-strain law";
+        self.law.as_ref().ok_or_else(|| {
+            Problem::new("is a large-strain solution, but the law is for small strain").help(help)
+        })
     }
 }
 

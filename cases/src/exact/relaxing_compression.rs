@@ -106,7 +106,7 @@ impl Exact for RelaxingCompression {
 
 pub(super) const ENTRY: SolutionEntry = Entry {
     name: "relaxing-compression",
-    meaning: "a prism of relaxing tissue shortened along z between frictionless plates, then held",
+    meaning: "a prism of viscoelastic tissue, shortened along z between frictionless plates and then held",
     source: "Tschoegl, The Phenomenological Theory of Linear Viscoelastic Behavior (1989)",
     parameters: &[
         Parameter::required(
@@ -114,7 +114,7 @@ pub(super) const ENTRY: SolutionEntry = Entry {
             Dimension::None,
             "shortening per unit height along z, positive in compression",
         ),
-        Parameter::required("share", Dimension::None, "share of the shear modulus that relaxes"),
+        Parameter::required("share", Dimension::None, "fraction of the shear modulus that relaxes"),
         Parameter::required("tau", Dimension::Time, "relaxation time"),
         Parameter::default("over", Dimension::Time, 0.0, "time over which the shortening grows"),
     ],

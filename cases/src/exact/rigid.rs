@@ -54,14 +54,14 @@ impl Exact for Rigid {
 
 pub(super) const ENTRY: SolutionEntry = Entry {
     name: "rigid",
-    meaning: "a shift and a small rotation, or a generic motion of that kind",
+    meaning: "a shift and a small rotation, or a generic motion of this kind",
     source: "",
     parameters: &[
         Parameter::default(
             "tx",
             Dimension::Length,
             0.0,
-            "shift along x; with no component given, a generic motion is taken",
+            "shift along x; if no component is given, a generic motion is taken",
         ),
         Parameter::default("ty", Dimension::Length, 0.0, "shift along y"),
         Parameter::default("tz", Dimension::Length, 0.0, "shift along z"),

@@ -194,14 +194,14 @@ impl Vibrations for RollerBox {
 
 pub(super) const ENTRY: SolutionEntry = Entry {
     name: "roller-box",
-    meaning: "vibrations of a box on rollers all around",
+    meaning: "vibrations of a box with rollers on all faces",
     source: "Graff, Wave Motion in Elastic Solids (1975), ch. 5",
     parameters: &[
         Parameter::required("length", Dimension::Length, "side along x, from 0"),
         Parameter::required("depth", Dimension::Length, "side along y, from 0"),
         Parameter::required("width", Dimension::Length, "side along z, from 0"),
         Parameter::required("density", Dimension::Density, "mass per volume"),
-        Parameter::default("amplitude", Dimension::Length, 1e-3, "largest displacement, nearly"),
+        Parameter::default("amplitude", Dimension::Length, 1e-3, "approximate largest displacement"),
     ],
     build: |medium, values| {
         let [length, depth, width] = numbers(values, ["length", "depth", "width"])?;

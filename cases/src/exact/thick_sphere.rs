@@ -82,7 +82,7 @@ impl Exact for ThickSphere {
 
 pub(super) const ENTRY: SolutionEntry = Entry {
     name: "thick-sphere",
-    meaning: "a hollow sphere about the origin under pressure from within and without",
+    meaning: "a hollow sphere about the origin under internal and external pressure",
     source: "Lame (1852)",
     parameters: &[
         Parameter::required("inner", Dimension::Length, "inner radius"),

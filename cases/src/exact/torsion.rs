@@ -122,10 +122,10 @@ impl Exact for Torsion {
 
 pub(super) const ENTRY: SolutionEntry = Entry {
     name: "torsion",
-    meaning: "a bar of rectangular section along x, its sections free to warp, turned about its axis",
+    meaning: "torsion of a bar of rectangular section along x, with free warping",
     source: "Timoshenko and Goodier, Theory of Elasticity, torsion of rectangular bars",
     parameters: &[
-        Parameter::required("twist", Dimension::Curvature, "angle (rad) per length"),
+        Parameter::required("twist", Dimension::Curvature, "angle of twist (rad) per unit length"),
         Parameter::required("depth", Dimension::Length, "depth of the section along y, centred on 0"),
         Parameter::required("width", Dimension::Length, "width of the section along z, centred on 0"),
     ],

@@ -54,7 +54,7 @@ impl Exact for UniaxialCompression {
 pub(super) const ENTRY: SolutionEntry = Entry {
     name: "uniaxial-compression",
     meaning: "a prism shortened along z between frictionless plates",
-    source: "any textbook",
+    source: "textbook solution",
     parameters: &[Parameter::required(
         "strain",
         Dimension::None,

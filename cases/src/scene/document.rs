@@ -100,11 +100,11 @@ impl<'t> Document<'t> {
                 let line = text.lines().nth(place.line - 1).unwrap_or_default();
                 let (what, help) = match decimal_comma(line, place.column) {
                     Some(number) => {
-                        let help = format!("a decimal needs a point: {}", number.replace(',', "."));
-                        (format!("{number} is no number"), help)
+                        let help = format!("write a decimal point: {}", number.replace(',', "."));
+                        (format!("{number} is not a number"), help)
                     }
                     None => {
-                        let help = "see https://toml.io for the format; text values stand in quotes";
+                        let help = "see https://toml.io for the format; text values need quotes";
                         (clip(bad.message()), help.into())
                     }
                 };
