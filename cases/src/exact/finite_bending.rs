@@ -43,7 +43,7 @@ impl FiniteBending {
     pub fn new(law: &Hyperelastic, thickness: f64, curvature: f64) -> Result<FiniteBending, ExactError> {
         let bend = thickness * curvature;
         if !(thickness > 0.0 && thickness.is_finite() && bend > 0.0 && bend <= 1.0) {
-            let need = format!("above zero and at most {} 1/m, the inverse of the thickness", 1.0 / thickness);
+            let need = format!("above zero and at most {} 1/m, one over the thickness", 1.0 / thickness);
             return Err(ExactError::BadParameter {
                 solution: ENTRY.name,
                 name: "curvature",

@@ -124,7 +124,7 @@ pub(super) const SIMPLE_SHEAR: SolutionEntry = Entry {
     name: "simple-shear",
     meaning: "planes of constant y sheared along x at large strain",
     source: "Ogden, Non-linear Elastic Deformations (1984), ch. 2.2 and 4.4",
-    parameters: &[Parameter::required("shear", Dimension::None, "displacement along x per unit length along y")
+    parameters: &[Parameter::required("shear", Dimension::None, "displacement along x per length along y")
         .within(Range::Within(-10.0, 10.0))],
     build: |medium, values| {
         Ok(Box::new(Homogeneous::simple_shear(medium.hyperelastic()?, values.number("shear")?)))
