@@ -38,7 +38,7 @@ def rigid(x):
 
 def solve(text, load):
     if not hasattr(fem, "VectorFunctionSpace"):
-        return {"status": "refused", "message": "this adapter is written for DOLFINx 0.5 to 0.7"}, None
+        return {"status": "refused", "message": "this adapter supports DOLFINx 0.5 to 0.7 only"}, None
     nodes, cells, regions, fixed = map(load, ("nodes", "cells", "regions", "fixed"))
     cell, degree, points, corners = KINDS[text["element"]]
     used, numbers = np.unique(cells[:, : len(corners)], return_inverse=True)
@@ -51,7 +51,7 @@ def solve(text, load):
     node_of, ours = np.empty(len(nodes), dtype=int), order(nodes - origin, scale)
     node_of[order(x - origin, scale)] = ours
     if np.abs(x - nodes[node_of]).max() > scale:
-        return {"status": "refused", "message": "its edges are curved: this adapter gives DOLFINx straight ones"}, None
+        return {"status": "refused", "message": "this adapter does not pass curved edges to DOLFINx"}, None
     times.append(time.process_time())
     lam, mu, found = fem.Function(constants), fem.Function(constants), fem.Function(V)
     region = regions[np.asarray(body.topology.original_cell_index)]
@@ -78,7 +78,7 @@ def solve(text, load):
     solver.setInitialGuessNonzero(True)
     solver.solve(right, start)
     if (reason := solver.getConvergedReason()) <= 0:
-        return {"status": "failed", "message": f"conjugate gradients end with reason {reason}"}, None
+        return {"status": "failed", "message": f"conjugate gradients did not converge (PETSc reason {reason})"}, None
     moved = np.empty(nodes.shape)
     moved[node_of] = start.array.reshape(-1, 3)
     return {"status": "ok", "counts": {"iterations": solver.getIterationNumber()}}, moved

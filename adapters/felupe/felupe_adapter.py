@@ -71,7 +71,7 @@ start = time.perf_counter()
 text = json.loads((problem / "problem.json").read_text())
 result = {"status": "ok", "problem": text["id"], "version": f"FElupe {felupe.__version__}, {SOLVER}"}
 if len(text["materials"]) > 1:
-    result |= {"status": "refused", "message": "this adapter gives FElupe one material only"}
+    result |= {"status": "refused", "message": "this adapter supports one material only"}
 else:
     found, iterations, reached = solve(text, lambda name: np.load(problem / f"{name}.npy"))
     result |= {"counts": {"iterations": iterations}, "phases": {"solve": time.perf_counter() - start}}

@@ -52,7 +52,7 @@ def solve(text, load):
     mesh, order, ends = meshed(nodes, cells, regions, corners)
     edges = len(nodes) - len(ends)
     if np.abs(nodes[order[edges:]] - nodes[order[ends]].mean(axis=1)).max(initial=0) > 1e-9 * np.ptp(nodes):
-        return {"status": "refused", "message": "its edges are curved: this adapter gives NGSolve straight ones"}, []
+        return {"status": "refused", "message": "this adapter does not pass curved edges to NGSolve"}, []
     space = ng.VectorH1(mesh, order=2 if len(ends) else 1)
     form, rule = ng.BilinearForm(space), {kind: ng.IntegrationRule(kind, degree)}
     of = lambda name: mesh.MaterialCF({f"r{at}": m[name] for at, m in enumerate(text["materials"])})
