@@ -81,7 +81,7 @@ fn mirrored_cells_are_turned_on_request() {
     assert_fails(
         &tissuebench(&["mesh", "info", &mirrored]),
         2,
-        "reverse it with tissuebench mesh convert --turn",
+        "reverse the order with tissuebench mesh convert --turn",
     );
     let done = tissuebench(&["mesh", "convert", &mirrored, &turned, "--turn"]);
     assert_eq!(done.code, 0, "{}", done.stderr);

@@ -25,7 +25,10 @@ pub enum ContactError {
         half: f64,
     },
     /// The rotation matrix of a tool is not a rotation.
-    #[error("the tool's rotation misses R^T R = I by {deviation:e} (limit 1e-9), det R = {determinant}")]
+    #[error(
+        "the tool's rotation R deviates from R^T R = I by {deviation:e} (limit 1e-9); det R = \
+         {determinant}"
+    )]
     Rotation {
         /// Largest entry of `|R^T R - I|`.
         deviation: f64,
@@ -33,7 +36,7 @@ pub enum ContactError {
         determinant: f64,
     },
     /// The direction of a tool is not a unit vector.
-    #[error("the tool closes along a vector of length {length}; it must be 1 (within 1e-9)")]
+    #[error("the direction of the tool has length {length}; it must be a unit vector (within 1e-9)")]
     Direction {
         /// Length of the direction vector.
         length: f64,

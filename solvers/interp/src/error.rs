@@ -6,7 +6,7 @@ use shape::ShapeError;
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum InterpError {
     /// Fewer nodes than the scheme needs.
-    #[error("{scheme} needs at least {needed} nodes; there are {found}")]
+    #[error("{scheme} needs at least {needed} nodes; {found} are given")]
     TooFewNodes {
         /// Scheme.
         scheme: &'static str,

@@ -41,7 +41,7 @@ pub enum ShapeError {
         expected: usize,
     },
     /// A node index beyond the number of nodes.
-    #[error("row {row} names node {node} of {nodes}")]
+    #[error("row {row} names node {node}, but there are only {nodes} nodes")]
     NodeOutOfRange {
         /// Row index.
         row: usize,

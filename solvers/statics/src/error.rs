@@ -26,7 +26,7 @@ pub enum SolveError {
         index: usize,
     },
     /// A node index beyond the number of nodes.
-    #[error("{what} names node {node} of {nodes}")]
+    #[error("{what} names node {node}, but there are only {nodes} nodes")]
     NodeOutOfRange {
         /// Name of the input that refers to the node.
         what: &'static str,

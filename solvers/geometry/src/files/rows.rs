@@ -39,7 +39,7 @@ pub fn inverted(file: &Path, bad: &InvertedElement) -> String {
         (some, all) if some == all => {
             format!(
                 "all {all} cells are inverted (first: {row}): the order of their corners is mirrored; \
-                 reverse it with tissuebench mesh convert --turn"
+                 reverse the order with tissuebench mesh convert --turn"
             )
         }
         (1, all) => format!("1 of {all} cells is inverted ({row})"),
