@@ -143,7 +143,7 @@ pub(crate) fn settings<V: Vocabulary>(
         let at = format!("{key}.{}", parameter.name);
         sound = false;
         if !report.has(&at) {
-            report.missing(&at, &format!("this {} needs it: {}", V::NOUN, parameter.meaning));
+            report.missing(&at, &format!("this {} needs the key: {}", V::NOUN, parameter.meaning));
         }
     }
     sound.then_some(values)
