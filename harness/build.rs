@@ -8,16 +8,18 @@ use std::process::Command;
 
 /// Paths of the program's sources, relative to the workspace's folder. Changes elsewhere (scenes, tests,
 /// docs) do not change the program.
-const SOURCES: [&str; 10] = [
-    "adapters",
+const SOURCES: [&str; 12] = [
     "Cargo.toml",
     "Cargo.lock",
     "rust-toolchain.toml",
     "cases/src",
+    "harness/adapters",
     "harness/src",
     "harness/build.rs",
+    "records/src",
     "reports/src",
     "reports/assets",
+    "reports/page/built",
     "solvers",
 ];
 

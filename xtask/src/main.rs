@@ -81,8 +81,9 @@ enum Task {
     /// Kill one of two processes that work on a study a hundred times at random, with and without --isolate:
     /// no result may be lost, repeated or changed
     Survive,
-    /// Run the checks that take hours: every fault of `mutants`, `survive`, `cargo deny check`, and minutes
-    /// of each fuzz target; if cargo-deny, cargo-fuzz and a nightly compiler are installed
+    /// Run the checks that take hours: every fault of `mutants`, `survive`, a build of every package, `cargo
+    /// deny check`, and minutes of each fuzz target; if cargo-deny, cargo-fuzz and a nightly compiler are
+    /// installed
     Nightly {
         /// Minutes for each fuzz target
         #[arg(long, default_value_t = 10, value_parser = clap::value_parser!(u32).range(1..=1440))]
@@ -94,7 +95,7 @@ enum Task {
     /// Build the wheel of the Python module and test it in a fresh virtual environment, if maturin, numpy and
     /// pytest are installed
     Python,
-    /// Run the steps of continuous integration: format, lints, docs, tests, quick verification
+    /// Run the steps of continuous integration: format, lints, packages, docs, tests, quick verification
     Ci,
 }
 
@@ -144,9 +145,12 @@ fn survive() -> Result<u8> {
 
 /// Runs all steps in order and stops at the first failure.
 fn ci() -> Result<u8> {
-    let steps: [&[&str]; 4] = [
+    let steps: [&[&str]; 5] = [
         &["fmt", "--all", "--check"],
         &["clippy", "--workspace", "--all-targets", "--locked", "--", "-D", "warnings"],
+        // Without --quiet, this step warns of every test that the packages leave out. After clippy, the index
+        // is on disk.
+        &["package", "--workspace", "--no-verify", "--allow-dirty", "--offline", "--quiet"],
         &["doc", "--workspace", "--no-deps", "--locked"],
         &["test", "--workspace", "--locked"],
     ];

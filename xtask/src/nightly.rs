@@ -1,4 +1,5 @@
-//! The checks that take hours, for a schedule: listed faults, killed processes, dependencies, and fuzzing.
+//! The checks that take hours, for a schedule: listed faults, killed processes, dependencies, packages, and
+//! fuzzing.
 
 use std::ffi::OsStr;
 use std::path::Path;
@@ -14,8 +15,11 @@ const MINUTE: u32 = 60;
 /// Runs every check regardless of the others, with `minutes` for each fuzz target, and returns the worst exit
 /// code.
 pub(crate) fn nightly(root: &Path, minutes: u32) -> Result<u8> {
-    let checks: [(&str, &dyn Fn() -> Result<u8>); 4] = [
+    let checks: [(&str, &dyn Fn() -> Result<u8>); 5] = [
         ("deny", &|| deny(root)),
+        ("package", &|| {
+            crate::cargo(&["package", "--workspace", "--allow-dirty", "--locked", "--quiet"], &[])
+        }),
         ("mutants", &|| crate::mutants::mutants(root, &[])),
         ("survive", &crate::survive),
         ("fuzz", &|| fuzz(root, minutes)),
