@@ -74,9 +74,8 @@ fn one(step: &Step, dir: &Path, not_run: bool, exits: i32) -> Result<(), String>
         ["cargo", "install", "--path", path, ..] => {
             root().join(path).join("Cargo.toml").exists().then_some(()).ok_or("no such package".into())
         }
-        ["cargo", "test" | "bench" | "doc", ..] | ["cargo", "install", "mdbook", ..] | ["mdbook", ..] => {
-            Ok(())
-        }
+        ["cargo", "test" | "bench" | "doc" | "insta", ..] => Ok(()),
+        ["cargo", "install", "mdbook" | "cargo-insta", ..] | ["mdbook", ..] => Ok(()),
         // Python is tested by its own tests, `cargo xtask python`.
         ["pip" | "python", ..] => Ok(()),
         ["git", "clone", ..] | ["cd", ..] => Ok(()),
@@ -85,7 +84,7 @@ fn one(step: &Step, dir: &Path, not_run: bool, exits: i32) -> Result<(), String>
 }
 
 /// Checks that xtask has the task of `cargo xtask TASK`.
-fn known_task(task: &str) -> Result<(), String> {
+pub fn known_task(task: &str) -> Result<(), String> {
     let source = std::fs::read_to_string(root().join("xtask/src/main.rs")).map_err(|bad| bad.to_string())?;
     let (first, rest) = task.split_at(1);
     let variant = format!("    {}{rest}", first.to_uppercase());

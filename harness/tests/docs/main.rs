@@ -1,10 +1,10 @@
 //! Tests of the documentation: commands run, links are valid, and reference pages are up to date.
 //!
-//! Pages are README.md and the Markdown files below docs/src. Every command in a fenced `sh` or `console`
-//! block runs in a separate folder with a copy of `cases/` and the scenes of the page: a `toml` block that
-//! opens with the comment `# NAME.toml` is the file of that name. Lines of a `console` block that follow a
-//! command are its output; numbers in them are not compared. A comment before a block changes the test of the
-//! block:
+//! Pages are the Markdown files of the root, except the changelog, and those below docs/src. Every command in
+//! a fenced `sh` or `console` block runs in a separate folder with a copy of `cases/` and the scenes of the
+//! page: a `toml` block that opens with the comment `# NAME.toml` is the file of that name. Lines of a
+//! `console` block that follow a command are its output; numbers in them are not compared. A comment before a
+//! block changes the test of the block:
 //!
 //! ```text
 //! <!-- not run: takes 4 minutes -->   the arguments are parsed, nothing is solved
@@ -13,6 +13,7 @@
 
 mod command;
 mod markdown;
+mod project;
 mod reference;
 
 use std::path::{Path, PathBuf};
@@ -24,9 +25,13 @@ fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("harness lies in the workspace")
 }
 
-/// README.md and all pages of the book.
+/// Pages of the root.
+const PAGES: [&str; 5] =
+    ["README.md", "ARCHITECTURE.md", "CONTRIBUTING.md", "SECURITY.md", "CODE_OF_CONDUCT.md"];
+
+/// The pages of the root and all pages of the book.
 fn pages() -> Vec<Page> {
-    let mut files = vec![root().join("README.md")];
+    let mut files = PAGES.map(|name| root().join(name)).to_vec();
     let mut folders = vec![root().join("docs/src")];
     while let Some(folder) = folders.pop() {
         for entry in std::fs::read_dir(&folder).expect("docs/src is there") {
