@@ -87,20 +87,16 @@ fn what_disagrees_is_refused_with_numbers() {
     };
     let file = r#"cloud = { file = "nodes.csv", unit = "mm" }"#;
     let sound = nodes();
-    refused(&format!("nodes = 35, {file}"), &sound, "nodes.csv, which holds 36 nodes");
+    refused(&format!("nodes = 35, {file}"), &sound, "nodes.csv, which has 36 nodes");
     refused(file, &format!("{sound}1,nan,2\n"), "nodes.csv:37: column 2 is nan, which is not finite");
     refused(file, &format!("{sound}1,2\n"), "nodes.csv:37: column 3 is missing");
     refused(file, &format!("{sound}10,-0,20\n"), "has line 12 and line 37 in the same place");
     refused(
         file,
         &format!("{sound}1,2,21\n0,25,0\n"),
-        "has 2 of 38 nodes outside of the body, line 38 the farthest, by 5.000e-3 m",
+        "has 2 of 38 nodes outside the body; the farthest, line 38, is 5.000e-3 m away",
     );
-    refused(
-        r#"cloud = { file = "nodes.csv", unit = "cm" }"#,
-        &sound,
-        "has 35 of 36 nodes outside of the body",
-    );
+    refused(r#"cloud = { file = "nodes.csv", unit = "cm" }"#, &sound, "has 35 of 36 nodes outside the body");
     refused(r#"cloud = { file = "nodes.csv" }"#, &sound, "unit");
     refused(r#"cloud = { file = "none.csv", unit = "mm" }"#, &sound, "can't be found");
     refused(&format!("{file}, seed = 3"), &sound, "nodes that are given need none");

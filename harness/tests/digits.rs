@@ -86,7 +86,7 @@ fn a_beam_of_few_certain_digits_says_how_many() {
     let digits = few_digits(&run).expect("a warning");
     assert!((1.0..4.0).contains(&digits), "{digits}");
     let text = run["warnings"].to_string();
-    assert!(text.contains(&format!("no more than {digits:.1} digits")), "{text}");
+    assert!(text.contains(&format!("at most {digits:.1} digits")), "{text}");
 }
 
 /// The sphere is solved by every method of the scene; many of them lock.

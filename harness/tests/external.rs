@@ -434,11 +434,11 @@ fn a_problem_is_written_for_others() {
         &swings.replace("poisson = 0.3 }", "poisson = 0.3, density = \"1000 kg/m^3\" }"),
     );
     let done = tissuebench(&dir, &["export", &swings, "--method", "ours", "--out", "swings"]);
-    assert_fails(&done, 2, "'modes' is a kind that problems in files do not have yet");
+    assert_fails(&done, 2, "'modes' is not supported in problem files yet");
     assert_fails(
         &tissuebench(&dir, &["export", &pressed, "--method", "efg", "--out", "pressed"]),
         2,
-        "is no finite elements",
+        "is not a finite-element method",
     );
 }
 

@@ -39,7 +39,7 @@ fn what_a_deck_has_beside_its_mesh_is_said_in_info_and_run() {
     let warned = warnings.as_array().unwrap().iter().find(|w| w["code"] == "left-out").expect("a warning");
     let message = warned["message"].as_str().unwrap();
     assert!(
-        message.contains("*TIE, NAME=GLUE (line 26)") && message.contains("another problem"),
+        message.contains("*TIE, NAME=GLUE (line 26)") && message.contains("a different one"),
         "{message}"
     );
     let file = write(&dir, "plain.toml", &scene("plain.inp", ""));
@@ -69,7 +69,7 @@ fn a_region_may_be_any_group_but_a_cell_has_one_material() {
     let all = largest(&[region("stiff", "ALL")]);
     assert!((all - largest(&[region("a", "LEFT"), region("b", "RIGHT")])).abs() < 1e-12 * all);
     let done = run(&[region("whole", "ALL"), region("end", "RIGHT")]);
-    assert_fails(&done, 2, "'end' (RIGHT) and 'whole' (ALL) are both over cell 1");
+    assert_fails(&done, 2, "'end' (RIGHT) and 'whole' (ALL) both contain cell 1");
 }
 
 #[test]

@@ -248,5 +248,5 @@ fn a_face_that_is_none_is_refused() {
     refused("[]", "key 'output.means': is empty");
     refused("[{}]", "key 'output.means[0].where'");
     refused("[{ on = \"lid\" }]", "names 'lid', a surface that the mesh does not have");
-    refused("[{ where = \"z == 30 mm\" }]", "touches nothing of the body");
+    refused("[{ where = \"z == 30 mm\" }]", "touches no part of the body");
 }

@@ -36,7 +36,7 @@ fn a_mesh_of_another_body_or_unit_is_refused() {
         assert_fails(&run(&body, &m), 2, "organ.toml:6: key 'method[0].size.file'");
     }
     // The unit of the body does not apply to the method, and the message says what to write.
-    assert_fails(&run(&file("m"), &mm), 2, "write unit = \"m\" beside it");
+    assert_fails(&run(&file("m"), &mm), 2, "if the file is in m, add unit = \"m\"");
     let cube = "shape = \"box\", size = [\"40 mm\", \"40 mm\", \"20 mm\"]";
     assert_fails(&run(cube, &mm), 2, "give a mesh of the same body");
 }

@@ -349,7 +349,7 @@ fn a_motion_that_nothing_prevents_is_refused() {
     let line = PRESSED.lines().find(|line| line.starts_with("support")).unwrap();
     let free = PRESSED.replace(line, "");
     let run = |text: &str| tissuebench(&["run", &write(&dir, "free.toml", text), "--method", "hex8"]);
-    let says = "key 'body': is held by no [[support]]: rigid motion is left free: translation along x, \
+    let says = "key 'body': has no [[support]]: rigid motion is left free: translation along x, \
                 translation along y, rotation about z";
     assert_fails(&run(&free), 3, says);
     let sticks = "penalty = \"5 MPa/mm\", friction = 0.5, stick = \"5 MPa/mm\"";

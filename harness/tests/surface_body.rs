@@ -218,7 +218,7 @@ method = [
     assert!(moved.len() == 2 && (moved[0] / moved[1] - 1.0).abs() < 0.3 && moved[0] > 1e-4, "{moved:?}");
     let other = text.replace("\"seen\"", "\"lid\"");
     let done = tissuebench(&["run", &write(&dir, "other.toml", &other), "--once"]);
-    assert_fails(&done, 2, "it has surface, held, pressed, seen, skin");
+    assert_fails(&done, 2, "the mesh has surface, held, pressed, seen, skin");
 }
 
 #[test]
@@ -229,12 +229,12 @@ fn what_a_surface_has_none_of_is_refused() {
         let done = tissuebench(&["run", &write(&dir, "scene.toml", &scene("organ.stl", method))]);
         assert_fails(&done, 2, says);
     };
-    refused(&TET.replacen("tet4\", size", "hex8\", size", 1), "makes tetrahedra inside the surface of");
+    refused(&TET.replacen("tet4\", size", "hex8\", size", 1), "fills the surface of");
     refused(&TET.replace("level = 2", "cells = [2, 2, 2]"), "is for boxes, not for a file");
-    refused(&TET.replace("level = 2", "spacing = \"1 um\""), "at most 3000000 are made");
+    refused(&TET.replace("level = 2", "spacing = \"1 um\""), "at most 3000000 are supported");
     refused(
         &TET.replace("level = 2", "spacing = \"80 mm\""),
-        "makes no mesh: a spacing of 0.08 m is too large",
+        "can't be meshed: a spacing of 0.08 m is too large",
     );
     refused(&TET.replace("level = 2", "file = \"organ.stl\""), "is a surface, not a mesh");
 }

@@ -118,7 +118,7 @@ fn tools_that_cannot_touch_are_refused_before_the_first_step() {
     let needle = scene(&ball("20 um", r#""20 mm", "20 mm", "21 mm""#), "2 mm", STATIC);
     let done = run(&needle);
     assert_fails(&done, 3, "key 'method[0].size'");
-    assert_fails(&done, 3, "where tool[0] is 0.040 mm broad and would slip through");
+    assert_fails(&done, 3, "tool[0] is 0.040 mm wide and would slip through");
 }
 
 #[test]

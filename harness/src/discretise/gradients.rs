@@ -23,14 +23,13 @@ pub(crate) fn check(key: Key, nodes: &[Point3], rows: &GradRows) -> Result<(), F
     };
     let x = rows.points()[q];
     let problem = format!(
-        "has bad gradients: at ({:e}, {:e}, {:e}) m those of {} nodes make the gradient of a linear field {off:.1e} of itself \
-         wrong; {LIMIT:e} is the most that a stress is taken from",
+        "has inaccurate gradients: at ({:e}, {:e}, {:e}) m, with {} nodes, the gradient of a linear field has a \
+         relative error of {off:.1e}; stresses are computed up to {LIMIT:e}",
         x.x,
         x.y,
         x.z,
         rows.row(q).0.len()
     );
-    let help =
-        "take rule = \"cell-smoothed\", whose gradients are made of values, or cells of more equal edges";
+    let help = "take rule = \"cell-smoothed\", which forms gradients from values, or cells with edges of similar length";
     Err(Failure::at(ErrorKind::NotRun, key, problem, help))
 }

@@ -210,16 +210,16 @@ impl Discretisation {
 fn no_cells() -> Failure {
     Failure::unavailable(
         Key::Method("dilation"),
-        "wants points that go by background cells, which this integration's do not",
+        "needs integration points that belong to background cells; those of this rule do not",
         "take dilation = \"nodal-mean\", or rule = \"gauss\" or \"cell-smoothed\"",
     )
 }
 
 fn no_pressure() -> Failure {
-    let help = "\"element-mean\", \"nodal-mean\" and \"nodal-near\" are";
+    let help = "take \"element-mean\", \"nodal-mean\" or \"nodal-near\"";
     Failure::unavailable(
         Key::Method("dilation"),
-        "wants a pressure field, which this family has none of",
+        "needs a pressure field, which this family does not have",
         help,
     )
 }

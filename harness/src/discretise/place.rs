@@ -84,12 +84,11 @@ pub fn empty(key: &str, place: &Place, mesh: &Mesh) -> Failure {
     let tolerance = tolerance(mesh);
     let inside = matches!(place, Place::Where(_)) && mesh.points().iter().any(|x| holds(place, x, tolerance));
     if inside {
-        let problem =
-            "touches no outer face of the body: nodes lie there, but inside, where a wall has two sides";
+        let problem = "touches no outer face of the body: the nodes there lie inside the body";
         return Failure::input(self::key(place, key), problem, "give a place on the surface");
     }
     let help = format!("{}; check the signs and the unit", extent(mesh));
-    Failure::input(self::key(place, key), "touches nothing of the body", &help)
+    Failure::input(self::key(place, key), "touches no part of the body", &help)
 }
 
 /// Refuses interior faces for a support or load at `key` that acts along the outward normal: a wall inside
@@ -105,14 +104,14 @@ pub fn outer(key: &str, place: &Place, mesh: &Mesh, faces: &[Facet]) -> Result<(
         return Ok(());
     }
     let problem = format!(
-        "acts along the outward normal, but {inside} of the {} faces of {} lie between two cells: a wall inside the body has two sides",
+        "acts along the outward normal, but {inside} of the {} faces of {} lie between two cells, where no direction is outward",
         faces.len(),
         names.join(", ")
     );
     Err(Failure::input(
         self::key(place, key),
         problem,
-        "give a traction, which has a direction of its own, or outer faces",
+        "give a traction, which states its direction, or outer faces",
     ))
 }
 
@@ -132,7 +131,7 @@ pub fn facets(key: &str, place: &Place, mesh: &Mesh) -> Result<Vec<Facet>, Failu
                 let known: Vec<&str> = mesh.group_names().filter(|name| *name != "surface").collect();
                 let known = [&["surface"], &known[..]].concat();
                 let problem = format!("names '{name}', a surface that the mesh does not have");
-                let help = format!("it has {}", known.join(", "));
+                let help = format!("the mesh has {}", known.join(", "));
                 return Err(Failure::input(self::key(place, key), problem, &help));
             }
         }
@@ -197,11 +196,12 @@ pub fn whole(key: &str, place: &Place, mesh: &Mesh) -> Result<(), Failure> {
         return Ok(());
     }
     let problem = format!(
-        "cuts faces of the background: {} of them lie in it as a whole, of others {} triangles",
+        "cuts faces of the background mesh: {} faces lie wholly in the region, and {} triangles are parts of other faces",
         whole.len(),
         cut.len()
     );
-    let help = "essential = \"coupling\" holds whole faces: let the place end at edges of the background, or take \"nitsche\"";
+    let help = "essential = \"coupling\" constrains whole faces: end the region at edges of the background mesh, or \
+                take \"nitsche\"";
     Err(Failure::input(self::key(place, key), problem, help))
 }
 
@@ -299,7 +299,7 @@ mod tests {
             panic!("refused")
         };
         assert_eq!(bad.key, Key::Scene("support[0].where".into()));
-        assert!(bad.problem.contains("16 of them lie in it as a whole"), "{}", bad.problem);
+        assert!(bad.problem.contains("16 faces lie wholly in the region"), "{}", bad.problem);
     }
 
     #[test]

@@ -35,9 +35,9 @@ pub(super) fn warnings(run: &Solved) -> Result<Vec<Warning>, Failure> {
         let Dead { turn, stretch, change } = dead(run, load, pressure)?;
         if turn > TURN || stretch.abs() > STRETCH {
             let message = format!(
-                "acts along the normals and on the areas of the undeformed faces, which turn by up to {turn:.1} degrees and change their \
-                 area by up to {:+.1} %: a pressure on the deformed wall is another load. Give a traction where a force that keeps \
-                 its direction is meant",
+                "acts along the normals and on the areas of the undeformed faces, which turn by up to {turn:.1} \
+                 degrees and change their area by up to {:+.1} %: a pressure on the deformed surface is a different \
+                 load. If a force of fixed direction is intended, give a traction",
                 100.0 * stretch
             );
             let key = format!("{}.pressure", load.key);

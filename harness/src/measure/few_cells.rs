@@ -49,9 +49,10 @@ pub(super) fn warning(run: &Solved, metrics: &[Metric]) -> Result<Option<Warning
         let [x, y, z] = [0, 1, 2].map(|a| 1e3 * run.prepared.volume.rows.points()[q][a]);
         let below = counts.iter().filter(|(cells, _)| *cells < FEW).count();
         let message = format!(
-            "half of the strain energy is where the body has no more than {cells:.1} cells across along its displacement (quadratic ones \
-             count twice), as at ({x:.2}, {y:.2}, {z:.2}) mm, and {:.0} % of it where it has fewer than three: forces and displacements \
-             may be far off; take smaller cells",
+            "half of the strain energy lies where the body has at most {cells:.1} cells across in the direction of \
+             its displacement (a quadratic cell counts twice), for example at ({x:.2}, {y:.2}, {z:.2}) mm, and {:.0} \
+             % of the energy lies where there are fewer than three: forces and displacements may be inaccurate; take \
+             smaller cells",
             100.0 * below as f64 / counts.len() as f64
         );
         Warning::new(&warning::FEW_CELLS, cells, "method", message)

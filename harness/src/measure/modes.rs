@@ -92,8 +92,8 @@ fn without_energy(modes: &statics::Modes) -> Option<Warning> {
     let excess = still.saturating_sub(modes.rigid);
     (excess > 0).then(|| {
         let message = format!(
-            "{}{excess} modes strain the body without energy, beside its {} rigid motions: their frequency of 0 is the method's, not the \
-             body's. Take full integration, more points, or more cells across",
+            "{}{excess} modes strain the body without energy, in addition to its {} rigid motions: their frequency of \
+             0 is an artefact of the method. Take full integration, more points, or more cells across",
             if modes.are_all() { "" } else { "at least " },
             modes.rigid
         );

@@ -36,12 +36,13 @@ pub(super) fn warnings(run: &Solved) -> Vec<Warning> {
         let way = if floor { narrowest(points) } else { closed };
         let part = deepest / way;
         (part > DEEP).then(|| {
-            let of = if floor { "of the body's narrowest extent" } else { "that the tools close" };
+            let of = if floor { "of the body's narrowest extent" } else { "by which the tools close" };
             let penalty = placed.tool.law().penalty();
             let enough = penalty * part / (1.0 - part).max(DEEP) / GOOD;
             let message = format!(
-                "sinks {:.4} mm into the surface, {:.1} % of the {:.4} mm {of}, as its penalty of {:.3e} MPa/mm is too small: forces and \
-                 displacements are off by as much; about {:.1e} MPa/mm leave 1 %",
+                "sinks {:.4} mm into the surface, {:.1} % of the {:.4} mm {of}, because its penalty of {:.3e} MPa/mm \
+                 is too small: forces and displacements have errors of that size; a penalty of about {:.1e} MPa/mm \
+                 reduces the penetration to 1 %",
                 1e3 * deepest,
                 100.0 * part,
                 1e3 * way,

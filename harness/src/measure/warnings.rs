@@ -91,7 +91,8 @@ fn unchecked(run: &Solved) -> Option<Warning> {
     let outside = run.method.outside.as_ref().filter(|outside| !adapter::is_checked(&outside.adapter))?;
     let name = &outside.adapter.manifest.name;
     let message = format!(
-        "{name} has not passed its check here as it is now, so that its numbers stand apart: tissuebench adapter check {name}"
+        "{name} in its present version has not passed its check on this machine, so its results are shown separately: \
+         run tissuebench adapter check {name}"
     );
     Some(Warning::new(&warning::ADAPTER_UNCHECKED, 0.0, "", message))
 }
@@ -99,7 +100,7 @@ fn unchecked(run: &Solved) -> Option<Warning> {
 fn outside(index: usize, probe: &Probe) -> Option<Warning> {
     (probe.outside > 0.0).then(|| {
         let message = format!(
-            "lies {:.4} mm outside the mesh: its values are those of the mesh's nearest point",
+            "lies {:.4} mm outside the mesh: its values are taken at the nearest point of the mesh",
             1e3 * probe.outside
         );
         Warning::new(&warning::PROBE_OUTSIDE, probe.outside, format!("output.probes[{index}]"), message)
@@ -117,8 +118,8 @@ fn blended(run: &Solved) -> Option<Warning> {
     let jump = span(materials().map(|m| m.mu()).collect()).max(span(materials().map(|m| m.bulk()).collect()));
     (jump > 1.0).then(|| {
         let message = format!(
-            "the shape functions of the cloud reach across the border of materials whose moduli are 1 to {jump:.4}: they \
-             smooth the jump of the strain there; elements do not, nor does a cloud with regions = \"separate\""
+            "the shape functions of the cloud reach across the interface of materials with a modulus ratio of \
+             {jump:.4} and smooth the jump of the strain there; elements and a cloud with regions = \"separate\" do not"
         );
         Warning::new(&warning::REGIONS_BLENDED, jump, "region", message)
     })
@@ -131,8 +132,8 @@ fn few_points(run: &Solved) -> Option<Warning> {
     let each = run.prepared.volume.rows.weights().len() as f64 / run.method.nodes().len() as f64;
     (each < POINTS_PER_NODE).then(|| {
         let message = format!(
-            "{each:.2} integration points per node do not see every motion of the cloud; {POINTS_PER_NODE} do: take finer \
-             cells (background) or more points (integration)"
+            "{each:.2} integration points per node are too few to resist every deformation of the cloud; \
+             {POINTS_PER_NODE} suffice: take finer cells (background) or more points (integration)"
         );
         Warning::new(&warning::FEW_POINTS, each, "", message)
     })
@@ -141,7 +142,7 @@ fn few_points(run: &Solved) -> Option<Warning> {
 fn unbalanced(run: &Solved) -> Option<Warning> {
     let error = patch_error(run).filter(|error| *error > UNBALANCED)?;
     let message = format!(
-        "the integration fails the patch test: of a linear field the gradient is off by {:.1} %. Take more points, \
+        "the integration fails the patch test: the gradient of a linear field is wrong by {:.1} %. Take more points, \
          rule = \"cell-smoothed\", or supports that follow flat cells (neighbourhood = \"ellipsoid\")",
         100.0 * error
     );
@@ -153,8 +154,9 @@ fn another_problem(run: &Solved) -> Option<Warning> {
     let misfit = exact_fit::worst(run).ok()?.filter(too_far)?;
     let unit = if misfit.what == "traction" { "Pa" } else { "m" };
     let message = format!(
-        "is the solution of another problem: on {} the scene has a {} of {:.4e} {unit} (root mean square), the solution one of \
-         {:.4e} {unit}; they differ by {:.1} % of the largest. Errors are distances between two problems",
+        "solves a different problem: on {}, the scene prescribes a {} of {:.4e} {unit} (root mean square) and the \
+         solution has {:.4e} {unit}; they differ by {:.1} % of the largest value. Errors include the difference of \
+         the two problems",
         misfit.surface,
         misfit.what,
         misfit.sizes[0],
@@ -181,7 +183,8 @@ fn long_step(run: &Solved, error: Option<f64>, largest: f64) -> Option<Warning> 
     }
     (relative > LONG_STEP).then(|| {
         let message = format!(
-            "the estimated error of one time step is {:.2} % of the largest displacement: take shorter steps, or give \
+            "the estimated error of one time step is {:.2} % of the largest displacement: take shorter steps, \
+             or give \
              accuracy",
             100.0 * relative
         );
@@ -202,7 +205,8 @@ fn giving(gap: Option<f64>, largest: f64) -> Option<Warning> {
     let relative = gap? / largest;
     (relative > GIVING_SUPPORT).then(|| {
         let message = format!(
-            "a support held weakly is off by {:.2} % of the largest displacement: take a larger factor, or another way to hold it",
+            "a weakly imposed support is violated by {:.2} % of the largest displacement: take a larger factor, or \
+             another value of essential",
             100.0 * relative
         );
         Warning::new(&warning::SUPPORT_GIVES, relative, "support", message)
@@ -225,8 +229,8 @@ fn leaking(run: &Solved, largest: f64, energy: Option<f64>) -> Option<Warning> {
     let relative = (0.5 * modulus * strain * strain * volume / energy).sqrt();
     (relative > LEAK).then(|| {
         let message = format!(
-            "a support held weakly gives way so far, for a body this flat or this hard to compress, that the stress may be off \
-             by {:.0} %: take a larger factor, or another way to hold it",
+            "the gap at a weakly imposed support is large for a body as flat or as incompressible as this, and the \
+             stress may be wrong by {:.0} %: take a larger factor, or another value of essential",
             100.0 * relative
         );
         Warning::new(&warning::SUPPORT_LEAKS, relative, "support", message)
@@ -238,8 +242,9 @@ fn bare_factor(run: &Solved, needed: f64) -> Option<Warning> {
     let distance = factor / needed;
     (distance < FACTOR_TO_SPARE).then(|| {
         let message = format!(
-            "the factor {factor} of Nitsche's method is {distance:.3} times the {needed:.1} below which these rules and this \
-             material have no definite form: errors grow where it is below {FACTOR_TO_SPARE}; take factor = {:.0}, or another rule",
+            "the factor {factor} of Nitsche's method is {distance:.3} times the smallest factor, {needed:.1}, for \
+             which the form is definite with these rules and this material: errors grow if this ratio is below \
+             {FACTOR_TO_SPARE}; take factor = {:.0}, or another rule",
             4.0 * needed
         );
         Warning::new(&warning::NITSCHE_FACTOR, distance, "method.essential", message)
@@ -249,8 +254,8 @@ fn bare_factor(run: &Solved, needed: f64) -> Option<Warning> {
 fn folded(smallest: f64) -> Option<Warning> {
     (smallest <= 0.0).then(|| {
         let message = format!(
-            "between its integration points the body is turned inside out (J = {smallest:.3}): the mesh is too coarse, or reduced \
-             integration lets it fold"
+            "the body is inverted between its integration points (J = {smallest:.3}): the mesh is too coarse, or \
+             reduced integration allows folding"
         );
         Warning::new(&warning::FOLDED, smallest, "", message)
     })
@@ -258,8 +263,9 @@ fn folded(smallest: f64) -> Option<Warning> {
 
 fn unstable(load: f64) -> Warning {
     let message = format!(
-        "the body loses its stability after {:.2} % of the load: beyond that it has several equilibria, and small differences of meshes and \
-         methods decide which one a run follows. Compare up to there (limit-load), or give the body the imperfection that is meant",
+        "the body loses stability at {:.2} % of the load: several equilibria exist beyond this load, and small \
+         differences between meshes and methods decide which equilibrium a run follows. Compare runs up to this load \
+         (limit-load), or give the body a defined imperfection",
         100.0 * load
     );
     Warning::new(&warning::STABILITY_LOST, load, "procedure", message)
@@ -269,7 +275,8 @@ fn few_carriers(step: &LoadStep) -> Vec<Warning> {
     let few = step.tools.iter().enumerate().filter(|(_, tool)| tool.is_carried_by_few());
     let each = few.map(|(index, tool)| {
         let message = format!(
-            "{:.1} contact points carry the tool's force, which depends on where they happen to be: take a finer mesh there",
+            "{:.1} contact points carry the tool's force, so the force depends on the positions of single points: \
+             take a finer mesh there",
             tool.carriers
         );
         Warning::new(&warning::FEW_CONTACT_POINTS, tool.carriers, format!("tool[{index}]"), message)
@@ -289,14 +296,13 @@ fn inside(run: &Solved) -> Vec<Warning> {
         let depth = -points.iter().map(|x| placed.tool.gap(0.0, x)).fold(f64::INFINITY, f64::min);
         let message = || {
             format!(
-                "stands {:.3} mm deep in the body before anything moves, all of which the first step has to press out: set it \
+                "overlaps the undeformed body by {:.3} mm, which the first step has to push out: place the tool \
                  farther away (at)",
                 1e3 * depth
             )
         };
-        (depth > DEEP * narrowest).then(|| {
-            Warning::new(&warning::TOOL_INSIDE, depth, format!("tool[{index}]"), message())
-        })
+        (depth > DEEP * narrowest)
+            .then(|| Warning::new(&warning::TOOL_INSIDE, depth, format!("tool[{index}]"), message()))
     });
     each.collect()
 }
@@ -307,7 +313,7 @@ fn untouched(step: &LoadStep) -> Vec<Warning> {
     let free = step.tools.iter().enumerate().filter(|(_, tool)| tool.active == 0 && tool.closure != 0.0);
     let each = free.map(|(index, _)| {
         let message =
-            "touches nothing at the end: its force is 0. Let it close further (drive), or set it nearer (at)";
+            "is not in contact at the end: its force is 0. Move the tool further (drive), or place it nearer (at)";
         Warning::new(&warning::TOOL_UNTOUCHED, 0.0, format!("tool[{index}]"), message.to_string())
     });
     each.collect()
@@ -316,8 +322,8 @@ fn untouched(step: &LoadStep) -> Vec<Warning> {
 fn few_digits(digits: f64) -> Option<Warning> {
     (digits < DIGITS).then(|| {
         let message = format!(
-            "no more than {:.1} digits of the largest displacement are certain, as the matrix is near to a singular one, and fewer \
-             of strains and stresses",
+            "at most {:.1} digits of the largest displacement are reliable, and fewer of strains and stresses, \
+             because the matrix is nearly singular",
             digits.max(0.0)
         );
         Warning::new(&warning::FEW_DIGITS, digits, "", message)
@@ -330,10 +336,11 @@ fn millimetres(x: &Point3) -> String {
 
 fn large_strain(run: &Solved) -> Vec<Warning> {
     let Some([strain, turn]) = large_strain::largest(run) else { return Vec::new() };
-    let help = "take one of large strain (law = \"neo-hookean\", kind = \"static\")";
+    let help = "take a law of large strain (law = \"neo-hookean\", kind = \"static\")";
     let strained = (strain.value > large_strain::LARGE).then(|| {
         let message = format!(
-            "strains by {:.1} % at {}, and by more than {:.0} % in {:.2} % of the volume, which a law of small strain is not for: {help}",
+            "reaches a strain of {:.1} % at {}, and more than {:.0} % in {:.2} % of the volume, beyond the range of a \
+             law of small strain: {help}",
             100.0 * strain.value,
             millimetres(&strain.at),
             100.0 * large_strain::LARGE,
@@ -343,8 +350,8 @@ fn large_strain(run: &Solved) -> Vec<Warning> {
     });
     let turned = (turn.value > large_strain::TURNED).then(|| {
         let message = format!(
-            "turns by {:.3} rad at {}, and by more than {} rad in {:.2} % of the volume, which a law of small strain takes for a strain \
-             of {:.1} %: {help}",
+            "reaches a rotation of {:.3} rad at {}, and more than {} rad in {:.2} % of the volume, to which a law of \
+             small strain assigns a strain of {:.1} %: {help}",
             turn.value,
             millimetres(&turn.at),
             large_strain::TURNED,
@@ -360,8 +367,9 @@ fn rough_stress(recovered: Option<&Recovered>, jump: Option<f64>) -> Option<Warn
     let value = jump.filter(|value| *value > ROUGH_STRESS)?;
     let (_, at) = recovered?.jump()?;
     let message = format!(
-        "the stress is not smooth: {:.0} % of it, in the energy norm, are jumps between neighbours, most of all at {}. The mesh or \
-         cloud is too coarse, or it locks; the error may be smaller or several times as large",
+        "the stress is not smooth: jumps between neighbours make up {:.0} % of the stress in the energy norm and are \
+         largest at {}. The mesh or cloud is too coarse, or the method locks; the error may be smaller or several \
+         times as large",
         100.0 * value,
         millimetres(&at)
     );

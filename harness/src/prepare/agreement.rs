@@ -38,12 +38,13 @@ pub(super) fn check(supports: &[Support], mesh: &Mesh) -> Result<(), Failure> {
                     let x = &mesh.points()[vertex as usize];
                     let [x, y, z] = [x.x, x.y, x.z].map(|x| 1e3 * x);
                     let problem = format!(
-                        "prescribes {:.6e} mm along {axis} at ({x:.4}, {y:.4}, {z:.4}) mm, where {} prescribes {:.6e} mm",
+                        "prescribes {:.6e} mm along {axis} at ({x:.4}, {y:.4}, {z:.4}) mm, where {} \
+                         prescribes {:.6e} mm",
                         1e3 * second,
                         supports[other].key,
                         1e3 * first
                     );
-                    let help = "let the places of the supports meet only where their values agree";
+                    let help = "let the regions of supports overlap only where their values agree";
                     return Err(Failure::input(Key::Scene(support.key.clone()), problem, help));
                 }
             }

@@ -85,7 +85,7 @@ fn at_points(load: &setup::Load, surface: SurfaceRows) -> Result<(SurfaceRows, V
             let values = at.map(|(x, _)| field(x)).collect::<Result<_, _>>();
             Values::Pressure(values.map_err(not_finite(&load.key, "pressure"))?)
         }
-        Applied::Body(_) => unreachable!("it has no surface"),
+        Applied::Body(_) => unreachable!("the method has no surface"),
     };
     Ok((surface, values))
 }

@@ -397,8 +397,8 @@ impl Prepared {
         let Some(betas) = betas.filter(|_| self.constraints.is_empty()) else {
             return Err(Failure::unavailable(
                 Key::Method("essential"),
-                "is not available where a support is constrained by Newton's method",
-                "essential = \"penalty\" and \"coupling\" are",
+                "is not available for a support in Newton's method",
+                "take essential = \"penalty\" or \"coupling\"",
             ));
         };
         for (weak, beta) in self.weak.drain(..).zip(betas) {
@@ -422,7 +422,7 @@ impl Prepared {
         let region = if method.has_regions() {
             return Err(Failure::unavailable(
                 Key::Method("essential"),
-                "holds weakly, which is not available for clouds on a body of several regions",
+                "imposes supports weakly, which is not available for clouds on a body of several regions",
                 "take one region, or essential = \"multipliers\"",
             ));
         } else {
@@ -474,7 +474,7 @@ fn at(support: &Support, points: &[Point3]) -> Result<Vec<Vector3>, Failure> {
 fn not_finite(key: &str, below: &'static str) -> impl Fn(String) -> Failure {
     let key = Key::Scene(format!("{key}.{below}"));
     move |problem| {
-        Failure::input(key.clone(), problem, "it has to be finite at every point of the place it acts on")
+        Failure::input(key.clone(), problem, "the value has to be finite at every point of the region")
     }
 }
 

@@ -105,7 +105,7 @@ fn outside(surface: &SurfaceRows, index: usize, tool: &Tool) -> Result<(), Failu
     Err(Failure::input(
         Key::Scene(format!("tool[{index}].at")),
         problem,
-        "a tool starts outside, and closes from there",
+        "a tool has to start outside the body",
     ))
 }
 
@@ -134,12 +134,12 @@ fn affordable(index: usize, half: f64, free: f64, points: usize) -> Result<(), F
         return Ok(());
     }
     let problem = format!(
-        "leaves {:.3} mm free between contact points, where tool[{index}] is {:.3} mm broad and would slip through; to divide the \
-         faces takes more than {MOST} points",
+        "leaves {:.3} mm between contact points, and tool[{index}] is {:.3} mm wide and would slip through; \
+         subdividing the faces would take more than {MOST} points",
         2e3 * free,
         2e3 * half
     );
-    Err(Failure::at(ErrorKind::NotRun, Key::Size(""), problem, "a finer mesh where the tool touches"))
+    Err(Failure::at(ErrorKind::NotRun, Key::Size(""), problem, "take a finer mesh near the tool"))
 }
 
 /// Whether a tool passes a facet or a margin around it. The margin is the diagonal of the tool's bounding

@@ -62,7 +62,7 @@ pub(super) fn unchecked(
         return inside(file, kind, size, jitter);
     }
     if let (Some(_), true) = (jitter, !matches!(body, Body::Box { .. })) {
-        let problem = format!("is for boxes; a {} has none", body.name());
+        let problem = format!("applies to boxes only, not to a {}", body.name());
         return Err(Failure::input(Key::Method("jitter"), problem, "leave it out"));
     }
     let family = |n: usize| -> Result<Mesh, Failure> {
@@ -76,11 +76,11 @@ pub(super) fn unchecked(
                 let cells = extent.map(|e| (e / h).round().max(1.0) as usize);
                 if let Some(most) = cells.into_iter().max().filter(|most| *most > MOST_NODES) {
                     let problem = format!(
-                        "is {:.3e} times as long as it is narrow: {most} cells, about cubes, would lie along it",
+                        "is {:.3e} times as long as it is narrow: it would take {most} nearly cubic cells along its length",
                         extent.iter().copied().fold(0.0, f64::max)
                             / extent.iter().copied().fold(f64::MAX, f64::min)
                     );
-                    let help = "check the units of its extents; flat cells are made by a method's size = { cells = [...] }";
+                    let help = "check the units of its extents; for flat cells, give the method size = { cells = [...] }";
                     return Err(Failure::input(Key::Scene("body".into()), problem, help));
                 }
                 few_enough(expected::of_family(body, kind, n as f64))?;
@@ -115,8 +115,8 @@ pub(super) fn unchecked(
         Size::Spacing(spacing) => {
             let n = narrowest(body) / spacing;
             if !(n.is_finite() && n < 1e3) {
-                let problem = format!("makes {n:.0} cells across the body");
-                return Err(Failure::input(Key::Size("spacing"), problem, "at most 1000 are made"));
+                let problem = format!("gives {n:.0} cells across the body");
+                return Err(Failure::input(Key::Size("spacing"), problem, "at most 1000 are supported"));
             }
             family(n.round().max(1.0) as usize)
         }
@@ -137,11 +137,15 @@ pub(super) fn unchecked(
 /// Meshes the interior of a surface file, or of the boundary of a mesh file.
 fn inside(file: &MeshFile, kind: CellKind, size: &Size, jitter: Option<Jitter>) -> Result<Mesh, Failure> {
     if jitter.is_some() {
-        return Err(Failure::input(Key::Method("jitter"), "is for boxes; a file has none", "leave it out"));
+        return Err(Failure::input(
+            Key::Method("jitter"),
+            "applies to boxes only, not to a file",
+            "leave it out",
+        ));
     }
     if !kind.is_tet() {
         let problem =
-            format!("makes tetrahedra inside the surface of {}, not {}", file.path.display(), kind.name());
+            format!("fills the surface of {} with tetrahedra, not with {}", file.path.display(), kind.name());
         let help = "take element = \"tet4\" or \"tet10\", or a mesh: size = { file = \"...\" }";
         return Err(Failure::input(Key::Size(""), problem, help));
     }
@@ -176,7 +180,7 @@ fn few_enough(nodes: f64) -> Result<(), Failure> {
     if nodes <= MOST_NODES as f64 {
         return Ok(());
     }
-    let problem = format!("asks for {nodes:.0} nodes; at most {MOST_NODES} are made");
+    let problem = format!("gives {nodes:.0} nodes; at most {MOST_NODES} are supported");
     Err(Failure::input(Key::Size(""), problem, "make it coarser"))
 }
 
@@ -197,7 +201,7 @@ fn inverted(bad: InvertedElement, size: &Size, jitter: Option<Jitter>) -> Failur
     let (key, help) = match (size, jitter) {
         (Size::File(file), _) => {
             let problem = format!("gives a mesh in which {}", files::inverted(&file.path, &bad));
-            let help = "corners have to be in the order of the format";
+            let help = "the nodes of a cell have to follow the order of the format";
             return Failure::input(Key::Size("file"), problem, help);
         }
         (_, Some(_)) => (Key::Method("jitter.fraction"), "make it smaller"),
@@ -258,8 +262,8 @@ pub(super) fn read(file: &MeshFile, key: Key) -> Result<Mesh, Failure> {
     }
     pieces::join(&mesh).map(|(mesh, _)| mesh).ok_or_else(|| {
         let problem =
-            format!("joins nothing: of {pieces} pieces of {} no faces coincide", file.path.display());
-        let help = "leave it out, or mesh the parts with the same faces where they touch";
+            format!("joins nothing: the {pieces} pieces of {} have no coincident faces", file.path.display());
+        let help = "leave it out, or mesh the parts with matching faces at their interfaces";
         Failure::input(Key::Scene("body.join".into()), problem, help)
     })
 }
@@ -280,7 +284,11 @@ fn from_file(file: &MeshFile, kind: CellKind) -> Result<Mesh, Failure> {
                 CellKind::ALL.into_iter().filter(|k| is_convertible(&mesh, *k)).map(CellKind::name).collect();
             let help = match is_convertible(&mesh, kind) {
                 true => format!("tissuebench mesh convert ... --element {}", kind.name()),
-                false => format!("they can't become {}; a method of {}", kind.name(), becomes.join(" or ")),
+                false => format!(
+                    "the cells can't be converted to {}; take a method of {}",
+                    kind.name(),
+                    becomes.join(" or ")
+                ),
             };
             Err(Failure::input(Key::Size("file"), problem, &help))
         }

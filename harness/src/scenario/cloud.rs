@@ -138,7 +138,7 @@ impl Scenario<'_> {
             shape.map(|shape| &**shape).ok_or_else(|| {
                 Failure::input(
                     Key::Method("nodes"),
-                    "makes a cloud of an exact count, which an octant takes none of",
+                    "places an exact number of nodes, which is not available for an octant",
                     "take the nodes of a mesh instead: size = { level = 2 } or { file = \"...\" }",
                 )
             })
@@ -305,8 +305,8 @@ fn in_background(cloud: &Cloud, background: &Mesh) -> Result<(), Failure> {
     };
     let at = cloud.points[farthest].coords * 1e3;
     let problem = format!(
-        "has no cells around {} of {} nodes; the farthest, at ({:.4}, {:.4}, {:.4}) mm, is {:.4} mm away from all cells: they leave out \
-         thin parts of the body",
+        "has no cells around {} of {} nodes; the farthest node, at ({:.4}, {:.4}, {:.4}) mm, is {:.4} mm away from \
+         all cells: the cells leave out thin parts of the body",
         lost.len(),
         found.len(),
         at.x,
@@ -318,7 +318,7 @@ fn in_background(cloud: &Cloud, background: &Mesh) -> Result<(), Failure> {
         ErrorKind::NotRun,
         key(),
         problem,
-        "finer cells: background = { nodes = .. } or { spacing = .. }",
+        "take finer cells: background = { nodes = .. } or { spacing = .. }",
     ))
 }
 
@@ -347,10 +347,10 @@ fn integration(
         scene::Integration::Grid { points, spacing: given } => {
             let key = || Key::Method("integration.rule");
             let help = "take rule = \"gauss\" or \"cell-smoothed\"";
-            let clips = "clips a grid by the body, and an octant has no inside test";
+            let clips = "needs a test for points inside the body, which an octant does not have";
             let shape = shape.ok_or_else(|| Failure::input(key(), clips, help))?;
             if background.region_names().len() > 1 {
-                let problem = "does not know the region of a grid's points, and the body has several";
+                let problem = "can't assign the points of a grid to the regions of the body";
                 return Err(Failure::unavailable(key(), problem, help));
             }
             let points = (points as f64).cbrt().round() as usize;

@@ -62,7 +62,7 @@ impl Read {
         match farthest {
             Some(node) if count > 0 => {
                 let problem = format!(
-                    "has {count} of {} nodes outside of the body, {} the farthest, by {:.3e} m",
+                    "has {count} of {} nodes outside the body; the farthest, {}, is {:.3e} m away",
                     beyond.len(),
                     self.place(node),
                     beyond[node]
@@ -97,14 +97,17 @@ pub fn read(file: &MeshFile, nodes: Option<usize>) -> Result<Read, Failure> {
         (array(file)?, Vec::new(), None)
     } else {
         let read = read_points(&file.path, file.unit).map_err(|bad| {
-            Failure::input(FILE, format!("can't be read: {bad}"), "give x, y, z per line, between commas")
+            Failure::input(
+                FILE,
+                format!("can't be read: {bad}"),
+                "give x, y, z on each line, separated by commas",
+            )
         })?;
         (read.points, read.lines, None)
     };
     if let Some(wanted) = nodes.filter(|&n| n != points.len()) {
-        let problem = format!("disagrees with {}, which holds {} nodes", file.path.display(), points.len());
-        let help =
-            format!("give nodes = {}, or leave it out: {wanted} is not what the file has", points.len());
+        let problem = format!("disagrees with {}, which has {} nodes", file.path.display(), points.len());
+        let help = format!("give nodes = {} instead of {wanted}, or leave the key out", points.len());
         return Err(Failure::input(Key::Method("nodes"), problem, &help));
     }
     // The spacing is defined only for a cloud without duplicates.
@@ -113,7 +116,7 @@ pub fn read(file: &MeshFile, nodes: Option<usize>) -> Result<Read, Failure> {
     if let Some([first, second]) = duplicate(&points) {
         let problem =
             format!("has {} and {} in the same place", unspaced.place(first), unspaced.place(second));
-        return Err(Failure::input(FILE, problem, "a node of a cloud counts once: leave one of them out"));
+        return Err(Failure::input(FILE, problem, "remove the duplicate node"));
     }
     let cloud = match &unspaced.mesh {
         Some(mesh) => cloud_from_mesh(mesh),

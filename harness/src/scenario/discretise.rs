@@ -110,10 +110,10 @@ impl Scenario<'_> {
                         let names: Vec<String> = mesh.region_names().iter().cloned().chain(groups).collect();
                         ("on", format!("the mesh has {}", names.join(", ")))
                     }
-                    _ => ("where", format!("{}; check its signs and its unit", place::extent(&mesh))),
+                    _ => ("where", format!("{}; check the signs and the unit", place::extent(&mesh))),
                 };
                 let key = Key::Scene(format!("region[{index}].{key}"));
-                return Err(Failure::input(key, "holds no cell of the mesh", &help));
+                return Err(Failure::input(key, "contains no cell of the mesh", &help));
             }
         }
         let names = std::iter::once("body".into()).chain(self.scene.regions.iter().map(|r| r.name.clone()));
@@ -130,10 +130,10 @@ impl Scenario<'_> {
         let key = Key::Scene(format!("region[{}].on", regions[1]));
         let names = [first, second].map(|region| place::words(&region.place));
         let problem = format!(
-            "'{}' ({}) and '{}' ({}) are both over cell {cell} of the mesh, which has one material",
+            "'{}' ({}) and '{}' ({}) both contain cell {cell} of the mesh, but a cell has one material",
             second.name, names[1], first.name, names[0]
         );
-        Err(Failure::input(key, problem, "name groups without a common cell"))
+        Err(Failure::input(key, problem, "name groups that share no cell"))
     }
 }
 

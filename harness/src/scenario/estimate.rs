@@ -51,7 +51,7 @@ impl Estimate {
         too_large.then(|| {
             let Estimate { nodes, steps, bytes, seconds } = self;
             format!(
-                "takes about {:.1e} unknowns, {steps:.1e} steps, {:.1e} GB of memory and {:.1e} hours",
+                "needs about {:.1e} unknowns, {steps:.1e} steps, {:.1e} GB of memory and {:.1e} hours",
                 3.0 * nodes,
                 bytes / 1e9,
                 seconds / 3600.0
@@ -90,7 +90,7 @@ fn refuse(scene: &Scene, method: &Method, size: Option<String>, factor: f64) -> 
         }
         _ => size.unwrap_or_else(|| format!("method[{at}].size")),
     };
-    let help = "make it coarser or shorter, or give --force to run it";
+    let help = "take a coarser mesh or a shorter run, or give --force";
     Some(scene.error(ErrorKind::Invalid, &key, &problem, Some(help)))
 }
 

@@ -49,7 +49,7 @@ impl Scenario<'_> {
                 return Ok(outside.map(|outside| outside.about.clone()).expect("it has one"));
             }
             Family::Efg(_) | Family::OverMesh(_) => {
-                let problem = "is no finite elements: problems in files are of meshes";
+                let problem = "is not a finite-element method: problem files describe meshes";
                 return Err(self.locate(Failure::input(
                     Key::Method("family"),
                     problem,
@@ -67,8 +67,8 @@ impl Scenario<'_> {
             ProcedureKind::Linear | ProcedureKind::Static => Ok(()),
             _ => Err(Failure::input(
                 Key::Scene("procedure.kind".into()),
-                "is a kind that problems in files do not have yet",
-                "they have linear and static ones",
+                "is not supported in problem files yet",
+                "linear and static procedures are supported",
             )),
         }
     }
@@ -81,7 +81,7 @@ impl Scenario<'_> {
         let mut asked = vec![match kind {
             ProcedureKind::Linear => ("linear", "a linear procedure".into()),
             ProcedureKind::Static => ("static", "load steps (kind = \"static\")".into()),
-            other => ("", format!("kind = \"{}\", which problems in files do not have yet", other.name())),
+            other => ("", format!("kind = \"{}\", which problem files do not support yet", other.name())),
         }];
         asked.extend(self.scene.materials().map(|(_, m)| (m.name(), format!("the law \"{}\"", m.name()))));
         if !self.scene.tools.is_empty() {

@@ -67,12 +67,12 @@ pub fn load(file: &MeshFile) -> Result<Arc<FileBody>, Failure> {
         let mesh = super::body::read(file, key())?;
         let boundary = BoundaryFaces::new(&mesh).map_err(|bad| {
             let problem = format!(
-                "has a boundary that is no closed surface (faces counted from 1, lengths in m): {bad}"
+                "has a boundary that is not a closed surface (faces counted from 1, lengths in m): {bad}"
             );
             Failure::input(
                 key(),
                 problem,
-                "give methods the nodes and cells of the file: size = { file = \"...\" }",
+                "use the nodes and cells of the file in methods: size = { file = \"...\" }",
             )
         })?;
         (boundary.surface, Some((mesh, boundary.faces)))
@@ -104,8 +104,9 @@ impl FileBody {
                 stuff(&self.surface, Stuffing { spacing: f64::from_bits(bits), doublings: 0 })
             }
         };
-        let stuffed = stuffed
-            .map_err(|bad| Failure::input(Key::Size(""), format!("makes no mesh: {bad}"), "make it finer"))?;
+        let stuffed = stuffed.map_err(|bad| {
+            Failure::input(Key::Size(""), format!("can't be meshed: {bad}"), "make it finer")
+        })?;
         let mesh = match &self.mesh {
             None => stuffed.mesh,
             Some((mesh, faces)) => self.named(stuffed.mesh, mesh, faces)?,

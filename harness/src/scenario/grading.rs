@@ -26,7 +26,7 @@ pub fn refinement(shape: &(dyn Shape + Send + Sync), region: &Region) -> Result<
         }
     }
     if (0..3).any(|a| from[a] > to[a]) {
-        let problem = format!("holds nowhere in the body, which spans {low} to {high} m");
+        let problem = format!("contains no point of the body, which spans {low} to {high} m");
         let help = "check the signs and the unit of the region";
         return Err(Failure::input(Key::Method("graded_towards"), problem, help));
     }

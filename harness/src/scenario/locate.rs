@@ -72,7 +72,7 @@ impl Scenario<'_> {
         };
         let (kind, key, help) = match error {
             EfgError::TooFewNeighbours { .. } | EfgError::SingularMoment { .. } => {
-                (ErrorKind::NotRun, support, "make the supports wider, or the cloud finer")
+                (ErrorKind::NotRun, support, "take a larger support, or a finer cloud")
             }
             EfgError::FlatCells { .. } => (
                 ErrorKind::NotRun,
@@ -82,13 +82,13 @@ impl Scenario<'_> {
             EfgError::OutsideHull { .. } => (
                 ErrorKind::NotRun,
                 support,
-                "nodes have to surround every point: take the nodes of the mesh that is integrated over on a convex body, or \
-                 basis = \"linear\"",
+                "every integration point has to lie inside the convex hull of the nodes: on a convex body, use the \
+                 nodes of the background mesh as the cloud, or take basis = \"linear\"",
             ),
             EfgError::BadRadius { .. } => {
-                (ErrorKind::NotRun, support, "a node needs another one at a distance")
+                (ErrorKind::NotRun, support, "every node needs another node at a distance")
             }
-            EfgError::TooFewNodes { .. } => (ErrorKind::Invalid, Key::Size(""), "ask for more nodes"),
+            EfgError::TooFewNodes { .. } => (ErrorKind::Invalid, Key::Size(""), "give more nodes"),
             EfgError::EmptyGrid { .. } => {
                 (ErrorKind::Invalid, Key::Method("integration.spacing"), "make it finer")
             }
@@ -98,7 +98,7 @@ impl Scenario<'_> {
             EfgError::NoRule { .. } => (
                 ErrorKind::Invalid,
                 Key::Method("integration.points"),
-                "in a tetrahedron 1, 4, 8, 14, 15, 24, 35 and 46 are known",
+                "a tetrahedron has rules of 1, 4, 8, 14, 15, 24, 35 and 46 points",
             ),
             _ => (ErrorKind::NotRun, Key::Method(""), ""),
         };
@@ -127,11 +127,11 @@ impl Scenario<'_> {
     fn more_steps(&self) -> &'static str {
         match &self.method.family {
             Family::Fem(fem) if fem.reduced => {
-                "reduced integration leaves motions without energy, which a single row of elements follows: take two or more \
-                 cells across, or reduced = false"
+                "reduced integration leaves motions without energy, which a single row of elements can follow: take \
+                 two or more cells across, or reduced = false"
             }
             _ => {
-                "more steps (procedure.steps), a finer mesh, or a dilation that does not lock may carry more"
+                "more steps (procedure.steps), a finer mesh, or a dilation that does not lock may reach more of the load"
             }
         }
     }
@@ -139,17 +139,19 @@ impl Scenario<'_> {
     fn of_explicit(&self, error: &ExplicitError) -> Finding {
         let given = matches!(&self.scene.procedure, Procedure::Explicit(explicit) if explicit.step.is_some());
         let (key, help) = match error {
-            ExplicitError::StepTooLarge { .. } if given => {
-                (Key::Scene("procedure.step".into()), "leave it out: the step then follows the critical one")
-            }
+            ExplicitError::StepTooLarge { .. } if given => (
+                Key::Scene("procedure.step".into()),
+                "leave it out: the step is then a fraction of the critical step",
+            ),
             ExplicitError::StepTooLarge { .. } => {
-                (Key::Method(""), "procedure.safety = 0.7 leaves more room")
+                (Key::Method(""), "take a larger safety margin, such as procedure.safety = 0.7")
             }
-            ExplicitError::LightTool { .. } => (Key::Scene("procedure".into()), "a larger tool_mass"),
+            ExplicitError::LightTool { .. } => (Key::Scene("procedure".into()), "give a larger tool_mass"),
             ExplicitError::ContactAt { tool, .. } => (Key::Scene(format!("tool[{tool}]")), ""),
-            ExplicitError::InvertedAt { .. } => {
-                (Key::Method(""), "less load, a finer mesh, or a dilation that does not lock may carry more")
-            }
+            ExplicitError::InvertedAt { .. } => (
+                Key::Method(""),
+                "a smaller load, a finer mesh, or a dilation that does not lock may complete the run",
+            ),
             _ => (Key::Method(""), ""),
         };
         finding(ErrorKind::NotRun, key, error.to_string(), help)
@@ -165,7 +167,7 @@ impl Scenario<'_> {
             TimeError::Inaccurate { .. } => (
                 ErrorKind::NotRun,
                 Key::Scene("procedure.accuracy".into()),
-                "no step is short enough: allow more",
+                "no step is short enough: allow a larger error",
             ),
             TimeError::Static(error) => match overlapping(error) {
                 Some(tool) => (ErrorKind::NotRun, Key::Scene(format!("tool[{tool}]")), ""),
@@ -186,11 +188,14 @@ impl Scenario<'_> {
                 ErrorKind::Invalid,
                 supports(self.scene),
                 text,
-                "let the places of the supports meet only where their values agree",
+                "let the regions of supports overlap only where their values agree",
             ),
-            SolveError::NotCoercive { .. } => {
-                finding(ErrorKind::NotRun, essential, text, "{ method = \"nitsche\", factor = ... }")
-            }
+            SolveError::NotCoercive { .. } => finding(
+                ErrorKind::NotRun,
+                essential,
+                text,
+                "give a larger factor: { method = \"nitsche\", factor = ... }",
+            ),
             SolveError::Inconsistent { .. }
             | SolveError::Dependent { .. }
             | SolveError::BadWeak { .. }
@@ -201,7 +206,7 @@ impl Scenario<'_> {
                 ErrorKind::NotRun,
                 Key::Method("integration"),
                 text,
-                "take more integration points, or a finer background",
+                "take more integration points, or a finer background mesh",
             ),
             SolveError::NotPositiveDefinite => finding(ErrorKind::NotRun, Key::Method("element"), text, ""),
             SolveError::OrphanNode { .. } => {
@@ -228,16 +233,16 @@ fn overlapping(error: &StaticError) -> Option<usize> {
 
 /// Returns the finding for an unconstrained rigid motion, at the supports, or at the body if there are none.
 fn rigid(scene: &Scene, motions: String) -> Finding {
-    let help = "hold it: [[support]] with a place (on or where) and fix = \"xyz\", or the axes that are free";
+    let help = "add a [[support]] with a region (on or where) and fix = \"xyz\", or the axes that are free";
     let (key, problem) = match scene.supports.len() {
-        0 => (Key::Scene("body".into()), format!("is held by no [[support]]: {motions}")),
-        1 => (supports(scene), format!("does not hold the body: {motions}")),
+        0 => (Key::Scene("body".into()), format!("has no [[support]]: {motions}")),
+        1 => (supports(scene), format!("does not constrain the body: {motions}")),
         count => {
             let lines: Vec<String> = (0..count)
                 .map(|i| scene.error(ErrorKind::NotRun, &format!("support[{i}]"), "", None).line.to_string())
                 .collect();
             let problem = format!(
-                "does not hold the body, all {count} together (lines {}): {motions}",
+                "does not constrain the body, with all {count} supports together (lines {}): {motions}",
                 lines.join(", ")
             );
             (Key::Scene("support".into()), problem)

@@ -186,7 +186,7 @@ impl Scenario<'_> {
 }
 
 fn no_exact() -> Failure {
-    let problem = "has no exact solution, which \"exact\" values need";
+    let problem = "needs the scene's exact solution for its \"exact\" values";
     Failure::input(Key::Scene("reference".into()), problem, "add [reference] exact = \"...\"")
 }
 

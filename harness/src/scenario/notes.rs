@@ -21,7 +21,7 @@ pub(crate) fn warnings(scene: &Scene, method: &scene::Method, mesh: &Mesh, nodes
     let mut found = Vec::new();
     if !scene.is_moved() {
         let message =
-            "nothing moves this body: it has no load, no tool and no support that moves".to_string();
+            "nothing moves this body: the scene has no load, no tool and no support that moves".to_string();
         found.push(Warning::new(&warning::NOTHING_MOVES, 0.0, "", message));
     }
     found.extend(scene.regions.iter().enumerate().filter_map(|(index, region)| cut(index, region, mesh)));
@@ -42,10 +42,12 @@ fn left_out(file: &Path) -> Option<Warning> {
     (!parts.is_empty()).then(|| {
         let words = match joins {
             0 => "",
-            _ => ". The first of these join or carry parts of the body: without them this is another problem",
+            _ => {
+                ". The first of these connect or support parts of the body: without them the problem is a different one"
+            }
         };
         let list = files::summary(&parts).join(", ");
-        let message = format!("{} is read for its mesh alone, without: {list}{words}", file.display());
+        let message = format!("only the mesh of {} is read; ignored parts: {list}{words}", file.display());
         Warning::new(&warning::LEFT_OUT, joins as f64, "body", message)
     })
 }
@@ -56,13 +58,14 @@ fn apart(mesh: &Mesh) -> Option<Warning> {
     let count = pieces::count(mesh);
     (count > 1).then(|| {
         let help = match pieces::coincident(mesh) {
-            0 => "no faces coincide: hold each by a support, or mesh them as one".to_string(),
+            0 => "no faces coincide: constrain each piece with a support, or mesh the pieces as one body".to_string(),
             faces => format!(
-                "{faces} faces coincide: join them (body = {{ shape = \"file\", ..., join = true }}, or tissuebench mesh convert --join)"
+                "{faces} faces coincide: join the pieces (body = {{ shape = \"file\", ..., join = true }}, or \
+                 tissuebench mesh convert --join)"
             ),
         };
         let message =
-            format!("is in {count} pieces without a node in common, which do not feel each other; {help}");
+            format!("consists of {count} pieces that share no node and do not interact; {help}");
         Warning::new(&warning::PIECES_APART, count as f64, "body", message)
     })
 }
@@ -76,8 +79,8 @@ fn other_volume(body: &Body, method: &scene::Method, mesh: &Mesh) -> Option<Warn
     let ratio = quality::volumes(mesh).iter().sum::<f64>() / enclosed;
     ((ratio - 1.0).abs() > VOLUME).then(|| {
         let message = format!(
-            "the mesh has {:.4} cm^3, {:+.1} % of what the surface encloses: parts thinner than the cells are left out; make these smaller \
-             (spacing, nodes)",
+            "the mesh has a volume of {:.4} cm^3, {:+.1} % relative to the volume enclosed by the surface: parts thinner \
+             than the cells are left out; take smaller cells (spacing, nodes)",
             1e6 * ratio * enclosed,
             100.0 * (ratio - 1.0)
         );
@@ -91,7 +94,8 @@ fn other_size(asked: usize, got: usize) -> Option<Warning> {
     let ratio = got as f64 / asked.max(1) as f64;
     ((ratio - 1.0).abs() > NEAR).then(|| {
         let message = format!(
-            "size = {{ nodes = {asked} }} gives {got} nodes: sizes of cells come in steps. Compare by the nodes there are, or give spacing"
+            "size = {{ nodes = {asked} }} gives {got} nodes, because cell sizes come in steps. Compare by the actual \
+             number of nodes, or give spacing"
         );
         Warning::new(&warning::NODES_DIFFER, ratio, "method.size.nodes", message)
     })
@@ -113,8 +117,8 @@ fn cut(index: usize, region: &scene::MaterialRegion, mesh: &Mesh) -> Option<Warn
     }
     let share = cells as f64 / all as f64;
     let message = format!(
-        "the border of '{}' runs through {cells} of {all} cells ({:.1} %), each of which is of the material at its centre: the \
-         border is that of the cells",
+        "the border of '{}' cuts {cells} of {all} cells ({:.1} %): a cell has the material at its centre, so the \
+         border follows the faces of cells",
         region.name,
         100.0 * share
     );

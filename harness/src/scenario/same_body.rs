@@ -64,7 +64,7 @@ pub fn check(body: &Body, file: &MeshFile, mesh: &Mesh) -> Result<(), Failure> {
     if off <= allowed && lost <= VOLUME.max(cut) {
         return Ok(());
     }
-    let problem = format!("is of {}; the scene's body is of {}", describe(&own), describe(&whole));
+    let problem = format!("has the extent {}; the scene's body has {}", describe(&own), describe(&whole));
     Err(Failure::input(Key::Size("file"), problem, &help(own.size().max() / whole.size().max())))
 }
 
@@ -79,8 +79,8 @@ fn describe(extent: &Extent) -> String {
 fn help(ratio: f64) -> String {
     let units = [("m", 1e3), ("cm", 10.0), ("um", 1e-3)];
     match units.iter().find(|(_, metres)| (ratio * metres - 1.0).abs() < 0.1) {
-        Some((unit, _)) => format!("is the file in {unit}? Then write unit = \"{unit}\" beside it"),
-        None => "give a mesh of the same body, in the same place".into(),
+        Some((unit, _)) => format!("if the file is in {unit}, add unit = \"{unit}\""),
+        None => "give a mesh of the same body at the same position".into(),
     }
 }
 

@@ -89,7 +89,11 @@ impl Setup {
     pub fn density(&self) -> Result<Vec<f64>, Failure> {
         self.densities.iter().copied().collect::<Option<_>>().ok_or_else(|| {
             let key = Key::Scene("material.density".into());
-            Failure::input(key, "is missing, and mass acts", "density = \"1000 kg/m^3\"")
+            Failure::input(
+                key,
+                "is missing, but the procedure needs the mass",
+                "add density = \"1000 kg/m^3\"",
+            )
         })
     }
 

@@ -37,12 +37,18 @@ fn placed(tool: &scene::Tool, index: usize) -> Result<PlacedTool, Failure> {
         scene::Drive::Force(force) => Drive::Force(force),
         scene::Drive::Pressure(pressure) => {
             let area = tool.shape.face_area(&tool.along.into()).ok_or_else(|| {
-                Failure::input(at(".drive.pressure"), "has no face to act on", "give force")
+                Failure::input(
+                    at(".drive.pressure"),
+                    "needs a tool with a flat face",
+                    "give drive = { force = ... }",
+                )
             })?;
             Drive::Force(pressure * area)
         }
     };
-    let wrong = |bad: ContactError| Failure::at(ErrorKind::Invalid, at(""), format!("is no tool: {bad}"), "");
+    let wrong = |bad: ContactError| {
+        Failure::at(ErrorKind::Invalid, at(""), format!("is not a valid tool: {bad}"), "")
+    };
     let law = match tool.friction {
         Some(f) => ContactLaw::coulomb(tool.penalty, f.coefficient, f.stick),
         None => ContactLaw::frictionless(tool.penalty),

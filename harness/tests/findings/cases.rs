@@ -114,7 +114,7 @@ pub const CASES: &[Case] = &[
         edit: ("where = \"z == 0 mm\"", "where = \"z == 90 mm\" #<"),
         key: "support[0].where",
         says: &[
-            "'z == 90 mm' touches nothing",
+            "'z == 90 mm' touches no part of the body",
             "x = 0 to 40, y = 0 to 40, z = 0 to 20 mm",
             "signs and the unit",
         ],
@@ -124,14 +124,14 @@ pub const CASES: &[Case] = &[
         name: "a load beside the body, its region off by the unit",
         edit: ("on = \"z-max\"", "where = \"z >= 20 m\" #<"),
         key: "load[0].where",
-        says: &["'z >= 20 m' touches nothing", "z = 0 to 20 mm"],
+        says: &["'z >= 20 m' touches no part of the body", "z = 0 to 20 mm"],
         ..SOUND
     },
     Case {
         name: "the second of two supports",
         edit: ("[[load]]", "[[support]]\nwhere = \"x < 0 mm\" #<\nfix = \"x\"\n\n[[load]]"),
         key: "support[1].where",
-        says: &["'x < 0 mm' touches nothing"],
+        says: &["'x < 0 mm' touches no part of the body"],
         ..SOUND
     },
     Case {
@@ -142,14 +142,14 @@ pub const CASES: &[Case] = &[
              poisson = 0.3 }\n\n[[support]]",
         ),
         key: "region[0].where",
-        says: &["'z >= 30 mm' holds no cell", "z = 0 to 20 mm"],
+        says: &["'z >= 30 mm' contains no cell", "z = 0 to 20 mm"],
         ..SOUND
     },
     Case {
         name: "a cloud denser nowhere",
         edit: ("nodes = 60", "nodes = 60\ncloud = \"graded\"\ngraded_towards = \"z >= 30 mm\" #<"),
         key: "method[1].graded_towards",
-        says: &["'z >= 30 mm' holds nowhere", "unit"],
+        says: &["'z >= 30 mm' contains no point of the body", "unit"],
         stops: &["efg"],
         ..SOUND
     },
@@ -159,7 +159,7 @@ pub const CASES: &[Case] = &[
         edit: ("[body]", "[body] #<"),
         code: 3,
         key: "body",
-        says: &["held by no [[support]]", "translation along x", "rotation about z", "fix = \"xyz\""],
+        says: &["has no [[support]]", "translation along x", "rotation about z", "fix = \"xyz\""],
         ..SOUND
     },
     Case {
@@ -167,7 +167,10 @@ pub const CASES: &[Case] = &[
         edit: ("fix = \"xyz\"", "fix = \"z\" #<"),
         code: 3,
         key: "support[0].fix",
-        says: &["'z' does not hold", "translation along x, translation along y, rotation about z"],
+        says: &[
+            "'z' does not constrain the body",
+            "translation along x, translation along y, rotation about z",
+        ],
         ..SOUND
     },
     Case {
@@ -178,7 +181,7 @@ pub const CASES: &[Case] = &[
         ),
         code: 3,
         key: "support",
-        says: &["all 2 together (lines 12, 16)", "translation along y"],
+        says: &["all 2 supports together (lines 12, 16)", "translation along y"],
         ..SOUND
     },
     Case {
@@ -199,7 +202,7 @@ pub const CASES: &[Case] = &[
         edit: ("support_scale = 1.6", "support_scale = 1.2 #<"),
         code: 3,
         key: "method[1].support_scale",
-        says: &["'1.2'", "neighbours", "wider"],
+        says: &["'1.2'", "neighbours", "larger support"],
         stops: &["efg"],
         ..SOUND
     },
@@ -209,7 +212,7 @@ pub const CASES: &[Case] = &[
         edit: ("support_scale = 1.6", "neighbours = 4 #<"),
         code: 3,
         key: "method[1].neighbours",
-        says: &["'4'", "neighbours", "wider"],
+        says: &["'4'", "neighbours", "larger support"],
         stops: &["efg"],
         ..SOUND
     },
@@ -269,7 +272,7 @@ pub const CASES: &[Case] = &[
         name: "a mesh too fine to be meant",
         edit: ("size = { cells = [2, 2, 2] }", "size = { spacing = \"1 um\" } #<"),
         key: "method[0].size.spacing",
-        says: &["'1 um' makes 20000 cells", "1000"],
+        says: &["'1 um' gives 20000 cells", "1000"],
         stops: &["tet4"],
         ..SOUND
     },
@@ -305,7 +308,7 @@ pub const CASES: &[Case] = &[
         base: OF_FILE,
         edit: ("on = \"roof\"", "on = \"bottom\" #<"),
         key: "load[0].on",
-        says: &["'bottom'", "it has surface, roof"],
+        says: &["'bottom'", "the mesh has surface, roof"],
         ..SOUND
     },
     Case {
@@ -317,7 +320,7 @@ pub const CASES: &[Case] = &[
              poisson = 0.3 }\n\n[[support]]",
         ),
         key: "region[0].on",
-        says: &["'tumor' holds no cell", "the mesh has tissue"],
+        says: &["'tumor' contains no cell", "the mesh has tissue"],
         ..SOUND
     },
     Case {
@@ -354,7 +357,10 @@ pub const CASES: &[Case] = &[
             "element = \"hex8\"\nsize = { file = \"two.msh\", unit = \"mm\" } #<",
         ),
         key: "method[0].size.file",
-        says: &["holds tet4 cells, not hex8", "they can't become hex8; a method of tet4 or tet10"],
+        says: &[
+            "holds tet4 cells, not hex8",
+            "the cells can't be converted to hex8; take a method of tet4 or tet10",
+        ],
         stops: &["tet4"],
         ..SOUND
     },
@@ -366,7 +372,7 @@ pub const CASES: &[Case] = &[
             "integration = { rule = \"grid\", points = 8 } #<",
         ),
         key: "method[1].integration.rule",
-        says: &["'grid' clips a grid", "\"gauss\" or \"cell-smoothed\""],
+        says: &["'grid' needs a test for points inside the body", "\"gauss\" or \"cell-smoothed\""],
         stops: &["efg"],
         ..SOUND
     },
@@ -383,7 +389,7 @@ pub const CASES: &[Case] = &[
         ),
         code: 3,
         key: "method[1].integration.rule",
-        says: &["'grid' does not know the region"],
+        says: &["'grid' can't assign the points of a grid"],
         stops: &["efg"],
         ..SOUND
     },
@@ -396,7 +402,7 @@ pub const CASES: &[Case] = &[
         ),
         code: 3,
         key: "method[1].dilation",
-        says: &["'element-mean' wants points that go by background cells", "\"nodal-mean\""],
+        says: &["'element-mean' needs integration points that belong to background cells", "\"nodal-mean\""],
         stops: &["efg"],
         ..SOUND
     },
@@ -405,7 +411,7 @@ pub const CASES: &[Case] = &[
         base: &[OCTANT[0], OCTANT[1], OCTANT[3]],
         edit: ("nodes = 60", "nodes = 60 #<"),
         key: "method[1].nodes",
-        says: &["'60' makes a cloud of an exact count", "the nodes of a mesh"],
+        says: &["'60' places an exact number of nodes", "the nodes of a mesh"],
         stops: &["efg"],
         ..SOUND
     },
@@ -427,7 +433,7 @@ pub const CASES: &[Case] = &[
             "[reference]\nmethod = \"tet4\"\nsize = { spacing = \"1 um\" } #<\n\n[[method]]\nid = \"tet4\"",
         ),
         key: "reference.size.spacing",
-        says: &["'1 um' makes 20000 cells"],
+        says: &["'1 um' gives 20000 cells"],
         ..SOUND
     },
 ];
