@@ -69,7 +69,7 @@ fn an_array_of_numpy_is_a_cloud() {
     assert_eq!(done.code, 0, "{}", done.stderr);
     let object: Value = serde_json::from_str(&done.stdout).unwrap();
     assert!(object["metrics"]["l2"]["value"].as_f64().unwrap() < 1e-12 && object["nodes"] == 36, "{object}");
-    assert_fails(&run(&rows, Some(b"x,y,z")), 2, "nodes.npy is no .npy file");
+    assert_fails(&run(&rows, Some(b"x,y,z")), 2, "nodes.npy is not a .npy file");
     assert_fails(&run(&[], None), 2, "has an array of shape [0, 3]");
     rows[7][1] = f64::NAN;
     assert_fails(&run(&rows, None), 2, "nodes.npy has NaN in row 7, column 1");

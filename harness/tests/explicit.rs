@@ -229,7 +229,7 @@ fn bad_explicit_scenes_name_the_key() {
             "steps = 4",
             "steps = 4, step = \"1e-15 s\"",
             2,
-            "'procedure.step': '1e-15 s' takes 2.00e13 time steps of 1.00e-15 s",
+            "'procedure.step': '1e-15 s' needs 2.00e13 time steps of 1.00e-15 s",
         ),
         ("steps = 4", "steps = 4, damping = 5", 2, "needs a unit: /s"),
         ("steps = 4", "steps = 4, damping = \"-5 /s\"", 2, "'procedure.damping'"),

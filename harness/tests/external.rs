@@ -107,7 +107,7 @@ fn large_strain_comes_back_too() {
 fn every_misbehaviour_has_its_status() {
     let dir = tempfile::tempdir().unwrap();
     for (mode, more, status, says) in [
-        ("garbage", "", "failed", "displacement.npy: is no .npy file"),
+        ("garbage", "", "failed", "displacement.npy: is not a .npy file"),
         ("nan", "", "failed", "1 numbers are not finite, the first at node 2"),
         ("shape", "", "failed", "displacement.npy: has the shape"),
         ("result", "", "failed", "result.json: "),
@@ -117,7 +117,7 @@ fn every_misbehaviour_has_its_status() {
         ("memory", ", memory_limit = \"150 MB\"", "failed", "memory"),
         ("refused", "", "refused", "nothing of this kind"),
         ("stalled", "", "stalled", "asked to stop half way"),
-        ("stale", "", "stale", "the answer is of another problem"),
+        ("stale", "", "stale", "the answer belongs to another problem"),
         ("nonsense", "", "failed", "mode 'nonsense': give one of"),
     ] {
         let scene = write(&dir, "block.toml", &BLOCK.replace("OTHERS", &dummy(mode, more)));
@@ -235,7 +235,7 @@ fn what_an_adapter_does_not_offer_is_named_and_no_failure_of_a_study() {
     );
     let scene = write(&dir, "pressed.toml", &tools);
     let done = tissuebench(&dir, &["run", &scene, "--method", "own"]);
-    assert_fails(&done, 3, "not-offered: dummy does not take rigid tools ([[tool]])");
+    assert_fails(&done, 3, "not-offered: dummy does not support rigid tools ([[tool]])");
 }
 
 /// A study that solves a scene's elements with other solvers too; BESIDE stands for more keys.
@@ -305,11 +305,15 @@ fn a_new_version_of_a_solver_is_run_again() {
     let stored = || {
         let done = tissuebench(&dir, &["verify", "study.toml", "--resume", "--out", "results"]);
         assert_eq!(done.code, 0, "{}", done.stderr);
-        done.stderr.lines().find(|line| line.contains("were stored")).unwrap_or_default().to_string()
+        done.stderr
+            .lines()
+            .find(|line| line.contains("were taken from stored results"))
+            .unwrap_or_default()
+            .to_string()
     };
-    assert_eq!((stored().as_str(), stored().as_str()), ("", "2 of 2 runs were stored"));
+    assert_eq!((stored().as_str(), stored().as_str()), ("", "2 of 2 runs were taken from stored results"));
     write(&dir, "version", "mine 2");
-    assert_eq!(stored(), "1 of 2 runs were stored", "ours alone");
+    assert_eq!(stored(), "1 of 2 runs were taken from stored results", "ours alone");
 }
 
 #[test]
@@ -423,7 +427,7 @@ fn a_problem_is_written_for_others() {
         serde_json::from_slice(&std::fs::read(dir.path().join("pressed/tools.json")).unwrap()).unwrap();
     assert_eq!((&tools[1]["name"], &tools[1]["drive"]["closure"]), (&"base".into(), &1e-3.into()));
     let called = tissuebench(&dir, &["adapter", "run", "tissuebench", "pressed", "answer"]);
-    assert_fails(&called, 3, "not-offered: tissuebench does not take rigid tools (tools.json)");
+    assert_fails(&called, 3, "not-offered: tissuebench does not support rigid tools (tools.json)");
     let swings =
         ["load", "reference", "output"].iter().fold(BLOCK.replace("OTHERS", ""), |s, key| without(&s, key));
     let swings = swings.replace("size = {", "mass = \"consistent\", size = {")

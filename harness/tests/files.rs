@@ -57,7 +57,7 @@ fn a_baseline_that_is_not_there_is_bad_input() {
     assert_eq!(tissuebench(&["run", &scene, "--out", &out]).code, 0);
     let file = inside(&dir, "accepted.toml");
     let done = tissuebench(&["baseline", &out, "--file", &file, "--check"]);
-    assert_fails(&done, 2, "accepted.toml does not exist; `--accept` makes it");
+    assert_fails(&done, 2, "accepted.toml does not exist; `--accept` creates it");
     assert_eq!(tissuebench(&["baseline", &out, "--file", &file, "--accept"]).code, 0);
     assert_eq!(tissuebench(&["baseline", &out, "--file", &file, "--check"]).code, 0);
 }
@@ -79,8 +79,8 @@ fn a_mesh_file_is_described_in_its_own_unit() {
             "  regions     body: 2 cells, 16.000 cm^3",
             "  surfaces    none (select with where)",
             "  extent      x = 0 to 40.000, y = 0 to 40.000, z = 0 to 20.000 mm",
-            "  unit        mm: 40.000 mm long, as long as organs are",
-            "  volume      16.000 cm^3; of a cell 5.333 to 10.667 cm^3",
+            "  unit        mm: 40.000 mm long, a plausible length for an organ",
+            "  volume      16.000 cm^3; cells of 5.333 to 10.667 cm^3",
             "  angles      35.3 to 109.5 degrees between two faces of a cell",
             "  aspect             1     1.5       2       3       5      10  and more (a regular cell has 1)",
             "                     1       1       0       0       0       0",
@@ -134,6 +134,10 @@ fn a_version_of_gmsh_is_chosen_for_its_files_alone() {
     }
     let convert =
         |to: &str, version: &str| tissuebench(&["mesh", "convert", &from, to, "--version", version]);
-    assert_fails(&convert(&vtu, "4.1"), 2, "new.vtu: --version is of Gmsh's format; write a .msh file");
+    assert_fails(
+        &convert(&vtu, "4.1"),
+        2,
+        "new.vtu: --version applies to Gmsh's format only; write a .msh file",
+    );
     assert_fails(&convert(&to, "3.0"), 2, "versions 2.2 and 4.1 are written");
 }

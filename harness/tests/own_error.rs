@@ -145,8 +145,8 @@ fn a_reference_on_cells_of_a_file_is_held_against_second_order_on_them() {
         runs[1]
     );
     let unknown = &objects(&dir, &column(&dir, "hex20", ""))[0]["reference"];
-    let why = "its mesh is the file column.msh, which has no coarser one, and no method here is of higher order: solve it \
-               on a finer mesh, too";
+    let why = "its mesh is the file column.msh, no coarser mesh is known, and no method here is of higher order: also solve \
+               on a finer mesh";
     assert_eq!(unknown["unknown"], why, "{unknown}");
     assert!(unknown["band"].as_object().unwrap().is_empty(), "{unknown}");
 }
@@ -154,7 +154,7 @@ fn a_reference_on_cells_of_a_file_is_held_against_second_order_on_them() {
 /// A bound below the reference's own error passes and proves nothing, in one run and in a study.
 #[test]
 fn a_bound_below_the_own_error_of_the_reference_is_told() {
-    const TOLD: &str = "the bound is below the own error of the reference";
+    const TOLD: &str = "the bound is below the reference's own error";
     let dir = tempfile::tempdir().unwrap();
     let check = |most: f64| {
         let check = format!("[[check]]\nmethod = \"hex8\"\nmetric = \"relative-rms\"\nat_most = {most}\n");

@@ -131,7 +131,10 @@ fn a_right_force_alone_is_no_answer() {
     let found = answer(&dir, &text, &asked, 1);
     assert!(found["cheapest"].is_null(), "{found}");
     let sentence = found["sentence"].as_str().unwrap();
-    assert!(sentence.contains("has force right") && sentence.contains("but not the rest"), "{sentence}");
+    assert!(
+        sentence.contains("meets the bound on force") && sentence.contains("but not the other bounds"),
+        "{sentence}"
+    );
 }
 
 /// A nearly incompressible block whose reference has first-order tetrahedra, which lock.
@@ -151,7 +154,9 @@ fn no_method_is_named_within_less_than_the_error_of_the_reference() {
     assert!(own > 0.4, "{found}");
     let sentence = found["sentence"].as_str().unwrap();
     assert!(
-        sentence.starts_with("No method can be named within 15 % of displacement: the reference's own error"),
+        sentence.starts_with(
+            "No method can be shown to be within 15 % of displacement: the reference's own error"
+        ),
         "{sentence}"
     );
     let table = tissuebench(&["pick", &inside(&dir, "scene.toml"), "--error", "300%", "--method", "tet4"]);
@@ -175,7 +180,10 @@ reference = { exact = "affine" }
     let scene = write(&dir, "scene.toml", text);
     let done = tissuebench(&["pick", &scene, "--error", "1%"]);
     assert_eq!(done.code, 0, "{}", done.stderr);
-    assert!(done.stderr.contains("usual methods that fit: tet4, tet4-nodal, tet10, hex8-mean, hex20, efg"));
+    assert!(
+        done.stderr
+            .contains("usual methods that suit the scene: tet4, tet4-nodal, tet10, hex8-mean, hex20, efg")
+    );
     // The first size of each method is exact to rounding: each method runs once, unless a cheaper method was
     // right before.
     assert!(done.stdout.lines().filter(|line| line.starts_with("tet4 ")).count() == 1, "{}", done.stdout);
@@ -202,14 +210,10 @@ fn what_is_asked_wrongly_is_refused() {
     refused(
         &block(),
         &["--error", "3%", "--quantity", "forse"],
-        "--quantity 'forse' is no quantity with a relative error: did you mean 'force'?",
+        "--quantity 'forse' is not a quantity with a relative error: did you mean 'force'?",
     );
     refused(&block(), &["--error", "3%", "--also", "force"], "is not QUANTITY=PERCENT");
     refused(&block(), &["--error", "3%", "--method", "tet5"], "no method 'tet5'; it has tet4, hex20");
-    refused(
-        &block(),
-        &["--error", "3%", "--quantity", "force"],
-        "no error of the force is known of a run of this scene",
-    );
+    refused(&block(), &["--error", "3%", "--quantity", "force"], "runs of this scene have no error of force");
     refused("title = \"nothing\"\n", &["--error", "3%"], "body");
 }

@@ -167,7 +167,7 @@ fn a_swing_has_its_largest_displacement_in_its_middle() {
             ),
         ]);
         assert!(
-            table.stdout.contains("largest in time [mm]") && table.stdout.contains("end z [mm]"),
+            table.stdout.contains("largest over time [mm]") && table.stdout.contains("end z [mm]"),
             "{}",
             table.stdout
         );

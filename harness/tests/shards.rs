@@ -84,12 +84,12 @@ fn shares_are_joined_to_the_results_of_one_run() {
     let [one, two, three] = [&shares[0][..], &shares[1], &shares[2]];
     // Without one of the shares, the result is incomplete and names the missing runs.
     let part = merge(&[one, three]);
-    assert_fails(&part, 5, "runs are in no share");
+    assert_fails(&part, 5, "runs are missing from the shares");
     assert!(part.stderr.contains("missing: "), "{}", part.stderr);
     assert_fails(&tissuebench(&["report", &out]), 5, "is incomplete");
     let done = merge(&[three, one, two]);
     assert_eq!(done.code, 0, "{}", done.stderr);
-    assert!(done.stderr.contains("times are of 2 kinds of machines"), "{}", done.stderr);
+    assert!(done.stderr.contains("the times come from 2 kinds of machines"), "{}", done.stderr);
     assert!(exact(&results(&out)) == exact(&whole));
     // The merged runs are stored like those of a single run.
     assert_eq!(tissuebench(&["verify", &study, "--resume", "--out", &out]).code, 0);
@@ -126,13 +126,9 @@ fn what_is_no_share_is_not_joined() {
         out
     };
     let (tet, hex) = (share("tet", &["--filter", "tet10"]), share("hex", &["--filter", "hex8"]));
-    assert_fails(
-        &tissuebench(&["merge", &out, &tet, &hex]),
-        2,
-        "are shares of different studies or selections",
-    );
+    assert_fails(&tissuebench(&["merge", &out, &tet, &hex]), 2, "belong to different studies or selections");
     let nothing = inside(&dir, "nothing");
-    assert_fails(&tissuebench(&["merge", &out, &tet, &nothing]), 2, "give folders that");
+    assert_fails(&tissuebench(&["merge", &out, &tet, &nothing]), 2, "give folders written by");
     assert!(!Path::new(&out).exists());
 }
 

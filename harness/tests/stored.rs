@@ -147,7 +147,7 @@ fn parts_made_one_by_one_join_to_the_same_reference() {
     assert_eq!(tissuebench(&[&join[..], &["--out", &joined]].concat()).code, 0);
     assert_eq!(std::fs::read_to_string(&joined).unwrap(), whole);
     // A solution cannot be compared with itself.
-    assert_fails(&make(&["hex8"], &joined, &[&part]), 2, "part.json: 'hex8' is there already");
+    assert_fails(&make(&["hex8"], &joined, &[&part]), 2, "part.json: 'hex8' is already stored");
     assert_eq!(std::fs::read_to_string(&joined).unwrap(), whole);
     // The file is refused before anything is solved, and nothing is written.
     let refused = inside(&dir, "refused.json");
@@ -162,9 +162,9 @@ fn parts_made_one_by_one_join_to_the_same_reference() {
     };
     change("steps = 2", "steps = 4");
     fails("hex20-mixed", "part.json: hex8 on ");
-    fails("hex20-mixed", " nodes is of another scene, or another text of it");
+    fails("hex20-mixed", " nodes belongs to another scene, or to another text of the scene");
     change("element = \"hex8\"", "element = \"hex8\", dilation = \"element-mean\"");
-    fails("hex20-mixed", " nodes is not by the scene's 'hex8', but by\n");
+    fails("hex20-mixed", " nodes was not computed by the scene's 'hex8', but by\n");
     // Titles and other methods do not belong to the solved problem.
     write(
         &dir,
@@ -176,7 +176,7 @@ fn parts_made_one_by_one_join_to_the_same_reference() {
     assert_eq!(std::fs::read_to_string(&joined).unwrap(), whole);
     write(&dir, "made.toml", &three);
     write(&dir, "part.json", &alone.replace("\"points\":[[0.005,", "\"points\":[[0.006,"));
-    fails("hex20-mixed", " nodes is of other points");
+    fails("hex20-mixed", " nodes has other points");
     write(&dir, "part.json", "{}");
     fails("hex20-mixed", "part.json: is no reference");
 }
@@ -215,7 +215,7 @@ fn bad_records_are_named() {
     };
     fails("'r.json' can't be read: there is no file ");
     write(&dir, "r.json", "{}");
-    fails("'r.json' is no reference: missing field");
+    fails("'r.json' is not a reference: missing field");
     write(&dir, "r.json", &good.replace("\"probes\":[[0.02,", "\"probes\":[[0.03,"));
     fails("'r.json' was made for other probes");
 }

@@ -61,7 +61,7 @@ fn a_surface_is_filled_and_described() {
     assert!(says.iter().all(|says| surface.stdout.contains(says)), "{}", surface.stdout);
     let metres = tissuebench(&["mesh", "info", "--unit", "m", &from]);
     assert!(
-        metres.stdout.contains("40.000 m long: is the file in mm? Then give --unit mm"),
+        metres.stdout.contains("40.000 m long: if the file is in mm, give --unit mm"),
         "{}",
         metres.stdout
     );
@@ -84,7 +84,7 @@ fn more_nodes_wanted_of_a_thin_plate_are_never_fewer_made() {
     let counts = ["100", "400", "800", "1600", "3000"].map(|nodes| {
         let done = tissuebench(&["mesh", "make", &from, "--nodes", nodes, "--uniform", "--out", &to]);
         let count: usize = done.stdout.split(' ').nth(1).unwrap().parse().unwrap();
-        let says = done.stdout.contains(&format!("wanted      {nodes} nodes; of the sizes of cells"));
+        let says = done.stdout.contains(&format!("wanted      {nodes} nodes; no tried cell size"));
         assert_eq!(says, (count as f64 / nodes.parse::<f64>().unwrap() - 1.0).abs() > 0.1, "{}", done.stdout);
         count
     });

@@ -173,7 +173,8 @@ fn two_workers_make_each_run_once() {
     let made = workers.map(|worker| {
         let (code, said) = end(worker);
         assert_eq!(code, Some(0), "{said}");
-        let stored = said.lines().find_map(|line| line.strip_suffix(" of 40 runs were stored"));
+        let stored =
+            said.lines().find_map(|line| line.strip_suffix(" of 40 runs were taken from stored results"));
         40 - stored.map_or(0, |count| count.parse::<usize>().unwrap())
     });
     assert_eq!(made[0] + made[1], 40, "{made:?}");
@@ -233,7 +234,7 @@ fn an_interrupt_ends_with_a_word_and_keeps_what_is_finished() {
         assert!(Command::new("kill").args(["-INT", &id]).status().unwrap().success());
         let (code, said) = end(child);
         assert_eq!(code, Some(5), "{said}");
-        assert!(said.contains("interrupted; ") && said.contains("--resume goes on"), "{said}");
+        assert!(said.contains("interrupted; ") && said.contains("the same command and --resume"), "{said}");
         wait_until(|| processes_of(&dir).is_empty());
     }
     assert_fails(&tissuebench(&["report", &out]), 5, "is incomplete");

@@ -340,7 +340,7 @@ fn touching_pieces_without_common_nodes_are_told_and_joined() {
     let moved = pushed[0]["metrics"]["max-x"]["value"].as_f64().unwrap();
     assert!((moved - 100.0 * 10e-3 / 40e3).abs() < 1e-9, "{moved}");
     let info = tissuebench(&["mesh", "info", &file, "--unit", "mm"]);
-    assert!(info.stdout.contains("2 pieces without a node in common, 1 faces coincide"), "{}", info.stdout);
+    assert!(info.stdout.contains("2 pieces that share no node, 1 coincident faces"), "{}", info.stdout);
     let out = inside(&dir, "joined.msh");
     let done = tissuebench(&["mesh", "convert", &file, &out, "--join"]);
     assert!(
@@ -353,7 +353,7 @@ fn touching_pieces_without_common_nodes_are_told_and_joined() {
     assert_fails(
         &tissuebench(&["mesh", "convert", &out, &inside(&dir, "b.msh"), "--join"]),
         2,
-        "finds no faces",
+        "found no coincident faces",
     );
 }
 

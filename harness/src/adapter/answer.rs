@@ -57,7 +57,7 @@ impl Answer {
     /// `id`.
     pub(super) fn objection(&self, id: &str) -> Result<Option<Foreign>, String> {
         if let Some(other) = self.problem.as_ref().filter(|other| *other != id) {
-            let reason = format!("the answer is of another problem ({other}, not {id})");
+            let reason = format!("the answer belongs to another problem ({other}, not {id})");
             return Ok(Some(Foreign::new(ForeignStatus::Stale, reason)));
         }
         let status = match self.status.as_str() {

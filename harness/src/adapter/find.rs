@@ -96,7 +96,7 @@ impl Found {
         let Some(folder) = &self.folder else { return };
         let whole = std::path::absolute(folder).unwrap_or_else(|_| folder.clone());
         if SAID.lock().is_ok_and(|mut said| said.insert(whole.clone())) {
-            eprintln!("adapter '{}' is that of {}", self.manifest.name, whole.display());
+            eprintln!("using adapter '{}' from {}", self.manifest.name, whole.display());
         }
     }
 
@@ -159,7 +159,7 @@ pub(crate) fn find(name: &str, scene: Option<&Path>) -> Result<Found, Failure> {
     let names: Vec<&str> = found.iter().map(|found| found.manifest.name.as_str()).collect();
     let near = nearest(name, names.iter().copied());
     let near = near.map_or(String::new(), |near| format!("; did you mean '{near}'?"));
-    let help = format!("there are {}{near}; --adapters DIR names further folders", names.join(", "));
+    let help = format!("known adapters are {}{near}; --adapters DIR adds a folder", names.join(", "));
     Err(Failure::Input(format!("no adapter '{name}': {help}")))
 }
 

@@ -91,7 +91,7 @@ impl Manifest {
         let plain = |c: char| c.is_ascii_alphanumeric() || "-_".contains(c);
         if self.name.is_empty() || self.name.len() > LONGEST_NAME || !self.name.chars().all(plain) {
             let help = format!("use up to {LONGEST_NAME} letters, digits, '-' and '_'");
-            return Err(format!("name '{}' is no name; {help}", self.name));
+            return Err(format!("name '{}' is not valid; {help}", self.name));
         }
         if self.run.is_empty() {
             return Err("run is empty; give a program with its arguments".into());
@@ -104,12 +104,12 @@ impl Manifest {
             ("reads", &self.reads, &READS),
         ] {
             if let Some(word) = given.iter().find(|word| !known.contains(&word.as_str())) {
-                return Err(format!("{key} names '{word}', which is not known; {}", suggest(word, known)));
+                return Err(format!("{key}: '{word}' is not known; {}", suggest(word, known)));
             }
         }
         match (1..=ALL_DIGITS).contains(&self.digits) {
             true => Ok(()),
-            false => Err(format!("digits = {} is no number of digits; give 1 to {ALL_DIGITS}", self.digits)),
+            false => Err(format!("digits = {} is out of range; give 1 to {ALL_DIGITS}", self.digits)),
         }
     }
 
@@ -117,10 +117,10 @@ impl Manifest {
     /// each with its description); `None` if it can.
     pub(crate) fn refusal(&self, element: &str, asked: &[(&str, String)]) -> Option<String> {
         if !self.elements.iter().any(|known| known == element) {
-            return Some(format!("has no {element}, only {}", self.elements.join(", ")));
+            return Some(format!("does not support element {element}, only {}", self.elements.join(", ")));
         }
         let missing = asked.iter().find(|(word, _)| !self.can.iter().any(|known| known == word));
-        missing.map(|(_, what)| format!("does not take {what}"))
+        missing.map(|(_, what)| format!("does not support {what}"))
     }
 }
 
@@ -158,7 +158,10 @@ mod tests {
         let sound = parse(SOUND).unwrap();
         let asked = [("linear", "the linear law".to_string()), ("tools", "rigid tools".to_string())];
         assert_eq!(sound.refusal("tet4", &asked[..1]), None);
-        assert_eq!(sound.refusal("tet4", &asked).as_deref(), Some("does not take rigid tools"));
-        assert_eq!(sound.refusal("hex8", &asked).as_deref(), Some("has no hex8, only tet4"));
+        assert_eq!(sound.refusal("tet4", &asked).as_deref(), Some("does not support rigid tools"));
+        assert_eq!(
+            sound.refusal("hex8", &asked).as_deref(),
+            Some("does not support element hex8, only tet4")
+        );
     }
 }

@@ -61,21 +61,25 @@ pub(crate) struct Array {
 pub(crate) fn read(path: &Path, kind: disk::Kind) -> Result<Array, String> {
     let bytes = disk::read(path, kind).map_err(|bad| format!("can't be read: {bad}"))?;
     let (head, data) = parts(&bytes)?;
-    let kind = after(head, "'descr':").ok_or("its head has no 'descr'")?;
+    let kind = after(head, "'descr':").ok_or("its header has no 'descr'")?;
     let kind = kind.trim_start().trim_start_matches('\'').split('\'').next().unwrap_or_default();
-    let shape = after(head, "'shape':").and_then(shape).ok_or("its head has no 'shape'")?;
+    let shape = after(head, "'shape':").and_then(shape).ok_or("its header has no 'shape'")?;
     let of_columns =
         after(head, "'fortran_order':").is_some_and(|text| text.trim_start().starts_with("True"));
     let size = match kind {
         "<f8" | "<i8" => 8,
         "<f4" | "<i4" => 4,
-        _ => return Err(format!("has numbers of kind '{kind}'; '<f8', '<f4', '<i8' and '<i4' are read")),
+        _ => {
+            return Err(format!(
+                "has numbers of type '{kind}'; supported types are '<f8', '<f4', '<i8' and '<i4'"
+            ));
+        }
     };
     let count = shape.iter().try_fold(1usize, |product, n| product.checked_mul(*n));
     let wanted = count.and_then(|count| count.checked_mul(size));
     if wanted != Some(data.len()) {
         return Err(format!(
-            "its head says {shape:?} numbers of {size} bytes, behind it are {} bytes",
+            "its header gives the shape {shape:?} with {size} bytes per number, but {} bytes follow",
             data.len()
         ));
     }
@@ -93,17 +97,17 @@ pub(crate) fn read(path: &Path, kind: disk::Kind) -> Result<Array, String> {
 
 /// Splits a file into its header and its data.
 fn parts(bytes: &[u8]) -> Result<(&str, &[u8]), String> {
-    let rest = bytes.strip_prefix(MAGIC).ok_or("is no .npy file")?;
+    let rest = bytes.strip_prefix(MAGIC).ok_or("is not a .npy file")?;
     let (length, rest) = match rest {
         [1, _, a, b, rest @ ..] => (u16::from_le_bytes([*a, *b]) as usize, rest),
         [2 | 3, _, a, b, c, d, rest @ ..] => (u32::from_le_bytes([*a, *b, *c, *d]) as usize, rest),
         _ => return Err("is a .npy file of an unknown version".into()),
     };
     if length > LONGEST_HEAD || length > rest.len() {
-        return Err(format!("ends within its head of {length} bytes"));
+        return Err(format!("ends within its header of {length} bytes"));
     }
     let (head, data) = rest.split_at(length);
-    Ok((std::str::from_utf8(head).map_err(|_| "its head is no text")?, data))
+    Ok((std::str::from_utf8(head).map_err(|_| "its header is not text")?, data))
 }
 
 fn after<'a>(head: &'a str, key: &str) -> Option<&'a str> {
@@ -193,7 +197,8 @@ mod tests {
         says("{'descr': '<f8', 'fortran_order': False }", &[0; 8], "no 'shape'");
         let dir = tempfile::tempdir().unwrap();
         let path = dir.path().join("a.npy");
-        for (bytes, says) in [(&b"garbage"[..], "is no .npy"), (b"\x93NUMPY\x01\x00\xff\x00{", "ends within")]
+        for (bytes, says) in
+            [(&b"garbage"[..], "is not a .npy"), (b"\x93NUMPY\x01\x00\xff\x00{", "ends within")]
         {
             std::fs::write(&path, bytes).unwrap();
             assert!(read(&path, disk::Kind::ARRAY).unwrap_err().contains(says));

@@ -91,7 +91,7 @@ fn read(question: &Question, call: Call) -> Result<Answered, Foreign> {
         return Err(objection.clone());
     }
     if !status.success() {
-        return Err(failed(format!("says ok, but ended with {status}{}", said(&call))));
+        return Err(failed(format!("reported ok, but ended with {status}{}", said(&call))));
     }
     let fields = displacement(folder, question.nodes, question.steps).map_err(failed)?;
     Ok(Answered { call, answer, fields, stalled: objection })

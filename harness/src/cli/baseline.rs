@@ -28,7 +28,7 @@ pub fn baseline(args: &BaselineArgs) -> Result<u8, ReportError> {
         "{}: {} numbers compared, {}; {} differences",
         args.file.display(),
         found.compared,
-        if found.bitwise { "bit by bit" } else { "within 1e-6, as the processor is another" },
+        if found.bitwise { "bit by bit" } else { "within 1e-6, because the kind of processor differs" },
         found.changes.len()
     );
     let chosen = choose(&found, args);
@@ -36,7 +36,7 @@ pub fn baseline(args: &BaselineArgs) -> Result<u8, ReportError> {
     if !chosen.is_empty() {
         if !found.bitwise && (left > 0 || args.part) {
             eprintln!(
-                "tissuebench: {} is of another kind of processor ({}): accept all of its numbers or none",
+                "tissuebench: {} comes from another kind of processor ({}): accept all differences or none",
                 args.file.display(),
                 accepted.processor
             );
@@ -44,7 +44,7 @@ pub fn baseline(args: &BaselineArgs) -> Result<u8, ReportError> {
         }
         chosen.iter().for_each(|change| accepted.accept(change, &now));
         if found.bitwise { &accepted } else { &now }.save(&args.file)?;
-        println!("accepted {}, left {left}", chosen.len());
+        println!("accepted {}, not accepted {left}", chosen.len());
     }
     Ok(u8::from(left > 0))
 }
@@ -52,7 +52,7 @@ pub fn baseline(args: &BaselineArgs) -> Result<u8, ReportError> {
 /// Writes the file of accepted results if all of them are accepted.
 fn first(args: &BaselineArgs, now: &Baseline) -> Result<u8, ReportError> {
     if args.accept.as_deref() != Some("") {
-        eprintln!("tissuebench: {} does not exist; `--accept` makes it", args.file.display());
+        eprintln!("tissuebench: {} does not exist; `--accept` creates it", args.file.display());
         return Ok(2);
     }
     now.save(&args.file)?;

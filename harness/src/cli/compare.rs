@@ -49,12 +49,15 @@ fn read(args: &CompareArgs) -> Result<Vec<(RunSet, RunSet)>, String> {
     if args.results.len() % 2 == 1 {
         let last = args.results.last().map_or(Path::new(""), |path| path.as_path());
         return Err(format!(
-            "{}: has no results to be compared with; give before and after in turn",
+            "{}: has no counterpart; give pairs of results, before and after in turn",
             last.display()
         ));
     }
     if !(args.tolerance >= 0.0 && args.tolerance < 1.0) {
-        return Err(format!("--tolerance {}: is no relative difference; give 0 to below 1", args.tolerance));
+        return Err(format!(
+            "--tolerance {}: is not a relative difference; give a number from 0 to below 1",
+            args.tolerance
+        ));
     }
     let one = |path: &Path| records::read_numbers(path, "compare").map_err(|bad| bad.to_string());
     let mut pairs: Vec<(RunSet, RunSet)> = args
@@ -67,8 +70,8 @@ fn read(args: &CompareArgs) -> Result<Vec<(RunSet, RunSet)>, String> {
         if a != b && !args.across.iter().any(|setting| setting == "case") {
             let [first, second] = [&two[0], &two[1]].map(|path| path.display());
             return Err(format!(
-                "{first} holds the results of {a}, {second} those of {b}; compare those of one study, or those of two scenes by \
-                 --across case"
+                "{first} holds the results of {a}, and {second} holds the results of {b}; compare results of one \
+                 study, or results of two scenes with --across case"
             ));
         }
     }
@@ -123,7 +126,7 @@ fn times(found: &Times) {
     shown(&singles, |ratio| row(ratio));
     if whole.called && found.pairs == 1 {
         println!(
-            "  one pair can't tell a slower program from a slower machine for certain; compare several pairs, run in turn"
+            "  one pair cannot distinguish a slower program from a slower machine; compare several pairs, run in turn"
         );
     }
 }

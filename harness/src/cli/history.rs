@@ -64,7 +64,7 @@ fn show(args: &ShowArgs) -> Result<u8, ReportError> {
     if found.is_empty() {
         let history = args.history.display();
         eprintln!(
-            "tissuebench: {history} holds no history; tissuebench history add RESULTS --to {history} begins one"
+            "tissuebench: {history} holds no history; tissuebench history add RESULTS --to {history} starts one"
         );
         return Ok(2);
     }
@@ -117,7 +117,7 @@ fn row(point: &Point, longest: usize) -> String {
 fn step(step: &Step) {
     let Step { worse, better, lost, new, called, .. } = step;
     if lost + new > 0 {
-        println!("        {}  {lost} runs are no more, {new} are new", colour::out(DOUBTFUL, "runs  "));
+        println!("        {}  {lost} runs no longer exist, {new} are new", colour::out(DOUBTFUL, "runs  "));
     }
     for (list, style, word) in [(worse, BAD, "worse "), (better, GOOD, "better")] {
         some(list, |e| println!("        {}  {e}", colour::out(style, word)));

@@ -24,7 +24,7 @@ pub(super) fn install() {
         std::process::exit(5);
     };
     if let Err(bad) = ctrlc::set_handler(handler) {
-        eprintln!("tissuebench: an interrupt will end the program at once: {bad}");
+        eprintln!("tissuebench: an interrupt will end the program without cleaning up: {bad}");
     }
 }
 
@@ -41,7 +41,7 @@ pub(super) fn resumable(out: PathBuf) -> impl FnMut() + Send + 'static {
         // Otherwise killed runs in other processes would be recorded as failed.
         group::end_all();
         eprintln!(
-            "tissuebench: interrupted; {} is incomplete and keeps the finished runs: the same command with --resume goes on",
+            "tissuebench: interrupted; {} is incomplete and keeps the finished runs: continue with the same command and --resume",
             out.display()
         );
     }

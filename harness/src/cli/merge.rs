@@ -22,14 +22,15 @@ pub(super) fn merge(args: &MergeArgs) -> u8 {
         Err(failure) => return fail(&failure),
     };
     if merged.machines > 1 {
-        eprintln!("times are of {} kinds of machines", merged.machines);
+        eprintln!("the times come from {} kinds of machines", merged.machines);
     }
     if !merged.missing.is_empty() {
         for run in &merged.missing {
             eprintln!("missing: {run}");
         }
         eprintln!(
-            "tissuebench: {} of {} runs are in no share; {} is incomplete: tissuebench verify {} --resume --out {} makes them",
+            "tissuebench: {} of {} runs are missing from the shares; {} is incomplete: tissuebench verify {} --resume \
+             --out {} executes the missing runs",
             merged.missing.len(),
             plan.len(),
             args.out.display(),

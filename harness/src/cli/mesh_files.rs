@@ -58,7 +58,7 @@ fn joined(mesh: Mesh, from: &Path) -> Result<(Mesh, String), Failure> {
     let count = pieces::count(&mesh);
     let Some((mesh, faces)) = pieces::join(&mesh) else {
         let problem =
-            format!("{}: --join finds no faces of two pieces that coincide ({count} pieces)", from.display());
+            format!("{}: --join found no coincident faces of two pieces ({count} pieces)", from.display());
         return Err(input(problem));
     };
     Ok((mesh, format!("; {count} pieces joined at {faces} faces")))
@@ -74,9 +74,10 @@ fn format(to: &Path, version: Option<GmshVersion>) -> Result<Format, Failure> {
     match (Format::of(to).map_err(input)?, version) {
         (Format::Gmsh(_), Some(version)) => Ok(Format::Gmsh(version)),
         (format, None) => Ok(format),
-        (_, Some(_)) => {
-            Err(input(format!("{}: --version is of Gmsh's format; write a .msh file", to.display())))
-        }
+        (_, Some(_)) => Err(input(format!(
+            "{}: --version applies to Gmsh's format only; write a .msh file",
+            to.display()
+        ))),
     }
 }
 
@@ -86,11 +87,11 @@ pub(super) fn input(error: impl std::fmt::Display) -> Failure {
 
 fn into(mesh: Mesh, name: &str) -> Result<Mesh, Failure> {
     let Some(kind) = CellKind::ALL.into_iter().find(|kind| kind.name() == name) else {
-        let problem = format!("no element '{name}'; there are tet4, tet10, hex8 and hex20");
+        let problem = format!("no element '{name}'; give tet4, tet10, hex8 or hex20");
         return Err(Failure::Input(problem));
     };
     let from = mesh.uniform_kind().map_or("mixed", CellKind::name);
-    converted(mesh, kind).ok_or_else(|| Failure::Input(format!("{from} cells do not convert to {name}")))
+    converted(mesh, kind).ok_or_else(|| Failure::Input(format!("{from} cells can't be converted to {name}")))
 }
 
 pub(super) fn row(name: &str, value: &str) {

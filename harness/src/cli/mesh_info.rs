@@ -69,7 +69,7 @@ fn of_surface(file: &Path, surface: &Surface, unit: LengthUnit, format: Format) 
     row("unit", &of_unit((high - low).amax(), unit));
     row("area", &format!("{} cm^2", digits(surface.area() / CENTIMETRE.powi(2))));
     row("volume", &format!("{} cm^3", digits(surface.volume() / CENTIMETRE.powi(3))));
-    row("next", "tissuebench mesh make fills it with tetrahedra");
+    row("next", "tissuebench mesh make fills the surface with tetrahedra");
     Ok(())
 }
 
@@ -135,7 +135,7 @@ impl Found<'_> {
     fn apart(&self) -> Option<String> {
         let [count, faces] = self.pieces;
         let join = if faces > 0 { " (join = true in a scene's body, or mesh convert --join)" } else { "" };
-        (count > 1).then(|| format!("{count} pieces without a node in common, {faces} faces coincide{join}"))
+        (count > 1).then(|| format!("{count} pieces that share no node, {faces} coincident faces{join}"))
     }
 
     /// Returns faces and area (m^2) of each named surface.
@@ -182,7 +182,7 @@ impl Found<'_> {
         let (least, most) = (volumes().fold(f64::MAX, f64::min), volumes().fold(f64::MIN, f64::max));
         row(
             "volume",
-            &format!("{} cm^3; of a cell {} to {} cm^3", cubed(self.volume()), cubed(least), cubed(most)),
+            &format!("{} cm^3; cells of {} to {} cm^3", cubed(self.volume()), cubed(least), cubed(most)),
         );
         let [sharp, blunt] = self.angles();
         row("angles", &format!("{sharp:.1} to {blunt:.1} degrees between two faces of a cell"));
@@ -272,8 +272,10 @@ pub(super) fn guess(longest: f64, unit: LengthUnit) -> Option<&'static str> {
 fn of_unit(longest: f64, unit: LengthUnit) -> String {
     let own = digits(longest / unit.metres);
     match guess(longest, unit) {
-        Some(name) if name == unit.name => format!("{name}: {own} {name} long, as long as organs are"),
-        Some(name) => format!("{own} {} long: is the file in {name}? Then give --unit {name}", unit.name),
+        Some(name) if name == unit.name => {
+            format!("{name}: {own} {name} long, a plausible length for an organ")
+        }
+        Some(name) => format!("{own} {} long: if the file is in {name}, give --unit {name}", unit.name),
         None => format!("{own} {} long; organs are 5 mm to 1 m", unit.name),
     }
 }

@@ -57,7 +57,10 @@ pub fn make(args: &MakeArgs) -> Result<(), Failure> {
     let (sharpest, bluntest) = (quality.min_dihedral.value, quality.max_dihedral.value);
     row("angles", &format!("{sharpest:.1} to {bluntest:.1} degrees between two faces of a cell"));
     if left_out > 0 {
-        row("left out", &format!("{left_out} parts thinner than the cells; make them smaller to have them"));
+        row(
+            "left out",
+            &format!("{left_out} parts thinner than the cells; smaller cells would include these parts"),
+        );
     }
     Ok(())
 }
@@ -65,10 +68,7 @@ pub fn make(args: &MakeArgs) -> Result<(), Failure> {
 /// Prints the requested number of nodes if the mesh differs from it.
 fn wanted(nodes: u32, made: usize) {
     if (made as f64 / f64::from(nodes) - 1.0).abs() > NEAR {
-        row(
-            "wanted",
-            &format!("{nodes} nodes; of the sizes of cells that are tried none makes a nearer number"),
-        );
+        row("wanted", &format!("{nodes} nodes; no tried cell size gives a closer number"));
     }
 }
 

@@ -205,7 +205,7 @@ fn refuse_scene(path: &Path, errors: &[SceneError]) -> u8 {
         eprintln!("{0}: is a study, not a scene: tissuebench verify {0} runs it", path.display());
     } else if files::is_surface(path) || files::is_mesh(path) {
         eprintln!(
-            "{0}: is a body, not a scene: tissuebench init --file {0} writes one of it",
+            "{0}: is a body, not a scene: tissuebench init --file {0} writes a scene for the body",
             path.display()
         );
     } else {
@@ -245,7 +245,7 @@ fn choose(scene: &Scene, args: &SceneArgs) -> Result<Vec<usize>, u8> {
             let near = nearest(id, known.iter().copied());
             let near = near.map_or(String::new(), |near| format!("; did you mean '{near}'?"));
             let file = args.file.display();
-            eprintln!("{file}: no method '{id}'; it has {}{near}", known.join(", "));
+            eprintln!("{file}: no method '{id}'; known methods are {}{near}", known.join(", "));
             return Err(2);
         }
     }

@@ -36,7 +36,10 @@ pub(super) fn reference(args: &ReferenceArgs) -> Result<(), u8> {
         let other = read(path)?;
         // A solution cannot confirm itself.
         if let Some(twice) = other.methods().find(|id| used.iter().any(|u| u == id)) {
-            let problem = format!("{}: '{twice}' is there already; name others by --method", path.display());
+            let problem = format!(
+                "{}: '{twice}' is already stored; select other methods with --method",
+                path.display()
+            );
             return Err(fail(&Failure::Input(problem)));
         }
         used.extend(other.methods().map(Into::into));

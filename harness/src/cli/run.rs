@@ -146,7 +146,9 @@ impl Made {
     }
 
     fn reference_stalled(&mut self, failure: &Failure, carried: Option<f64>) {
-        eprintln!("reference stalled: {failure} (every method is compared with the steps it reached)");
+        eprintln!(
+            "reference stalled: {failure} (every method is compared up to the last step of the reference)"
+        );
         let reason = format!("reference stalled: {failure}");
         let (case, method) = (self.case.clone(), "reference".into());
         let status = failure.status().into();
@@ -222,7 +224,7 @@ impl Made {
         if !self.outcomes.is_empty() {
             self.conclude();
         } else if let Some(out) = &self.args.out {
-            eprintln!("tissuebench: no method has ended; {} is incomplete", out.display());
+            eprintln!("tissuebench: no method has finished; {} is incomplete", out.display());
         }
     }
 

@@ -98,7 +98,7 @@ pub fn outcomes(outcomes: &[Outcome], by: Seconds) -> String {
         ("max-x", "max x [mm]", 1e3),
         ("max-y", "max y [mm]", 1e3),
         ("max-z", "max z [mm]", 1e3),
-        ("max-over-time", "largest in time [mm]", 1e3),
+        ("max-over-time", "largest over time [mm]", 1e3),
         ("time-of-max", "at [s]", 1.0),
         ("tip", "probe/exact", 1.0),
         ("history-error", "history [%]", 100.0),
@@ -107,7 +107,7 @@ pub fn outcomes(outcomes: &[Outcome], by: Seconds) -> String {
         ("load-carried", "load [%]", 100.0),
         ("tool-force", "force [N]", 1.0),
         ("tool-force-error", "force error [%]", 100.0),
-        ("smallest-j", "least J", 1.0),
+        ("smallest-j", "smallest J", 1.0),
         ("newton-iterations", "iterations", 1.0),
     ];
     let shown: Vec<_> = columns.iter().filter(|c| outcomes.iter().any(|o| o.metric(c.0).is_some())).collect();
@@ -180,7 +180,7 @@ pub fn places(outcomes: &[Outcome]) -> String {
             )
         })
     });
-    section(&mut text, &["modes of vibration", "mode", "[Hz]", "[rad/s]", "of exact"], modes.collect());
+    section(&mut text, &["modes of vibration", "mode", "[Hz]", "[rad/s]", "/ exact"], modes.collect());
     text
 }
 

@@ -38,13 +38,13 @@ pub(super) fn verify(args: &VerifyArgs, ci: &CiArgs) -> u8 {
     if let Some(times) = args.times.as_deref().filter(|times| !study::has_stored(times)) {
         let times = times.display();
         eprintln!(
-            "tissuebench: --times {times}: has no stored runs; give a folder of results that `tissuebench verify` wrote"
+            "tissuebench: --times {times}: has no stored runs; give a folder written by `tissuebench verify`"
         );
         return 2;
     }
     plan.select(args);
     if plan.is_empty() {
-        eprintln!("tissuebench: no run of {} fits; nothing ran", path.display());
+        eprintln!("tissuebench: no run of {} matches the selection; nothing ran", path.display());
         return 4;
     }
     if ci.list {
@@ -88,7 +88,7 @@ pub(super) fn verify(args: &VerifyArgs, ci: &CiArgs) -> u8 {
     let mut finished = plan.execute_watched(args, events.as_ref());
     finished.set.provenance.source = folder::source(&path);
     if finished.stored > 0 && !args.quiet {
-        eprintln!("{} of {} runs were stored", finished.stored, finished.ran);
+        eprintln!("{} of {} runs were taken from stored results", finished.stored, finished.ran);
     }
     let code = write(&finished, &folder, args);
     let code = ci::write(ci, &path, &finished.runs).map_or_else(
@@ -110,7 +110,7 @@ fn ended(events: Option<Events>, ci: &CiArgs, finished: &Finished, code: u8) -> 
     events.send(&Event::End { passed, failed, known, not_run, code });
     let Some(bad) = events.lost() else { return code };
     let file = ci.events.as_deref().unwrap_or(Path::new("-")).display();
-    eprintln!("tissuebench: --events {file}: {bad}; not all events are there");
+    eprintln!("tissuebench: --events {file}: {bad}; some events are missing");
     if code == 0 { 5 } else { code }
 }
 

@@ -36,11 +36,11 @@ pub(super) fn stages(asked: &Explicit) -> Stages {
     let duration = asked.ramp.duration;
     let steps = match asked.step {
         Some(step) => format!("{duration} s in steps of {step:e} s"),
-        None => format!("{duration} s in steps of {} of the critical one", asked.safety),
+        None => format!("{duration} s in steps of {} of the critical step", asked.safety),
     };
     Stages {
         mass: (true, "lumped".into()),
-        stiffness: (false, "explicit: forces alone".into()),
+        stiffness: (false, "explicit: only forces are evaluated".into()),
         time_steps: (true, steps),
         factorisation: (false, "explicit: the mass is diagonal".into()),
         newton: (false, "explicit".into()),
@@ -180,11 +180,12 @@ fn affordable(asked: &Explicit, dt: f64, critical: f64) -> Result<(), Failure> {
         return Ok(());
     }
     let problem = format!(
-        "takes {count:.2e} time steps of {dt:.2e} s; {MOST_STEPS:.0e} are made at most, and {critical:.2e} s is stable"
+        "needs {count:.2e} time steps of {dt:.2e} s; at most {MOST_STEPS:.0e} are supported, and the critical step is \
+         {critical:.2e} s"
     );
     let (key, help) = match asked.step {
-        Some(_) => ("step", "make it longer, or leave it out"),
-        None => ("duration", "make it shorter, the cells larger, or the tissue softer or heavier"),
+        Some(_) => ("step", "take a longer step, or leave the key out"),
+        None => ("duration", "take a shorter duration, larger cells, or a softer or denser tissue"),
     };
     Err(Failure::input(Key::Scene(format!("procedure.{key}")), problem, help))
 }

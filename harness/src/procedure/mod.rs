@@ -127,8 +127,8 @@ impl Stages {
 fn newton_reason(setup: &Setup, steps: usize, kind: &str) -> String {
     let steps = if steps == 1 { format!("1 {kind} step") } else { format!("{steps} {kind} steps") };
     match (setup.laws.iter().all(|law| law.is_small_strain()), setup.tools.is_empty()) {
-        (true, true) => format!("{steps}; law and loads are linear, so one each would do"),
-        (false, true) => format!("{steps} of a law of large strain"),
+        (true, true) => format!("{steps}; law and loads are linear, so one iteration per step would suffice"),
+        (false, true) => format!("{steps} with a law of large strain"),
         (_, false) => format!("{steps} with contact"),
     }
 }

@@ -23,14 +23,14 @@ pub(crate) struct Vibration {
 pub(super) fn stages(setup: &Setup) -> Stages {
     Stages {
         mass: (true, setup.mass.map_or("none given", scene::Mass::name).into()),
-        stiffness: (true, "of small vibrations".into()),
+        stiffness: (true, "small vibrations".into()),
         factorisation: (
             true,
             format!(
-                "one, dense for all modes up to {ALL_MODES_LIMIT} unknowns, sparse for the lowest by block Lanczos beyond"
+                "one: dense for all modes up to {ALL_MODES_LIMIT} unknowns, sparse with block Lanczos for the lowest modes beyond"
             ),
         ),
-        no_transfer: Some("modes are compared where they are integrated"),
+        no_transfer: Some("modes are compared at the integration points"),
         ..Stages::linear()
     }
 }
@@ -59,8 +59,8 @@ fn mass(problem: &Problem) -> Result<Mass, Failure> {
         lumped_mass(rows, &density, &volume.region, Lumping::for_table(rows))
     };
     let Some(kind) = setup.mass else {
-        let help = "mass = \"consistent\", \"lumped\" or \"transformed\"";
-        return Err(Failure::input(Key::Method("mass"), "is missing, and vibrations need one", help));
+        let help = "give mass = \"consistent\", \"lumped\" or \"transformed\"";
+        return Err(Failure::input(Key::Method("mass"), "is missing, but vibrations need a mass", help));
     };
     Ok(match (kind, method.interpolates) {
         // The quadrature of the forces may give a singular mass matrix: four points of a tet10 have rank 4.

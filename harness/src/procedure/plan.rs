@@ -58,7 +58,7 @@ pub(crate) fn conclude(plan: &mut Plan, solution: &Solution, counters: &Counters
     let forces = solution.forces;
     if solution.not_iterated {
         plan.explain(StageName::Factorisation, |why| {
-            format!("direct after all, not {why}: it did not converge")
+            format!("direct, because the intended solver did not converge ({why})")
         });
     }
     if let Some(forces) = forces {
@@ -73,7 +73,7 @@ pub(crate) fn conclude(plan: &mut Plan, solution: &Solution, counters: &Counters
         }
     }
     if plan.runs(StageName::Relaxation) && counters.relaxation_steps == 0 {
-        plan.skip(StageName::Relaxation, "Newton's method reached the whole load");
+        plan.skip(StageName::Relaxation, "Newton's method reached the full load");
     }
 }
 
@@ -81,17 +81,17 @@ fn refinement(method: &Discretisation) -> (bool, String) {
     match &method.refine {
         Some(refine) => {
             let times = if refine.steps == 1 { "once".into() } else { format!("{} times", refine.steps) };
-            (true, format!("{times} by the error of the gradients, each after a solution"))
+            (true, format!("{times} by the error of the gradients, after a solution each time"))
         }
-        None if method.supports.is_some() => (false, "the cloud stays as it is".into()),
-        None => (false, "the mesh stays as it is".into()),
+        None if method.supports.is_some() => (false, "no refinement of the cloud".into()),
+        None => (false, "no refinement of the mesh".into()),
     }
 }
 
 fn supports(method: &Discretisation) -> (bool, String) {
     match &method.supports {
         Some(how) => (true, how.clone()),
-        None => (false, "the elements' nodes are the neighbours".into()),
+        None => (false, "the nodes of an element are its neighbours".into()),
     }
 }
 
@@ -101,11 +101,11 @@ fn projection(method: &Discretisation, setup: &Setup) -> (bool, String) {
         Dilation::Standard if poisson < NEARLY_INCOMPRESSIBLE => {
             (false, format!("nu = {poisson} < {NEARLY_INCOMPRESSIBLE} does not lock"))
         }
-        Dilation::Standard => (false, "the method asks for none (dilation = \"standard\")".into()),
+        Dilation::Standard => (false, "none requested (dilation = \"standard\")".into()),
         Dilation::Element => (true, "one dilation per cell".into()),
         Dilation::Nodal => (true, "one dilation per node".into()),
-        Dilation::Near => (true, "one dilation per node, each point shared among four".into()),
-        Dilation::Mixed => (true, "a pressure field, linear between the corners".into()),
+        Dilation::Near => (true, "one dilation per node, with each point shared among four nodes".into()),
+        Dilation::Mixed => (true, "a pressure field, linear between corners".into()),
     }
 }
 
@@ -119,7 +119,7 @@ fn tensors(setup: &Setup) -> (bool, String) {
 fn elimination(method: &Discretisation, setup: &Setup) -> (bool, String) {
     let (eliminated, why) = match &method.essential {
         _ if setup.supports.is_empty() => (false, "no support in the scene"),
-        Essential::Nodal => (true, "the basis is Kronecker: nodal parameters are displacements"),
+        Essential::Nodal => (true, "Kronecker basis: nodal parameters are displacements"),
         Essential::Elimination(ConstraintRows::Means) => {
             (true, "mean displacements of nodal patches, by pivoted rows")
         }
@@ -160,7 +160,7 @@ fn friction(setup: &Setup) -> (bool, String) {
 
 fn transfer(method: &Discretisation, wanted: Wanted) -> (bool, String) {
     let (runs, why) = match (!method.interpolates, wanted.targets) {
-        (false, false) => (false, "a Kronecker basis: nodal values are displacements"),
+        (false, false) => (false, "Kronecker basis: nodal values are displacements"),
         (false, true) => (true, "evaluated with the elements' shape functions"),
         (true, true) => (true, "evaluated with the method's own shape functions"),
         (true, false) => (true, "to the nodes, with the method's own shape functions"),
@@ -171,9 +171,9 @@ fn transfer(method: &Discretisation, wanted: Wanted) -> (bool, String) {
 fn schemes(method: &Discretisation, wanted: Wanted) -> (bool, String) {
     let cloud = !method.interpolates;
     let why = match (wanted.schemes, cloud) {
-        (true, true) => "asked for, to compare them",
-        (true, false) => "the reference nodes are the elements' own",
-        (false, _) => "none asked for",
+        (true, true) => "requested, for a comparison",
+        (true, false) => "the reference nodes are nodes of the elements",
+        (false, _) => "none requested",
     };
     (wanted.schemes && cloud, why.into())
 }

@@ -35,7 +35,7 @@ pub(crate) fn refined(
         let solution = linear::solve(&problem, solver, &mut own)?;
         let error = gradient_error(&prepared.volume.rows, &solution.u, &refine.cloud.points);
         let none = |bad: CloudError| {
-            Failure::at(ErrorKind::NotRun, Key::Method("cloud"), format!("makes no cloud: {bad}"), "")
+            Failure::at(ErrorKind::NotRun, Key::Method("cloud"), format!("can't be refined: {bad}"), "")
         };
         let sizes = Sizes::new(&refine.cloud, &error, refine.ratio).map_err(|bad| none(bad.into()))?;
         let cloud = cloud_of_sizes(&*refine.shape, error.len(), refine.seed, &sizes).map_err(none)?;

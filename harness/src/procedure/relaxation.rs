@@ -62,13 +62,14 @@ pub(super) fn possible(method: &Discretisation) -> (bool, &'static str) {
     match method.dilation {
         _ if !method.interpolates => (
             false,
-            "not for clouds, whose path ends where it stalls: a support by penalty and lumped parameters have no usable step",
+            "not available for clouds: a support by penalty with lumped parameters has no usable time step; the load \
+             path ends if the solver stalls",
         ),
         Dilation::Mixed => (
             false,
-            "not with a pressure field, whose path ends where it stalls: its equations are not explicit",
+            "not available with a pressure field, whose equations are not explicit; the load path ends if the solver stalls",
         ),
-        _ => (true, "where Newton's method finds no equilibrium"),
+        _ => (true, "if Newton's method finds no equilibrium"),
     }
 }
 

@@ -39,7 +39,7 @@ pub(super) fn newton_params(newton: &Newton) -> NewtonParams {
 
 pub(super) fn stages(method: &Discretisation, setup: &Setup, asked: &Static) -> Stages {
     let (relaxes, why) = match asked.on_stall {
-        OnStall::Stop => (false, "a path that stalls ends there (on_stall = \"stop\")"),
+        OnStall::Stop => (false, "the load path ends if the solver stalls (on_stall = \"stop\")"),
         OnStall::Relax => relaxation::possible(method),
     };
     Stages {

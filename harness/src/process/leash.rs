@@ -33,7 +33,7 @@ pub struct LeashArgs {
 pub(crate) fn leash(args: &LeashArgs) -> u8 {
     #[cfg(target_os = "linux")]
     if let Err(bad) = members::adopt() {
-        eprintln!("tissuebench: what leaves its group is not ended with it: {bad}");
+        eprintln!("tissuebench: processes that leave the process group will not be ended: {bad}");
     }
     std::thread::spawn(|| {
         let mut pipe = [0; 64];

@@ -368,8 +368,8 @@ fn coarser(reference: &records::Reference, outcome: &Outcome) -> Option<Warning>
     let (own, known) = (outcome.size.nodes, reference.nodes);
     (known > 0 && own > known).then(|| {
         let message = format!(
-            "with {own} nodes it is finer than the reference, which is {}: that it differs by {:.1} % may be the error of the reference, which \
-             a finer one would show (reference.size)",
+            "with {own} nodes the run is finer than its reference, {}: the difference of {:.1} % may be the error of \
+             the reference; take a finer reference (reference.size)",
             reference.name(),
             100.0 * error
         );

@@ -64,10 +64,10 @@ impl Group<'_> {
         let (plan, _) = self.plan(scenario)?;
         let refused = |problem: &str| Err(scenario.locate(Failure::Run(problem.into())));
         if !matches!(setup.procedure, Procedure::Linear { .. } | Procedure::Static(_)) {
-            return refused("can't be posed to another solver: give kind = \"linear\" or \"static\"");
+            return refused("can't be passed to another solver: give kind = \"linear\" or \"static\"");
         }
         if plan.runs(StageName::Refinement) {
-            return refused("refines its cloud by its own solutions: pose one without refine");
+            return refused("refines its cloud with its own solutions: take a method without refine");
         }
         check_probes(method.mesh(), self.probes())?;
         let prepared = prepare(&method, &setup, &plan, &mut Counters::default());
@@ -183,7 +183,9 @@ impl Posed {
             1 => {}
             given if given == steps => {}
             given => {
-                return wrong(format!("{given} fields; give one, or one for each of {steps} load steps"));
+                return wrong(format!(
+                    "{given} displacement fields; give one field, or one for each of {steps} load steps"
+                ));
             }
         }
         for field in &found.fields {
@@ -212,7 +214,7 @@ impl Posed {
         for stage in
             [StageName::Stiffness, StageName::Factorisation, StageName::Newton, StageName::Relaxation]
         {
-            plan.skip(stage, &format!("{solver} solves it"));
+            plan.skip(stage, &format!("solved by {solver}"));
         }
         plan
     }

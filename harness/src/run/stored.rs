@@ -128,17 +128,19 @@ impl Stored {
         let Source { method, nodes, .. } = &self.source;
         let problem = Problem::of(text);
         if self.problem != problem.problem {
-            return Err(format!("{method} on {nodes} nodes is of another scene, or another text of it"));
+            return Err(format!(
+                "{method} on {nodes} nodes belongs to another scene, or to another text of the scene"
+            ));
         }
         for Source { method, nodes, table } in self.beside.iter().chain([&self.source]) {
             if problem.methods.get(method) != Some(table) {
                 return Err(format!(
-                    "{method} on {nodes} nodes is not by the scene's '{method}', but by\n{table}"
+                    "{method} on {nodes} nodes was not computed by the scene's '{method}', but by\n{table}"
                 ));
             }
         }
         let same = self.points.iter().copied().eq(points.iter().map(|x| <[f64; 3]>::from(x.coords)));
-        if same { Ok(()) } else { Err(format!("{method} on {nodes} nodes is of other points")) }
+        if same { Ok(()) } else { Err(format!("{method} on {nodes} nodes has other points")) }
     }
 
     /// Widens the bands to include those of another solution of the same scene at the same points.
@@ -183,7 +185,8 @@ impl Stored {
     /// # Errors
     /// Returns a message if the text is no reference, or if the numbers of points and displacements differ.
     pub fn parse(text: &str) -> Result<Stored, String> {
-        let stored: Stored = serde_json::from_str(text).map_err(|bad| format!("is no reference: {bad}"))?;
+        let stored: Stored =
+            serde_json::from_str(text).map_err(|bad| format!("is not a reference: {bad}"))?;
         let (points, values) = (stored.points.len(), stored.displacement.len());
         if points == values {
             Ok(stored)
@@ -200,7 +203,7 @@ impl Stored {
         let wrong = |problem: String, help: &str| {
             Failure::of_scene(scene, ErrorKind::Invalid, "reference.record", &problem, help)
         };
-        let remake = "make it with tissuebench reference SCENE";
+        let remake = "create the file with tissuebench reference SCENE";
         // The message contains the file's name as the value of the key.
         let stored = Stored::parsed(path).map_err(|problem| wrong(problem, remake))?;
         let probes = &scene.output.probes;
@@ -209,7 +212,7 @@ impl Stored {
         if stored.probes.len() != probes.len() || stored.probes.iter().zip(probes).any(far) {
             return Err(wrong(
                 "was made for other probes".into(),
-                "give output.probes as in the scene it was made from",
+                "give output.probes as in the scene of the reference",
             ));
         }
         Ok(stored)
@@ -254,8 +257,7 @@ impl Stored {
     fn own_error(&self) -> OwnError {
         let mut own = OwnError::default();
         if self.beside.is_empty() {
-            own.unknown =
-                format!("it is of {} alone, and no other solution is stored with it", self.source.method);
+            own.unknown = format!("only the solution by {} is stored", self.source.method);
             return own;
         }
         own.by = self.beside.iter().map(|s| format!("{} with {} nodes", s.method, s.nodes)).collect();

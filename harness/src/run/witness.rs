@@ -58,7 +58,7 @@ fn distances(
     let discretisation = scenario.discretise().map_err(failed)?;
     let nodes = discretisation.nodes().len();
     if nodes >= most && first_order {
-        return Err(Failure::Run(format!("a coarser mesh of {id} than its {most} nodes can't be made")));
+        return Err(Failure::Run(format!("no mesh of {id} coarser than its {most} nodes can be made")));
     }
     let setup = scenario.setup().map_err(failed)?;
     let plan = plan(&discretisation, &setup, Wanted { targets: true, schemes: false });
@@ -99,10 +99,10 @@ fn witnesses(reference: &Method, nodes: usize) -> Result<Vec<Method>, String> {
             // Second-order elements on the file's cells: nearly all of the distance is the error of the
             // first-order method.
             Some(element) if !has_nodes_alone(&reference.family) => Ok(vec![of_second(element, size)]),
-            Some(_) => Err(format!("its nodes are of the file {name}, and no coarser ones are known")),
+            Some(_) => Err(format!("its nodes come from the file {name}, and no coarser nodes are known")),
             None => Err(format!(
-                "its mesh is the file {name}, which has no coarser one, and no method here is of higher order: solve it \
-                 on a finer mesh, too"
+                "its mesh is the file {name}, no coarser mesh is known, and no method here is of higher order: also \
+                 solve on a finer mesh"
             )),
         };
     }
@@ -162,9 +162,9 @@ fn coarser(size: Size, nodes: usize) -> Result<Size, String> {
         Size::Nodes(_) | Size::Level(1) => Ok(Size::Nodes(nodes.div_ceil(COARSER))),
         Size::Level(level) => Ok(Size::Level(level - 1)),
         Size::Spacing(spacing) => Ok(Size::Spacing(2.0 * spacing)),
-        Size::Cells { cells: [1, 1, 1], .. } => Err("its mesh is of one cell, and none is coarser".into()),
+        Size::Cells { cells: [1, 1, 1], .. } => Err("its mesh has one cell and can't be coarser".into()),
         Size::Cells { cells, grading } => Ok(Size::Cells { cells: cells.map(|n| n.div_ceil(2)), grading }),
-        Size::File(_) => Err("its nodes are of a file, and no coarser ones are known".into()),
+        Size::File(_) => Err("its nodes come from a file, and no coarser nodes are known".into()),
     }
 }
 

@@ -20,16 +20,16 @@ fn row(busy: &Busy, machine: &Machine) -> Warning {
     };
     let what = load.into_iter().chain(took).collect::<Vec<_>>().join("; ");
     let compared = match Seconds::of(machine, busy.worst.iter().map(|(_, took)| *took)) {
-        Seconds::Least => "of runs that were made at once the least repeat counts",
-        _ if machine.quiet == Some(false) => "runs are compared by their seconds of the processors",
-        _ => "runs of a case with such a run are compared by their seconds of the processors",
+        Seconds::Least => "for concurrent runs, the shortest repeat is compared",
+        _ if machine.quiet == Some(false) => "runs are compared by CPU time",
+        _ => "runs of a case with such a run are compared by CPU time",
     };
     Warning {
         case: run.case,
         method: run.method,
         run: run.run,
         code: warning::MACHINE_BUSY.code.into(),
-        message: format!("other programs had the processors: {what}; {compared}"),
+        message: format!("other programs used the processors: {what}; {compared}"),
         value: ratio,
         unit: warning::MACHINE_BUSY.unit().into(),
         place: String::new(),
@@ -39,8 +39,8 @@ fn row(busy: &Busy, machine: &Machine) -> Warning {
 fn disturbed(busy: &Busy, run: &Record, took: &Took) -> String {
     let [wall, cpu] = [took.wall, took.cpu.unwrap_or(took.wall)].map(|seconds| 1e3 * seconds);
     format!(
-        "{} of {} timed runs took more than 1.2 times as long on the wall as of the processors, most of all {} with {} nodes of {}: {wall:.3} ms \
-         for {cpu:.3} ms",
+        "the wall-clock time of {} of {} timed runs was more than 1.2 times the CPU time, with the largest ratio for \
+         {} with {} nodes of {}: {wall:.3} ms of wall-clock time for {cpu:.3} ms",
         busy.disturbed, busy.timed, run.method, run.nodes, run.case
     )
 }
@@ -82,18 +82,18 @@ mod tests {
         assert!((found.value - 0.0188 / 0.00286).abs() < 1e-12);
         assert_eq!(
             found.message,
-            "other programs had the processors: 1 of 1 timed runs took more than 1.2 times as long on the wall as of the processors, most of all \
-             tet4 with 75 nodes of block: 18.800 ms for 2.860 ms; runs of a case with such a run are compared by their seconds of the processors"
+            "other programs used the processors: the wall-clock time of 1 of 1 timed runs was more than 1.2 times the CPU time, with the largest ratio \
+             for tet4 with 75 nodes of block: 18.800 ms of wall-clock time for 2.860 ms; runs of a case with such a run are compared by CPU time"
         );
         let loaded = Machine { load: Some(5.2), quiet: Some(false), ..quiet };
         let found = results(0.0188, 0.0187, loaded.clone()).warnings.remove(0);
         assert_eq!(
             found.message,
-            "other programs had the processors: the load was 5.2 when the runs began; runs are compared by their seconds of the processors"
+            "other programs used the processors: the load was 5.2 when the runs began; runs are compared by CPU time"
         );
         let found = results(0.0188, 0.0187, Machine { at_once: 2, ..loaded }).warnings.remove(0);
         assert!(
-            found.message.ends_with("of runs that were made at once the least repeat counts"),
+            found.message.ends_with("for concurrent runs, the shortest repeat is compared"),
             "{}",
             found.message
         );

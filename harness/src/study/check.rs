@@ -68,9 +68,7 @@ pub fn judge(check: &Check, case: &str, method: &str, value: Option<f64>, band: 
             let holds = at_least.is_none_or(|low| v >= low) && at_most.is_none_or(|high| v <= high);
             let off = (!holds).then(|| format!("{v:.6e} is not {}", text(&check.bound)));
             let unproven = band.filter(|band| at_most.is_some_and(|high| high < *band)).map(|band| {
-                format!(
-                    "the bound is below the own error of the reference, about {band:.2e}, and proves nothing"
-                )
+                format!("the bound is below the reference's own error of about {band:.2e} and proves nothing")
             });
             let reason = [off, unproven].into_iter().flatten().collect::<Vec<_>>().join("; ");
             (text(&check.bound), if holds { Status::Pass } else { Status::Fail }, reason)
@@ -80,7 +78,7 @@ pub fn judge(check: &Check, case: &str, method: &str, value: Option<f64>, band: 
             if v >= *low && v <= *high {
                 (text(&check.bound), Status::KnownFailure, reason.clone())
             } else {
-                let away = format!("{v:.6e} left its known band ({}): {reason}", text(&check.bound));
+                let away = format!("{v:.6e} is outside its known band ({}): {reason}", text(&check.bound));
                 (text(&check.bound), Status::Fail, away)
             }
         }
@@ -153,7 +151,7 @@ mod tests {
             (0.03, Some(0.05), Status::Fail),
         ] {
             let verdict = judge(&check, "block", "tet4", Some(value), own);
-            let unproven = verdict.reason.contains("own error of the reference, about 5.00e-2");
+            let unproven = verdict.reason.contains("the reference's own error of about 5.00e-2");
             assert_eq!((verdict.status, unproven), (status, own == Some(0.05)), "{}", verdict.reason);
         }
         let record = |statistic: &str, value| {

@@ -128,7 +128,7 @@ impl Work<'_> {
         let stored = || match self.store.load(key, accept) {
             Ok(found) => found.map(|result| Turn::Stored(Box::new(result))),
             Err(bad) => {
-                self.progress.warn(format!("warning: {bad}; its run is made again"));
+                self.progress.warn(format!("warning: {bad}; the run is repeated"));
                 None
             }
         };

@@ -41,7 +41,7 @@ pub(crate) fn take(file: &Path, out: &Path) -> Result<Folder, Failure> {
         Err(TryLockError::WouldBlock) => return Err(in_use(out, &mut lock)),
         // The file system has no locks: the user has to keep other processes out.
         Err(TryLockError::Error(_)) => {
-            eprintln!("{}: can't be locked; see that no other process uses it", out.display())
+            eprintln!("{}: can't be locked; make sure that no other process uses the folder", out.display())
         }
     }
     enter(out, lock, true)
@@ -103,7 +103,7 @@ fn in_use(out: &Path, lock: &mut File) -> Failure {
     let _ = lock.read_to_string(&mut holders);
     let holders: Vec<&str> = holders.lines().collect();
     Failure::Input(format!(
-        "{} is in use by process {}; wait for it, give another folder by --out, or let studies work on it together by --join",
+        "{} is in use by process {}; wait, give another folder with --out, or let processes share the study with --join",
         out.display(),
         holders.join(", ")
     ))
@@ -183,7 +183,7 @@ fn free_for(file: &Path, out: &Path) -> Result<(), String> {
     let (here, wanted) = (records::source_of(out), source(file));
     match here {
         Some(here) if here != wanted => Err(format!(
-            "{} holds the results of {here}; give those of {wanted} a folder of their own, such as --out {}-{}",
+            "{} holds the results of {here}; give {wanted} its own folder, such as --out {}-{}",
             out.display(),
             out.display(),
             file.file_stem().unwrap_or_default().to_string_lossy()

@@ -31,7 +31,7 @@ pub fn make(scene: &Scene, text: &str, points: &[Point3], only: &[String]) -> Re
         all.push(solution);
     }
     let Some(mut stored) = all.pop() else {
-        return Err(Failure::Run(format!("{} has no method to make a reference with", scene.file())));
+        return Err(Failure::Run(format!("{} has no method for a reference", scene.file())));
     };
     all.iter().for_each(|other| stored.widen(other));
     Ok(stored)

@@ -67,7 +67,7 @@ fn noted(share: &Path) -> Result<Note, Failure> {
     let wrong = |bad: String| {
         let path = share.join(NOTE);
         Failure::Input(format!(
-            "{}: {bad}; give folders that `tissuebench verify --shard K/N` wrote",
+            "{}: {bad}; give folders written by `tissuebench verify --shard K/N`",
             path.display()
         ))
     };
@@ -85,7 +85,7 @@ pub(crate) fn plan(args: &MergeArgs) -> Result<(PathBuf, Plan, VerifyArgs), Unme
     let other = Unmerged::Other;
     if let Some(share) = args.shares.iter().find(|share| is_same(share, &args.out)) {
         let problem =
-            format!("{}: is one of the shares; give the whole a folder of its own", share.display());
+            format!("{}: is one of the shares; give the merged results their own folder", share.display());
         return Err(other(Failure::Input(problem)));
     }
     let mut notes = Vec::new();
@@ -98,9 +98,7 @@ pub(crate) fn plan(args: &MergeArgs) -> Result<(PathBuf, Plan, VerifyArgs), Unme
     };
     if let Some(at) = notes.iter().position(|note| !same(note, &notes[0])) {
         let (a, b) = (args.shares[0].display(), args.shares[at].display());
-        return Err(other(Failure::Input(format!(
-            "{a} and {b} are shares of different studies or selections"
-        ))));
+        return Err(other(Failure::Input(format!("{a} and {b} belong to different studies or selections"))));
     }
     let Note { study, quick, filter, filters } = notes.swap_remove(0);
     let study = args.study.clone().unwrap_or(study);

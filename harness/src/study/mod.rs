@@ -167,8 +167,8 @@ impl Plan {
         }
         let other = self.cases.entry(case_name(&scene)).or_insert_with(|| path.into());
         if other != path {
-            let problem = format!("is in a file of the same name as {}", other.display());
-            let help = "rename one of them: results are filed under the names of scenes";
+            let problem = format!("is in a file with the same name as {}", other.display());
+            let help = "rename one of the files: results are stored under the names of scenes";
             return Err(vec![scene.error(ErrorKind::Invalid, "title", &problem, Some(help))]);
         }
         let text = scene.text().to_string();

@@ -54,7 +54,7 @@ fn every_scene_of_the_project_has_a_check_of_what_it_is_for() {
         let same = |run: &&scene::Run| run.scene.file_name() == path.file_name();
         let in_study = study.runs.iter().filter(same).any(|run| !run.checks.is_empty());
         let own = scene::load(&path).map(|scene| !scene.checks.is_empty()).unwrap_or_default();
-        assert!(own || in_study, "{} has no check, nor has a run of it", path.display());
+        assert!(own || in_study, "{} and its runs have no check", path.display());
     }
 }
 

@@ -83,10 +83,7 @@ fn unsealed(path: &Path, key: &str, text: &str) -> Result<Read, String> {
     let hashed = text.strip_prefix(HASH).and_then(|text| text.split_at_checked(DIGITS));
     let parts = hashed.and_then(|(hash, rest)| Some((hash, rest.strip_prefix("\",")?)));
     if parts.is_none_or(|(found, rest)| found != hash(key, rest)) {
-        return Err(format!(
-            "{} has not the hash that it was stored with: it was changed since",
-            path.display()
-        ));
+        return Err(format!("{} does not match its stored hash: the file was changed", path.display()));
     }
     serde_json::from_str(text).map_err(|bad| format!("{}: {bad}", path.display()))
 }
@@ -211,7 +208,7 @@ impl Share {
             Err(problem) => return Some(Err(problem)),
         };
         if *self.program.get_or_insert_with(|| by.program.clone()) != by.program {
-            return Some(Err(format!("{} was made by another build of the program", path.display())));
+            return Some(Err(format!("{} was written by another build of the program", path.display())));
         }
         self.machines.insert(by.machine);
         Some(Ok((text, result)))
@@ -305,14 +302,14 @@ mod tests {
         assert_eq!(load("key").unwrap().unwrap().records[0].value, 0.125);
         let text = fs::read_to_string(store.file("key")).unwrap();
         fs::write(store.file("other"), &text).unwrap();
-        assert!(load("other").unwrap_err().contains("other.json has not the hash"));
+        assert!(load("other").unwrap_err().contains("other.json does not match its stored hash"));
         for changed in
             [text.replace("0.125", "0.126"), text.replacen(HASH, "{\"hush\":\"", 1), text[..80].into()]
         {
             fs::write(store.file("key"), changed).unwrap();
-            assert!(load("key").unwrap_err().contains("changed since"));
+            assert!(load("key").unwrap_err().contains("the file was changed"));
             let taken = Share::default().take(dir.path(), "key").unwrap();
-            assert!(taken.unwrap_err().contains("changed since"));
+            assert!(taken.unwrap_err().contains("the file was changed"));
         }
     }
 

@@ -90,7 +90,7 @@ fn a_list_of_adapters_runs_nothing_and_their_folder_is_named() {
     world.write("adapters/evil/adapter.toml", &manifest("evil", &touch, ""));
     let run = world.tissuebench(&["run", "evil.toml"]);
     assert!(
-        run.stderr.contains("adapter 'evil' is that of /") && world.path("touched").exists(),
+        run.stderr.contains("using adapter 'evil' from /") && world.path("touched").exists(),
         "{}",
         run.stderr
     );

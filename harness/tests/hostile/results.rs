@@ -37,11 +37,11 @@ fn a_changed_result_is_not_believed() {
     let changed = format!("{}9{}", &text[..value], &text[value..]);
     world.write(&task, &changed);
     let done = world.runs(&["merge", "merged", "kept"], 2);
-    assert!(done.stderr.contains("was changed since"), "{}", done.stderr);
+    assert!(done.stderr.contains("the file was changed"), "{}", done.stderr);
     for option in ["--resume", "--join"] {
         world.write(&task, &changed);
         let done = world.runs(&["verify", "study.toml", option, "--out", "kept"], 0);
-        assert!(option == "--join" || done.stderr.contains("was changed since"), "{}", done.stderr);
+        assert!(option == "--join" || done.stderr.contains("the file was changed"), "{}", done.stderr);
         assert_eq!(numbers("kept"), right, "{option}");
     }
     world.runs(&["merge", "merged", "kept"], 0);

@@ -79,7 +79,7 @@ fn say(answered: &Answered) {
         Some(stalled) => println!("stalled: {stalled}"),
         None => println!("ok"),
     }
-    let cpu = call.cpu.map_or(String::new(), |cpu| format!(", {} s of the processors", digits(cpu)));
+    let cpu = call.cpu.map_or(String::new(), |cpu| format!(", {} s of CPU time", digits(cpu)));
     println!("  took        {} s{cpu}, {} MB", digits(call.wall), call.memory >> 20);
     for (phase, seconds) in &answer.phases {
         println!("  own {phase:<9}{} s", digits(*seconds));

@@ -62,7 +62,7 @@ const CASES: [Case; 6] = [
         by_digits: 1.0,
     },
     Case {
-        what: "balance of forces",
+        what: "force balance",
         needs: &["linear"],
         scene: LOADED,
         metric: "residual",
@@ -70,7 +70,7 @@ const CASES: [Case; 6] = [
         by_digits: BALANCE,
     },
     Case {
-        what: "agreement with our element",
+        what: "agreement with the built-in element",
         needs: &["linear"],
         scene: LOADED,
         metric: "relative-rms",

@@ -34,7 +34,10 @@ pub(super) fn install(adapter: &Found) -> Result<u8, Failure> {
     for package in &needs.faster {
         let pip = ["-m", "pip", "install", "--quiet", package];
         if run(Command::new(folder.join("bin/python")).args(pip)).is_err() {
-            println!("{}: does without {package}, which would make it faster", manifest.name);
+            println!(
+                "{}: {package} can't be installed; the adapter works without this package, but more slowly",
+                manifest.name
+            );
         }
     }
     Ok(0)
@@ -55,7 +58,7 @@ pub(super) fn copy(adapter: &Found, folder: &Path) -> Result<(), Failure> {
     let bad = |what: String| Failure::Input(format!("{}: {what}", folder.display()));
     let name = folder.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
     if folder.exists() {
-        return Err(bad("is there already; give a new folder".into()));
+        return Err(bad("already exists; give a new folder".into()));
     }
     std::fs::create_dir_all(folder).map_err(|source| bad(format!("can't be made: {source}")))?;
     for (file, bytes) in adapter.files() {

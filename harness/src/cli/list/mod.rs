@@ -47,7 +47,7 @@ const PARTS: [Part; 22] = [
     part("purposes", "purpose", || forms("purpose")),
     part("publications", "published", || forms("published")),
     part("units", "of quantities such as \"20 kPa\"", dimensions),
-    part("metrics", "check.metric, and what is recorded", metrics),
+    part("metrics", "check.metric, and recorded quantities", metrics),
     part("warnings", "of a run, counted by the metric \"warnings\"", warnings),
     part("files", "scenes and studies below this folder", || files(Path::new("cases"))),
 ];
@@ -65,10 +65,7 @@ pub fn list(what: Option<&str>) -> u8 {
         parts.map(|(part, items)| format!("{} ({})\n{}", part.name, part.key, print(&items))).collect();
     let text = texts.join("\n");
     if text.is_empty() {
-        println!(
-            "{}: none; they are looked for in ./cases/scenes and ./cases/studies",
-            what.unwrap_or("list")
-        );
+        println!("{}: none found in ./cases/scenes and ./cases/studies", what.unwrap_or("list"));
         return 0;
     }
     if text.contains("    [") {

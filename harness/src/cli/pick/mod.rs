@@ -44,8 +44,8 @@ pub(super) fn pick(args: &PickArgs) -> u8 {
     if scene.reference.is_none() {
         let file = args.scene.file.display();
         return wrong(&format!(
-            "{file}: key 'reference': is missing, so that no error is known: add [reference] method = \"...\" with a finer size, \
-             exact = \"...\" or record = \"...\""
+            "{file}: key 'reference': is missing, so the errors are unknown: add [reference] method = \"...\" with a \
+             finer size, exact = \"...\" or record = \"...\""
         ));
     }
     let machine = provenance::machine();
@@ -66,7 +66,7 @@ pub(super) fn pick(args: &PickArgs) -> u8 {
         }
     };
     if let Some(failure) = group.reference_stalled() {
-        eprintln!("reference stalled: {failure} (no method can be compared with its end)");
+        eprintln!("reference stalled: {failure} (no method can be compared with its final state)");
         folder.into_iter().for_each(folder::Folder::leave);
         return failure.exit_code();
     }
@@ -123,7 +123,7 @@ fn opened(args: &PickArgs) -> Result<(Scene, Vec<usize>), u8> {
         .map_err(|errors| refuse_scene(&args.scene.file, &errors))?;
     if own == 0 || args.usual {
         let ids: Vec<&str> = scene.methods[own..].iter().map(|m| m.id.as_str()).collect();
-        eprintln!("usual methods that fit: {}", ids.join(", "));
+        eprintln!("usual methods that suit the scene: {}", ids.join(", "));
     }
     let chosen = choose(&scene, &args.scene)?;
     Ok((scene, chosen))
@@ -181,7 +181,7 @@ fn print(
     println!("{sentence}");
     for (method, seconds) in &found.too_long {
         println!(
-            "The next size of {method} was not tried: it is foreseen to take {} s (--at-most).",
+            "The next size of {method} was not tried: its estimated time is {} s (--at-most).",
             text::digits(*seconds)
         );
     }
@@ -234,8 +234,8 @@ fn bound(demand: &Demand) -> String {
 /// Returns the result for a reference with a larger error than the bound.
 fn beyond(demand: &Demand, quantity: &Quantity, most: f64, own: f64) -> String {
     format!(
-        "No method can be named within {}: the reference's own error of {} is about {} %, more than {}. No run was made: take a finer \
-         reference (reference.size).",
+        "No method can be shown to be within {}: the reference's own error of {} is about {} %, more than {}. No run \
+         was made: take a finer reference (reference.size).",
         bound(demand),
         quantity.name,
         text::digits(100.0 * own),
@@ -251,7 +251,7 @@ fn sentence(demand: &Demand, found: &Found) -> String {
     if let Some(best) = found.cheapest() {
         let error = best.error.unwrap_or_default();
         return format!(
-            "Cheapest within {bound}: {} with {} nodes, {} off in {} s.",
+            "Cheapest within {bound}: {} with {} nodes, error {}, in {} s.",
             best.method,
             best.nodes,
             percent(error),
@@ -262,18 +262,18 @@ fn sentence(demand: &Demand, found: &Found) -> String {
     let close = others.filter_map(|run| Some((run, run.error?))).min_by(|a, b| a.1.total_cmp(&b.1));
     match close {
         Some((run, error)) if error <= demand.error => format!(
-            "No method is within {bound}: {} with {} nodes has {name} right ({}), but not the rest.",
+            "No method is within {bound}: {} with {} nodes meets the bound on {name} (error {}), but not the other bounds.",
             run.method,
             run.nodes,
             percent(error)
         ),
         Some((run, error)) => format!(
-            "No method is within {bound}; the nearest is {} with {} nodes, {} off: give finer sizes, or a longer --at-most.",
+            "No method is within {bound}; the nearest is {} with {} nodes, error {}: give finer sizes, or a longer --at-most.",
             run.method,
             run.nodes,
             percent(error)
         ),
-        None => format!("No method is within {bound}: none gave a number."),
+        None => format!("No method is within {bound}: no run gave a number."),
     }
 }
 

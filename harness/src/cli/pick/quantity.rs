@@ -46,7 +46,7 @@ impl Quantity {
         let near =
             nearest(name, words.iter().copied().chain(METRICS.iter().filter(relative).map(|m| m.name)));
         let near = near.map_or(String::new(), |near| format!(" did you mean '{near}'?"));
-        Err(format!("'{name}' is no quantity with a relative error:{near} give {}", words.join(", ")))
+        Err(format!("'{name}' is not a quantity with a relative error:{near} give {}", words.join(", ")))
     }
 
     /// Returns the relative error of a run, the largest over several tools; `None` if the run has none.

@@ -118,7 +118,7 @@ pub(super) fn search(
                 let tried = tried(&outcome, demand);
                 if tried.error.is_none() && outcome.status == "ok" {
                     return Err(format!(
-                        "no error of the {} is known of a run of this scene; `tissuebench list metrics` says what each needs",
+                        "runs of this scene have no error of {}; `tissuebench list metrics` explains the metrics",
                         demand.quantity.name
                     ));
                 }

@@ -54,7 +54,11 @@ fn answer(args: &SolveArgs) -> Result<u8, String> {
         disk::read_text(&path, disk::Kind::MESSAGE).map_err(|bad| format!("{}: {bad}", path.display()))?;
     let text: Text = serde_json::from_str(&text).map_err(|bad| format!("{}: {bad}", path.display()))?;
     if text.schema != SCHEMA {
-        return Err(format!("{}: schema {} is not known, only {SCHEMA}", path.display(), text.schema));
+        return Err(format!(
+            "{}: schema {} is not known; the supported schema is {SCHEMA}",
+            path.display(),
+            text.schema
+        ));
     }
     let mode = match (&args.mode, text.settings.get("mode")) {
         (Some(mode), _) => mode,

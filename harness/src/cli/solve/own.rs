@@ -97,7 +97,7 @@ fn mesh(folder: &Path, text: &Text) -> Result<Mesh, String> {
     let regions: Vec<u16> = array(folder, "regions.npy", 1)?.iter().map(|&region| region as u16).collect();
     let names: Vec<String> = text.materials.iter().map(|material| material.region.clone()).collect();
     if regions.len() != count || regions.iter().any(|&region| usize::from(region) >= names.len()) {
-        return Err("regions.npy: does not fit the cells and materials".into());
+        return Err("regions.npy: does not match the cells and materials".into());
     }
     Ok(mesh.with_regions(regions, names))
 }
@@ -108,7 +108,7 @@ fn array(folder: &Path, name: &str, columns: usize) -> Result<Vec<f64>, String> 
     match array.shape[..] {
         [_] if columns == 1 => Ok(array.values),
         [_, n] if n == columns => Ok(array.values),
-        _ => Err(format!("{name}: has the shape {:?}, where rows of {columns} belong", array.shape)),
+        _ => Err(format!("{name}: has the shape {:?}; rows of {columns} numbers are required", array.shape)),
     }
 }
 

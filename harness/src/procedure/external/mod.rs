@@ -41,7 +41,7 @@ const OTHER_PHASE: &str = "own-other";
 
 /// Stages of a run with an external solver.
 pub(super) fn stages(outside: &Outside) -> Stages {
-    let by = || (false, format!("{} solves it", outside.adapter.manifest.name));
+    let by = || (false, format!("solved by {}", outside.adapter.manifest.name));
     Stages {
         mass: by(),
         stiffness: by(),
