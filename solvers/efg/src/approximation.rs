@@ -161,8 +161,11 @@ impl Approximation {
         })
     }
 
-    /// Builds moving least squares as [`Approximation::new`] does, with ellipsoidal supports adapted to the
-    /// cloud, one per node.
+    /// Builds moving least squares as [`Approximation::new`] does, with one ellipsoidal support per node
+    /// instead of a radius, usually from [`Support::ellipsoids`](crate::Support::ellipsoids).
+    ///
+    /// # Errors
+    /// As for [`Approximation::new`].
     pub fn stretched(
         nodes: Vec<Point3>,
         ellipsoids: Vec<Ellipsoid>,

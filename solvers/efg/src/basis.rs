@@ -21,7 +21,7 @@ impl Basis {
         }
     }
 
-    /// Returns the basis with this name.
+    /// Returns the basis with this name, or `None` for an unknown name.
     pub fn from_name(name: &str) -> Option<Basis> {
         Basis::ALL.into_iter().find(|basis| basis.name() == name)
     }

@@ -26,7 +26,7 @@ pub(crate) struct CellRows {
     pub points: Vec<Point3>,
 }
 
-/// Values at further points, evaluated together with those of the cells in one call.
+/// Shape values at points other than those of the cells, such as vertices, evaluated in the same call.
 pub(crate) struct Beside {
     at: PointRows,
     first: usize,
@@ -271,7 +271,8 @@ impl<const P: usize> Sum<P> {
 }
 
 impl Sum<1> {
-    /// Adds the constant gradients of a cell, multiplied by its fraction `share` of the volume.
+    /// Adds the constant gradients of a cell to the sum, multiplied by `share`, the cell's fraction of the
+    /// volume.
     pub fn add_share(&mut self, cells: &CellRows, cell: usize, share: f64) {
         for i in cells.rows.range(cell) {
             self.touch(cells.rows.nodes[i]);
@@ -279,7 +280,7 @@ impl Sum<1> {
         }
     }
 
-    /// Adds the shape values at one of the further points, given by its index.
+    /// Adds the shape values at the point of `beside` with this index to the sum.
     pub fn add_values(&mut self, beside: &Beside, point: usize) {
         self.add_inner(&beside.at, beside.first + point, 0, &[Vector3::zeros()]);
     }

@@ -75,12 +75,13 @@ pub fn coupled_nodes(nodes: &[Point3], background: &Mesh, vertices: &[u32]) -> R
 }
 
 impl Layer {
-    /// Whether the cell has no finite-element node.
+    /// Whether the cell of the point has no finite-element node.
     pub fn is_empty(&self) -> bool {
         self.count == 0
     }
 
-    /// Whether all corners of the cell are finite-element nodes, which leaves nothing to the cloud.
+    /// Whether all corners of the cell of the point are finite-element nodes, which leaves nothing to the
+    /// cloud.
     pub fn is_full(&self) -> bool {
         self.count == 4
     }
@@ -119,7 +120,7 @@ impl Coupling {
         Ok(each.filter(|(_, layer)| stays(layer)).map(|(n, layer)| (n, layer.region)).collect())
     }
 
-    /// Computes the finite-element part at each point.
+    /// Replaces the contents of `layers` by the finite-element part of the shape functions at each point.
     pub fn layers(&self, points: &[Point3], layers: &mut Vec<Layer>) -> Result<(), EfgError> {
         layers.clear();
         let places = self.locator.locate(points)?;
@@ -127,8 +128,8 @@ impl Coupling {
         Ok(())
     }
 
-    /// Computes the part at a point in a cell or closest to the cell. Outside the cell the hats are extended
-    /// linearly.
+    /// Computes the finite-element part at a point in a cell or closest to the cell. Outside the cell the
+    /// hats are extended linearly.
     fn layer(&self, x: &Point3, cell: usize) -> Layer {
         let region = self.regions[cell];
         let mut layer =

@@ -65,7 +65,7 @@ pub enum EfgError {
     TooFewNeighbours {
         /// Position, m.
         point: Point3,
-        /// Neighbours found.
+        /// Number of neighbours found.
         found: usize,
         /// Number of terms of the requested basis.
         needed: usize,
@@ -83,7 +83,7 @@ pub enum EfgError {
     SingularMoment {
         /// Position, m.
         point: Point3,
-        /// Neighbours found.
+        /// Number of neighbours found.
         found: usize,
         /// Number of terms of the requested basis.
         needed: usize,
@@ -101,11 +101,12 @@ pub enum EfgError {
     OutsideHull {
         /// Position, m.
         point: Point3,
-        /// Neighbours found.
+        /// Number of neighbours found.
         found: usize,
-        /// Smallest distance of the point from a weighted mean of the neighbours, m.
+        /// Smallest distance (m), over all Newton steps, between the point and the weighted mean of its
+        /// neighbours.
         gap: f64,
-        /// Steps of Newton's method.
+        /// Largest number of Newton steps, after which the search is given up.
         iterations: usize,
     },
     /// A cell kind that the integration does not support.

@@ -211,9 +211,10 @@ impl Gaps {
         rows.shorten_last(n);
     }
 
-    /// Returns the detours (m) from a point in a cell to all nodes: the length of the path minus the straight
-    /// distance. A detour is zero if the path is at most 1.5 times as long as the straight distance. It is
-    /// infinite if no path of up to 1.5 times `farthest` (m) reaches a corner of the node's cell.
+    /// Returns the detour (m) from the point `x` in `cell` to each of `nodes`: the length of the shortest
+    /// path through the body minus the straight distance. The detour counts as zero if the path is at most
+    /// 1.5 times as long as the straight distance. Paths are searched up to 1.5 times the length `farthest`
+    /// (m). The detour is infinite if no such path reaches a corner of the node's cell.
     pub fn detours(&self, x: &Point3, cell: u32, nodes: &[Point3], farthest: f64) -> Vec<f64> {
         let mut ways = Ways::new(self.graph.vertices());
         let length = |a: &Point3, b: &Point3| (a - b).norm();

@@ -17,7 +17,7 @@ pub struct GridInfo {
     pub size: [f64; 3],
     /// Number of points kept, i.e. inside the body.
     pub kept: usize,
-    /// Number of points dropped.
+    /// Number of points dropped, i.e. outside the body.
     pub dropped: usize,
     /// Sum of the kept weights, m^3. The difference from the body's volume is the clipping error.
     pub volume: f64,

@@ -7,14 +7,14 @@ pub struct MlsInfo {
     pub points: usize,
     /// Smallest number of neighbours at a point.
     pub neighbours_min: usize,
-    /// Mean number of neighbours.
+    /// Mean number of neighbours of a point.
     pub neighbours_mean: f64,
     /// Largest number of neighbours at a point.
     pub neighbours_max: usize,
     /// Largest condition number of the moment matrix in shifted and scaled coordinates, in the 1-norm. It is
     /// an upper bound of the spectral condition number, at most 4 (linear) or 10 (quadratic) times as large.
     pub condition_max: f64,
-    /// Median of the condition number.
+    /// Median of this condition number over the points.
     pub condition_median: f64,
     /// Number of points at which the supports had to be enlarged.
     pub enlarged: usize,
@@ -35,7 +35,8 @@ pub(crate) struct Outcome {
 }
 
 impl MlsInfo {
-    /// Returns an upper bound of the number of points that needed any fallback: the sum of the three counts.
+    /// Returns an upper bound of the number of points that needed any fallback: the sum of `enlarged`,
+    /// `regularised` and `reduced`.
     pub fn fallbacks(&self) -> usize {
         self.enlarged + self.regularised + self.reduced
     }

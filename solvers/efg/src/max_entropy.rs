@@ -70,13 +70,14 @@ struct State {
     spread: Matrix3,
 }
 
-/// Failure of the search for `lambda`.
+/// Failure of the search for `lambda`, usually because the point lies outside the convex hull of its
+/// neighbours.
 #[derive(Debug)]
 pub(crate) struct NoPoint {
-    /// Number of Newton steps taken.
+    /// Largest number of Newton steps, after which the search is given up.
     pub iterations: usize,
-    /// Smallest distance of the point from a weighted mean of the neighbours, m; zero if the mean reached the
-    /// point but the gradients failed.
+    /// Smallest distance (m), over all steps, between the point and the weighted mean of its neighbours. The
+    /// distance is zero if the values were found but `J` was too singular for gradients.
     pub gap: f64,
 }
 

@@ -41,7 +41,7 @@ impl Smoothing {
 }
 
 /// Computes rows over a tet4 background, in cell order, with smoothed gradients `grad~_I` (1/m) and the
-/// values of the shape functions themselves.
+/// values of the shape functions themselves. `face_points` is the number of points `x_q` per triangular face.
 ///
 /// The points are the centroid ([`Smoothing::Constant`], weight `V`, the cell's volume) or four points
 /// ([`Smoothing::Linear`], weights `V / 4`). `grad~_I` is the polynomial for which, for every `p` of its
@@ -84,9 +84,10 @@ pub fn smoothed_rows(
 /// `h = V / (c A)` with `V` (m^3) the volume of the cell, `A` (m^2) the area of all its listed facets, and
 /// `c` = 1 for constant, 8/3 for linear gradients.
 ///
-/// Nitsche's method with the penalty `beta = gamma (lambda + 2 mu) / h` is then definite for every
-/// `gamma > 1`, for any overlap of supports and any Poisson's ratio. No such factor is known for gradients of
-/// the shape functions themselves, because smoothing averages a part of them out of the energy.
+/// Nitsche's method with the penalty `beta = gamma (lambda + 2 mu) / h` is then definite for every `gamma >
+/// 1`, for any overlap of supports and any Poisson's ratio. If the boundary stress used the gradients of the
+/// shape functions themselves, no sufficient `gamma` would be known, because smoothing averages a part of
+/// these gradients out of the energy.
 pub fn smoothed_trace(
     background: &Mesh,
     facets: &[Facet],

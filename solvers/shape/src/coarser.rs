@@ -2,13 +2,13 @@
 
 use crate::Rows;
 
-/// Interpolation from some of a method's nodes to all of its nodes, such as from the linear mesh under a
-/// quadratic mesh.
+/// Interpolation from the nodes of a coarser mesh, which are some of a method's nodes, to all nodes of the
+/// method. An example is the interpolation from the corners of a quadratic mesh to all of its nodes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Coarser {
-    /// For each node of the method, the coarser nodes in ascending order and the values of their functions at
-    /// the node.
+    /// One row per node of the method: the nodes of the coarser mesh in ascending order, and the values of
+    /// their functions at the node.
     pub rows: Rows,
-    /// Node of the method that coincides with each coarser node.
+    /// Node of the method at the place of each node of the coarser mesh.
     pub places: Vec<u32>,
 }

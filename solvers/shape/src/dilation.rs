@@ -106,7 +106,8 @@ impl DilationGroups {
     }
 
     /// Builds one group per node, with each point divided by its shape values, `share_aq = N_a(x_q)` (nodal
-    /// averaging; Ortiz-Bernardin et al. 2015, volume-averaged nodal projection).
+    /// averaging; Ortiz-Bernardin et al. 2015, volume-averaged nodal projection). Groups are ordered by node.
+    /// A node that is in no row has no group, so the index of a group is not always that of its node.
     ///
     /// # Errors
     /// A point whose values do not sum to one.
@@ -114,10 +115,13 @@ impl DilationGroups {
         DilationGroups::of_nodes(volume, |values, shares| shares.extend(values.iter().map(|&v| Some(v))))
     }
 
-    /// Builds groups as [`DilationGroups::nodal`] does, but divides each point only among its four largest
-    /// shape values, in proportion to them. A nodal group couples all nodes of its points, i.e. nodes within
-    /// four support radii in a cloud. With this method a group couples only the nodes of the points around
-    /// its node.
+    /// Builds groups as [`DilationGroups::nodal`] does, but divides each point only among the four nodes with
+    /// the largest shape values, in proportion to these values. A node without a share in any point has no
+    /// group. A nodal group couples all nodes of its points, which in a cloud may be up to four support radii
+    /// apart. With this method a group couples only the nodes of the points around its node.
+    ///
+    /// # Errors
+    /// A point whose four largest values sum to zero.
     pub fn near(volume: &VolumeRows) -> Result<DilationGroups, ShapeError> {
         let mut order = Vec::new();
         DilationGroups::of_nodes(volume, |values, shares| {

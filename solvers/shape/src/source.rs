@@ -17,7 +17,8 @@ pub type SourceError = Box<dyn Error + Send + Sync>;
 pub struct Quadrature {
     /// Values, gradients and weights.
     pub rows: VolumeRows,
-    /// Diagnostics of the rows: neighbours, conditioning, lost volume.
+    /// Diagnostics of the rows, as pairs of metric and value: neighbours, conditioning, lost volume; may be
+    /// empty.
     pub diagnostics: Vec<(&'static Metric, f64)>,
 }
 

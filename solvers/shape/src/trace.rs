@@ -2,8 +2,9 @@
 
 use crate::ShapeError;
 
-/// Fields on a surface as combinations of their values at points of the volume quadrature,
-/// `f(x_s) = sum_q c_sq f(x_q)`, with the lengths that bound them by the volume integral of their square.
+/// Fields on a surface as combinations of their values at points of the volume quadrature, `f(x_s) = sum_q
+/// c_sq f(x_q)`, with the lengths of a trace inequality. The inequality bounds the integral of `f^2` over the
+/// surface by that over the volume ([`TraceRows::new`]).
 ///
 /// A boundary stress of this form consists of the quantities that the energy integrates. Nitsche's method is
 /// then definite with a known factor, which does not hold for gradients of the shape functions at the
@@ -22,9 +23,9 @@ impl TraceRows {
     /// volume `points` and `coefficients` (one per entry), and `lengths` (m, one per surface point). The
     /// coefficients of a row sum to one.
     ///
-    /// The lengths `h_s` must satisfy `sum_s w_s h_s f(x_s)^2 <= sum_q w_q f(x_q)^2` for every `f` on the
-    /// volume's points, with the weights `w_s` (m^2) and `w_q` (m^3) of the surface and the volume. This
-    /// condition is not checked.
+    /// The lengths `h_s` must satisfy the trace inequality `sum_s w_s h_s f(x_s)^2 <= sum_q w_q f(x_q)^2` for
+    /// every `f` on the volume's points, with the weights `w_s` (m^2) and `w_q` (m^3) of the surface and the
+    /// volume. This condition is not checked.
     ///
     /// # Errors
     /// Arrays of unequal length, broken offsets, an empty row, a point out of range, a row that does not sum
@@ -93,7 +94,7 @@ impl TraceRows {
         (&self.points[range.clone()], &self.coefficients[range])
     }
 
-    /// Lengths `h_s` (m), one per surface point, that bound fields on the surface ([`TraceRows::new`]).
+    /// Lengths `h_s` (m), one per surface point, of the trace inequality in [`TraceRows::new`].
     pub fn lengths(&self) -> &[f64] {
         &self.lengths
     }

@@ -82,8 +82,10 @@ impl Ways {
         Ways { lengths: vec![f64::INFINITY; vertices], reached: Vec::new(), open: BinaryHeap::new() }
     }
 
-    /// Finds the shortest paths from a point in the cell with these corners, up to length `farthest`
-    /// (Dijkstra 1959). `length` returns the length of a link, in metres or relative to a support.
+    /// Computes the lengths of the shortest paths (Dijkstra 1959) from a point to all vertices, for
+    /// [`Ways::to`]. The point lies in the cell with these corners. Paths longer than `farthest` are not
+    /// searched. `length` returns the length of a link, in metres or relative to a support; `farthest` has
+    /// the same unit.
     pub fn walk(
         &mut self,
         graph: &Graph,
@@ -116,8 +118,8 @@ impl Ways {
         }
     }
 
-    /// Returns the length of the shortest path of the last [`Ways::walk`] to a vertex, in the unit of its
-    /// `length`. The length is infinite if there is no path up to its `farthest`.
+    /// Returns the length of the shortest path to a vertex from the point of the last [`Ways::walk`], in the
+    /// unit of its `length`. The length is infinite if there is no path up to its `farthest`.
     pub fn to(&self, vertex: u32) -> f64 {
         self.lengths[vertex as usize]
     }

@@ -2,7 +2,8 @@
 
 use super::{Entry, KernelEntry, Problem, Values, Weight};
 
-/// Weight `2/3 - 4q^2 + 4q^3` up to 1/2, then `4/3 (1 - q)^3`, scaled by 3/2. C2.
+/// Cubic spline: 3/2 times `2/3 - 4q^2 + 4q^3` up to `q = 1/2` and `4/3 (1 - q)^3` beyond, with `q` the
+/// distance from the node over the support radius. C2.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CubicSpline;
 

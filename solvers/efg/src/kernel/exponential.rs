@@ -2,7 +2,9 @@
 
 use super::{Dimension, Entry, KernelEntry, Kind, Parameter, Problem, Range, Values, Weight, gaussian};
 
-/// Weight `(e^{-(q/alpha)^{2k}} - e^{-(1/alpha)^{2k}}) / (1 - e^{-(1/alpha)^{2k}})`, flat-topped for `k > 1`.
+/// Exponential weight `(e^{-(q/alpha)^{2k}} - e^{-(1/alpha)^{2k}}) / (1 - e^{-(1/alpha)^{2k}})`, with `q` the
+/// distance from the node over the support radius and `alpha` the width over the support radius. The weight
+/// is flat-topped for `k > 1`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Exponential {
     alpha: f64,

@@ -4,7 +4,8 @@ use super::{
     Dimension, Entry, KernelEntry, Parameter, Problem, Range, Values, Weight, exponential::exponential,
 };
 
-/// Weight `(e^{-(q/alpha)^2} - e^{-(1/alpha)^2}) / (1 - e^{-(1/alpha)^2})`.
+/// Gaussian weight `(e^{-(q/alpha)^2} - e^{-(1/alpha)^2}) / (1 - e^{-(1/alpha)^2})`, with `q` the distance
+/// from the node over the support radius and `alpha` the width over the support radius.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gaussian {
     alpha: f64,

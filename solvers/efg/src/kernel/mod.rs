@@ -28,7 +28,8 @@ macro_rules! kernels {
             }
         )*
 
-        /// A weight function `w(q)` of the relative distance `q = d / R`, zero for `q >= 1`, one at `q = 0`.
+        /// A weight function `w(q)` of the relative distance `q = d / R`, with the distance `d` from the node
+        /// and the support radius `R`. The weight is zero for `q >= 1` and one at `q = 0`.
         #[derive(Clone, Copy, Debug, PartialEq)]
         #[allow(missing_docs)] // each is its type
         pub enum Kernel {
@@ -87,7 +88,7 @@ impl Kernel {
         KERNELS.iter().filter_map(|entry| (entry.build)(&Values::new(entry.parameters)).ok())
     }
 
-    /// Returns the kernel with this name and default parameters.
+    /// Returns the kernel with this name and default parameters, or `None` for an unknown name.
     pub fn from_name(name: &str) -> Option<Kernel> {
         Kernel::all().find(|kernel| kernel.name() == name)
     }

@@ -2,7 +2,7 @@
 
 use super::{Entry, KernelEntry, Problem, Values, Weight};
 
-/// Weight `1 - 6q^2 + 8q^3 - 3q^4`. C2.
+/// Quartic spline `1 - 6q^2 + 8q^3 - 3q^4`, with `q` the distance from the node over the support radius. C2.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct QuarticSpline;
 

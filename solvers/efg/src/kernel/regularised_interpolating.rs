@@ -2,8 +2,8 @@
 
 use super::{Dimension, Entry, KernelEntry, Parameter, Problem, Range, Values, Weight};
 
-/// Weight `((q^2 + eps)^-2 - (1 + eps)^-2) / (eps^-2 - (1 + eps)^-2)`, for almost interpolating shape
-/// functions.
+/// Regularised interpolating weight `((q^2 + eps)^-2 - (1 + eps)^-2) / (eps^-2 - (1 + eps)^-2)`, with `q` the
+/// distance from the node over the support radius. Shape functions almost interpolate for small `eps`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RegularisedInterpolating {
     eps: f64,

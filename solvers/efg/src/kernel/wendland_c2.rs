@@ -2,7 +2,7 @@
 
 use super::{Entry, KernelEntry, Problem, Values, Weight};
 
-/// Weight `(1 - q)^4 (4q + 1)`.
+/// Wendland's weight `(1 - q)^4 (4q + 1)`, with `q` the distance from the node over the support radius. C2.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WendlandC2;
 

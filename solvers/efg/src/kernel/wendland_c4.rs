@@ -2,7 +2,8 @@
 
 use super::{Entry, KernelEntry, Problem, Values, Weight};
 
-/// Weight `(1 - q)^6 (35q^2 + 18q + 3) / 3`.
+/// Wendland's weight `(1 - q)^6 (35q^2 + 18q + 3) / 3`, with `q` the distance from the node over the support
+/// radius. C4.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WendlandC4;
 

@@ -2,7 +2,8 @@
 
 use super::{Entry, KernelEntry, Problem, Values, Weight};
 
-/// Weight `(1 - q)^8 (32q^3 + 25q^2 + 8q + 1)`.
+/// Wendland's weight `(1 - q)^8 (32q^3 + 25q^2 + 8q + 1)`, with `q` the distance from the node over the
+/// support radius. C6.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WendlandC6;
 

@@ -7,18 +7,18 @@ use std::path::Path;
 
 use super::error::Place;
 
-/// A part of a file that is not in the mesh, or that is changed.
+/// A part of a mesh file that is not in the mesh, or that is read differently from the format.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct LeftOut {
     /// Place of the part.
     pub place: Place,
     /// Name of the part, such as a keyword or an array.
     pub what: String,
-    /// Category of the part, by the consequence of its omission.
+    /// Category of the part, by the consequence for the result.
     pub kind: Kind,
 }
 
-/// Category of an omitted or changed part, by the consequence for the result.
+/// Category of a part of a file that is omitted or changed, by the consequence for the result of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Kind {
     /// The part joins or supports parts of the body, so its omission changes the result.
@@ -67,7 +67,8 @@ pub fn summary(parts: &[LeftOut]) -> Vec<String> {
     groups.into_iter().map(line).collect()
 }
 
-/// Parts of a file that are not in its mesh; empty for a surface or for a file that cannot be read.
+/// Returns the parts of a file that its mesh omits or changes; empty for a surface or for a file that cannot
+/// be read.
 pub fn left_out(file: &Path) -> Vec<LeftOut> {
     let content = super::bytes(file).ok().and_then(|bytes| super::parse(&bytes, file).ok());
     content.map(super::Content::into_left_out).unwrap_or_default()

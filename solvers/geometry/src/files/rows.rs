@@ -32,7 +32,8 @@ pub fn row_of_cell(file: &Path, cell: usize) -> Option<Row> {
     rows.get(cell).copied()
 }
 
-/// Message about the number of inverted cells in a file, with the place of the first.
+/// Returns a message about the inverted cells `bad` of the mesh in `file`: their number, and the place of the
+/// first, for which the file is read again.
 pub fn inverted(file: &Path, bad: &InvertedElement) -> String {
     let row = row_of_cell(file, bad.element).map_or_else(String::new, |row| row.to_string());
     match (bad.inverted, bad.cells) {

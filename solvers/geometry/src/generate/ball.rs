@@ -14,8 +14,11 @@ const CORE: f64 = 0.45;
 
 /// Meshes a ball of `radius` (m) around the origin, with `n` hexahedra along each edge of an inner cube and
 /// `(n + 1) / 2` layers around it. The total is `n^3 + 6 n^2 ((n + 1) / 2)` hexahedra, or six times as many
-/// tetrahedra. Facet group: "surface". Quadratic surface nodes lie on the sphere. For even `n`, the meshes of
-/// `n`, `2 n`, `4 n`, ... are nested in the parameters.
+/// tetrahedra. Facet group: "surface". Quadratic surface nodes lie on the sphere.
+///
+/// The mesh is the image of a mesh of the cube [-1, 1]^3. For even `n`, the hexahedra of this cube for `2 n`
+/// are those for `n`, halved along each axis. The corner nodes of `n` are therefore also corner nodes of `2
+/// n`, `4 n`, ...
 ///
 /// # Errors
 /// A radius that is not positive, or `n` out of range.
@@ -25,9 +28,9 @@ pub fn ball_mesh(kind: CellKind, radius: f64, n: usize) -> Result<Mesh, Generate
     Ok(unit.moved(|p| Point3::from(p.coords * radius))?)
 }
 
-/// Meshes the kidney: the mesh of [`ball_mesh`] with unit radius, mapped by [`Kidney::map`]. Every node,
-/// mid-edge nodes included, lies exactly on its image. Facet group: "surface". Tet10 cells need `n` of at
-/// least 2.
+/// Meshes the kidney: the mesh of [`ball_mesh`] with unit radius and the same `n`, with every node mapped by
+/// [`Kidney::map`]. Mid-edge nodes are mapped too, so those of the boundary lie on the surface of the kidney.
+/// Facet group: "surface". Tet10 cells need `n` of at least 2.
 ///
 /// # Errors
 /// `n` out of range, or inverted cells.

@@ -16,7 +16,7 @@ pub(super) struct Lattice {
     /// corners of their common face. The edge between the centres and the edge between the corners are as
     /// long as the edge of a cube; the other four edges are shorter.
     pub regular: Vec<[u32; 4]>,
-    /// All other tetrahedra.
+    /// All other tetrahedra, as indices into `points`: between larger cubes, and where the cube size changes.
     pub coarse: Vec<[u32; 4]>,
     index: HashMap<[i32; 3], u32>,
 }

@@ -83,15 +83,15 @@ pub enum StuffingError {
     },
 }
 
-/// Estimates the number of nodes of a mesh with cells of uniform size, in a body with this volume (m^3) and
-/// surface area (m^2). `spacing` (m) is the mean edge length.
+/// Estimates the number of nodes of a tet4 mesh by [`stuff`] with cells of uniform size, from the volume
+/// (m^3) and surface area (m^2) of the body. `spacing` (m) is the mean edge length.
 pub fn expected_nodes(volume: f64, area: f64, spacing: f64) -> f64 {
     let edge = spacing / MEAN_EDGE;
     // Two nodes per cube, and half a layer at the surface.
     2.0 * volume / edge.powi(3) + area / edge.powi(2)
 }
 
-/// Fills a surface with tetrahedra.
+/// Fills a surface with linear tetrahedra.
 ///
 /// # Errors
 /// A spacing that is not positive and finite, or too fine or too coarse for the surface.

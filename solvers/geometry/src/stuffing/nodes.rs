@@ -32,7 +32,7 @@ const WHOLE: f64 = 0.75;
 /// filled the body.
 const HOPELESS: [f64; 2] = [2e5, 16.0];
 
-/// Fills a surface with tetrahedra that have about `nodes` nodes, with `doublings` as in [`Stuffing`].
+/// Fills a surface with linear tetrahedra that have about `nodes` nodes, with `doublings` as in [`Stuffing`].
 /// Returns the mesh and its spacing (m). Several spacings are tried; the mesh returned has the ratio of its
 /// number of nodes to `nodes` closest to 1. A larger request never gives fewer nodes.
 ///
@@ -46,8 +46,8 @@ pub fn stuff_with_nodes(
     Search::new(surface, nodes, doublings, |mesh| mesh.points().len()).nearest()
 }
 
-/// Fills a surface with tetrahedra that have about `nodes` nodes as quadratic cells: corners and mid-edge
-/// nodes.
+/// Fills a surface with linear tetrahedra of one size that have about `nodes` corners and edges in total.
+/// Raised to quadratic order, the mesh then has about `nodes` nodes.
 ///
 /// # Errors
 /// As for [`stuff`].

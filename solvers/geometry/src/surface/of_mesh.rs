@@ -5,7 +5,7 @@ use crate::{FaceKind, Facet, Mesh};
 
 /// The boundary of a mesh as a surface, with the mesh face of each triangle.
 pub struct BoundaryFaces {
-    /// Surface of the boundary.
+    /// The boundary as a closed surface of triangles, with positions in metres.
     pub surface: Surface,
     /// Face of the mesh to which each triangle belongs.
     pub faces: Vec<Facet>,
