@@ -53,7 +53,7 @@ impl Incidence {
         Incidence { offsets, entries }
     }
 
-    /// The (row, entry) pairs of one node.
+    /// Pairs (row, entry) that name `node`; `entry` is an index into the flat arrays of the whole table.
     #[inline]
     pub fn of(&self, node: usize) -> &[(u32, u32)] {
         &self.entries[self.offsets[node]..self.offsets[node + 1]]

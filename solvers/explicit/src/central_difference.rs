@@ -180,11 +180,12 @@ impl<'a, 'b> Dynamics<'a, 'b> {
         self.tools.as_ref()
     }
 
-    /// Continues with another time step (s).
+    /// Sets the time step `dt` (s) of the steps that follow.
     ///
     /// # Errors
     ///
-    /// [`ExplicitError::StepTooLarge`] if the step exceeds the critical step.
+    /// [`ExplicitError::BadParameter`] if `dt` is not positive and finite, [`ExplicitError::StepTooLarge`] if
+    /// `dt` exceeds the critical step, [`ExplicitError::InvertedAt`] if a point is inverted.
     pub fn set_step(&mut self, dt: f64) -> Result<(), ExplicitError> {
         if !(dt > 0.0 && dt.is_finite()) {
             return Err(ExplicitError::BadParameter {
@@ -260,8 +261,8 @@ impl<'a, 'b> Dynamics<'a, 'b> {
         self.since.1 + (self.step - self.since.0) as f64 * self.params.dt
     }
 
-    /// Forces of the supports on the body in the last completed step, N, one per prescribed degree of
-    /// freedom.
+    /// Forces of the supports on the body in the last completed step, N, in the order of the prescribed
+    /// degrees of freedom given to [`Dynamics::new`].
     pub fn reactions(&self) -> &[f64] {
         &self.reaction
     }

@@ -167,12 +167,12 @@ pub(super) fn split(
     chunks
 }
 
-/// Run of items with its nodes.
+/// Items of one chunk with their nodes.
 pub(super) struct ChunkNodes {
-    /// Numbers of the items in the table: elements or quadrature points.
+    /// Indices of the items, which are elements or quadrature points, in the body's table.
     pub items: Vec<u32>,
-    /// Distinct nodes of the items, in the order of first use.
+    /// Distinct nodes of all items of the chunk, in the order of first use.
     pub nodes: Vec<u32>,
-    /// Positions of each item's nodes among `nodes`.
+    /// For each item, the positions of its nodes in `nodes`.
     pub local: Vec<Vec<u32>>,
 }

@@ -37,9 +37,9 @@ impl LaneLaw {
         body.laws.iter().map(law).collect()
     }
 
-    /// Returns the moduli with which this law contributes to the energy of a dilation group, Pa: `mu` and
-    /// `lambda` of the neo-Hookean form, and the factor of `(J - 1)^2 / 2`. Laws other than the neo-Hookean
-    /// have `mu = 0`, and the factor of `(ln J)^2 / 2` as `lambda`.
+    /// Returns the moduli `[mu, lambda, k]` (Pa) of the energy terms in the dilation `J` of a group,
+    /// `-mu ln J + lambda (ln J)^2 / 2 + k (J - 1)^2 / 2`. `k` is zero for the neo-Hookean law, and `mu`
+    /// for all other laws.
     pub fn of_group(&self) -> [f64; 3] {
         match self {
             LaneLaw::NeoHookean(moduli) => [moduli.mu, moduli.lambda, 0.0],

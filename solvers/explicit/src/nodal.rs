@@ -111,7 +111,9 @@ impl Nodal {
         &mut self.slots
     }
 
-    /// Converts the sums of the first pass into the input of the second.
+    /// Sums the slots of each group after the first pass over the elements, and computes `J_a^(2/3)` and
+    /// `p_a` (Pa) of the group for the second pass. `of_nodes` assigns the slots to nodes; it is used if
+    /// every group is a node.
     pub fn close(&mut self, path: LanePath, of_nodes: &Border) {
         let Nodal { border, slots, constants, closed } = self;
         border.as_ref().unwrap_or(of_nodes).sum(|slot| slots[slot], |sum| sum, closed);

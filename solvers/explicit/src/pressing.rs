@@ -12,7 +12,8 @@ pub struct PressingTool<'a> {
     pub tool: &'a Tool,
     /// Displacement (m) or force along its direction (N), constant during the relaxation.
     pub drive: Drive,
-    /// Displacement at the start, m; under displacement control, that of the drive from the first step on.
+    /// Displacement of the tool at the start, m. Under displacement control the tool has the displacement of
+    /// its drive from the first step on.
     pub closure: f64,
     /// Friction history of the contact at the start.
     pub history: ContactHistory,

@@ -23,9 +23,9 @@ pub(super) struct Principal {
 
 /// Derivatives of the principal Kirchhoff stresses with respect to the logarithmic stretches.
 pub(super) struct Slopes {
-    /// `d tau_a / d e_b`, symmetric.
+    /// `d tau_a / d e_b`, Pa, symmetric.
     pub slope: [[f64; 3]; 3],
-    /// `(tau_b - tau_c) / (e_b - e_c)` for the pairs (1, 2), (2, 0), (0, 1), or its limit for equal
+    /// `(tau_b - tau_c) / (e_b - e_c)`, Pa, for the pairs (1, 2), (2, 0), (0, 1), or its limit for equal
     /// stretches.
     pub quotient: [f64; 3],
 }

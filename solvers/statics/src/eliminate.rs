@@ -23,8 +23,8 @@ pub(crate) struct Block {
     pub others: Vec<usize>,
     /// Matrix `W` of `u_p = E g - W u_o`, (pivots, others), row by row.
     pub weights: Vec<f64>,
-    /// Matrix `E` of `u_p = E g - W u_o`, (pivots, rows), row by row. `E` acts on the prescribed values `g`.
-    /// Its transpose acts on the forces on the pivots, which gives the multipliers.
+    /// Matrix `E` of `u_p = E g - W u_o`, (pivots, rows), row by row. It maps the right sides `g` of the
+    /// constraint rows to the pivots; its transpose maps the forces on the pivots to the multipliers.
     pub inverse: Vec<f64>,
 }
 

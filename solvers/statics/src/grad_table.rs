@@ -82,9 +82,10 @@ impl GradTable {
         GradTable::new(body.nodes.len(), &rows, &moduli.collect::<Vec<_>>())
     }
 
-    /// Builds the table of the dilation groups, whose stiffness is `kappa V_a b_a b_a^T`; `None` without
-    /// groups. In the integrand of the points this is a row of gradients `b_a` with moduli `lambda = 1`,
-    /// `mu = 0` and weight `kappa V_a`.
+    /// Builds the table of the body's dilation groups `a`, each with the stiffness `kappa V_a b_a b_a^T`. The
+    /// row `b_a` (1/m) is the gradient of the group's mean dilation with respect to the nodal displacements,
+    /// `V_a` (m^3) its volume and `kappa` (Pa) its mean bulk modulus. Returns `None` for a body without
+    /// groups.
     pub fn groups(body: &Body) -> Result<Option<GradTable>, SolveError> {
         let Some(groups) = body.dilation else { return Ok(None) };
         let averaged = averaged(body, groups)?;
@@ -92,7 +93,9 @@ impl GradTable {
         Ok(Some(GradTable::of_groups(body.nodes.len(), &averaged, weight)))
     }
 
-    /// Builds the table of the terms `weight b_a b_a^T` of the given groups.
+    /// Builds the table of the terms `weight(a) b_a b_a^T`, with the rows `b_a` (1/m) of the groups
+    /// `averaged` and a weight in J. A group is stored like a point with the gradients `b_a`,
+    /// `lambda = 1`, `mu = 0` and this weight.
     pub fn of_groups(
         node_count: usize,
         averaged: &[Averaged],

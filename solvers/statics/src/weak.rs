@@ -43,15 +43,17 @@ pub struct WeakSupport<'a> {
     pub region: &'a [u16],
     /// Nitsche's method or penalty.
     pub method: Weak,
-    /// Length scale `h` of the discretisation at the surface, m. If `trace` is given, Nitsche's method takes
-    /// the length that the trace gives at each point instead.
+    /// Length scale `h` of the discretisation at the surface, m. With a `trace`, Nitsche's method uses the
+    /// trace's length at each point instead.
     pub h: f64,
-    /// Source of Nitsche's traction: the body's own quadrature points, with their projected dilation if there
-    /// is one. Without a trace the traction follows from the gradients of `flux` by the plain law.
+    /// Trace that gives Nitsche's method the stress on the surface as a combination of the stresses at the
+    /// body's quadrature points, projected dilation included. `None` computes the stress from the gradients
+    /// of `flux`, without a projection.
     ///
-    /// With a trace the matrix is definite for every `gamma > 1` and any Poisson's ratio:
-    /// `|sigma n|^2 <= (lambda + 2 mu) sigma : eps` holds pointwise, and the trace's lengths bound the
-    /// surface integral by the energy.
+    /// With a trace the matrix is definite for every `gamma > 1` and any Poisson's ratio. There are two
+    /// reasons: `|sigma n|^2 <= (lambda + 2 mu) sigma : eps` holds at every point, and the lengths `h_s`
+    /// of [`TraceRows::lengths`] satisfy `sum_s w_s h_s f(x_s)^2 <= sum_q w_q f(x_q)^2`. The surface
+    /// integral of `h_s |sigma n|^2 / (lambda + 2 mu)` is therefore at most `sum_q w_q sigma : eps`.
     pub trace: Option<&'a TraceRows>,
 }
 

@@ -21,8 +21,8 @@ const LENGTHS: [usize; 6] = [10, 12, 14, 21, 32, 64];
 pub(crate) struct Power(Vec<f64>);
 
 impl Power {
-    /// Pads the coefficients `g_k` of a power series `sum_k g_k X^k` with zeros; `None` if there are more
-    /// than 64.
+    /// Pads the coefficients `g_k` of a power series `sum_k g_k X^k` with zeros to the next of the lengths
+    /// 10, 12, 14, 21, 32 and 64; `None` if there are more than 64.
     pub fn new(mut g: Vec<f64>) -> Option<Power> {
         let length = LENGTHS.into_iter().find(|&length| g.len() <= length)?;
         g.resize(length, 0.0);

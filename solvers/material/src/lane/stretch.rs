@@ -50,9 +50,10 @@ impl Stretch {
         deviator_of::<FMA>(self.a[l], horner::<FMA, N>(g, self.a[l], self.b[l]))
     }
 
-    /// Returns `dev (e g(e))` for a traceless `e` with `e^3 = a e + b I` and the power series `g`
-    /// (coefficients `g_0, g_1, ...`). `e`, its `square` and the result are three numbers
-    /// `x0 I + x1 X + x2 X^2` each.
+    /// Returns `dev (e g(e))` for a traceless tensor `e` that is a function of `X`, and a power series `g`
+    /// with the coefficients `g_0, g_1, ...`. `e`, its `square` and the result are given by three numbers
+    /// each, the coefficients of `I`, `X` and `X^2`. The last argument has `a` and `b` of
+    /// `e^3 = a e + b I`, which differ from those of `X`.
     #[inline(always)]
     pub fn series<const FMA: bool, const N: usize>(
         &self,

@@ -56,8 +56,9 @@ impl Update {
         v + (a * (1.0 - self.scheme.gamma) + new * self.scheme.gamma) * self.dt
     }
 
-    /// Returns the rate `r` for which `M r` is the inertia and damping in the balance divided by
-    /// `1 - alpha_f`, from accelerations and velocities at both ends.
+    /// Returns `r = (a_m + c v_f) / (1 - alpha_f)`, m/s^2. `M r` is the left side of the balance if the
+    /// balance is divided by `1 - alpha_f`. `damping` is `c` (1/s); `a` (m/s^2) and `v` (m/s) hold the
+    /// values at the start and the end of the step.
     pub fn rate(&self, damping: f64, a: [&Vector3; 2], v: [&Vector3; 2]) -> Vector3 {
         let Scheme { alpha_m, alpha_f, .. } = self.scheme;
         let carried = alpha_f / (1.0 - alpha_f);

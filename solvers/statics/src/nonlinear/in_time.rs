@@ -37,7 +37,7 @@ pub(crate) struct InertiaTerms {
     pub factor: f64,
     /// Displacement at the start of the step, m.
     pub from: Vec<Vector3>,
-    /// `r` at the displacement `from`, m/s^2.
+    /// Value of `r` at the displacement `from`, m/s^2.
     pub settled: Vec<Vector3>,
     /// Contribution of the forces at the start of the step to the balance, N.
     pub carried: Vec<Vector3>,
@@ -51,7 +51,8 @@ pub(crate) struct Ended {
     /// Forces of loads, of surfaces constrained by penalty and of contact.
     pub external: Vec<Vector3>,
     pub internal: Vec<Vector3>,
-    /// Deviatoric stresses that a Prony series relaxes, per point, Pa; empty for an elastic body.
+    /// Instantaneous deviatoric stress of each point, Pa, to which the Prony series applies; empty for an
+    /// elastic body.
     pub deviator: Vec<Matrix3>,
 }
 
@@ -64,11 +65,12 @@ impl Ended {
 }
 
 impl InertiaTerms {
-    /// Adds the force `carried - M r` (N) at the nodal parameters `u` (m) to `out`. `prescribed` has one
-    /// entry per degree of freedom `3 node + axis`.
+    /// Adds the force of inertia and damping to `out`: `carried - M r` (N, see [`InertiaTerms`]) at the nodal
+    /// parameters `u` (m). A degree of freedom `3 node + axis` is constrained if its entry of `prescribed` is
+    /// `Some`; the value is not used.
     ///
-    /// Returns the norm of `M settled`, N. Residuals are measured against this norm, because the two terms of
-    /// `r` cancel in free flight.
+    /// Returns the norm of `M settled`, N, as a scale for residuals. `M r` itself is not a scale, because
+    /// the two terms of `r` cancel in free flight.
     pub fn add_force(
         &self,
         mass: &SurfaceTable,
@@ -91,12 +93,12 @@ impl InertiaTerms {
         mass.product(&self.settled).iter().map(Vector3::norm_squared).sum::<f64>().sqrt()
     }
 
-    /// Returns `factor w I` for every point of the mass table.
+    /// Returns the tangent `factor w I` of the inertia, N/m, for every point of the mass table.
     pub fn blocks(&self, mass: &SurfaceTable) -> Vec<Matrix3> {
         mass.weights.iter().map(|w| Matrix3::identity() * (self.factor * w)).collect()
     }
 
-    /// Adds `factor M moves` to `right`.
+    /// Adds the force `factor M moves` (N) of the displacement increments `moves` (m) to `right`.
     pub fn give_back(&self, mass: &SurfaceTable, moves: &[Vector3], right: &mut [Vector3]) {
         for (right, product) in right.iter_mut().zip(mass.product(moves)) {
             *right += product * self.factor;

@@ -74,7 +74,8 @@ impl<'a> Memory<'a> {
         self.solid.region.get(q).copied().unwrap_or(0) as usize
     }
 
-    /// Returns the relaxation over a step of `dt` seconds, by point.
+    /// Returns the factor and the carried stress of every point for a step of `dt` seconds from the present
+    /// history; 1 and zero at points without a Prony series.
     pub fn relaxing(&self, dt: f64) -> Relaxing {
         let steps = self.steps(dt);
         let (modulus, carried) = (0..self.deviator.len())
@@ -86,7 +87,8 @@ impl<'a> Memory<'a> {
         Relaxing { modulus, carried }
     }
 
-    /// Updates the history after a step of `dt` seconds that ended with the deviators `new` (Pa).
+    /// Updates the history after a step of `dt` seconds, at the end of which the points have the
+    /// instantaneous deviators `new` (Pa).
     pub fn advance(&mut self, dt: f64, new: Vec<Matrix3>) {
         let steps = self.steps(dt);
         for (q, new) in new.iter().enumerate() {

@@ -42,8 +42,8 @@ pub struct Solid<'a> {
 pub(crate) struct Internal {
     /// `w P` per point (3, 3), J; nodal forces are `sum_q (w P) grad N`.
     pub stress: Vec<Matrix3>,
-    /// `w (J - theta)` per point, m^3, if there is a pressure field; the pressure's residual is
-    /// `sum_q M (...)`.
+    /// `w (J - theta)` per point, m^3, if there is a pressure field. The residual of a pressure parameter is
+    /// the sum of this misfit over the points, times the parameter's shape function.
     pub misfit: Vec<f64>,
     /// Strain energy, J; with a pressure field, the value of the saddle-point functional.
     pub energy: f64,

@@ -180,8 +180,11 @@ impl<'a> System<'a> {
             .collect()
     }
 
-    /// Assembles the matrix at `hessian`, with `surface[s][q] = -w dt/dx` (its symmetric part) on each
-    /// surface.
+    /// Assembles the tangent matrix from the second derivatives `hessian` of the energy and the stiffness
+    /// of the surfaces. Point `q` of surface `s` adds `N_I N_J D` to the block of the nodes I and J, with the
+    /// symmetric part `D` of `surface[s][q]` (N/m). For a traction `t` at the position `x` this stiffness is
+    /// `-w dt/dx` with the weight `w`. Returns the upper triangle over the free
+    /// displacements, followed by the pressures.
     pub fn assemble(&mut self, hessian: &Hessian, surface: &[Vec<Matrix3>]) -> Symmetric {
         let System { pairs, points, points_of, groups_of, surfaces, stiffness, .. } = self;
         let groups = pairs.as_ref().map(Pairs::connectivity).zip(groups_of.as_ref());

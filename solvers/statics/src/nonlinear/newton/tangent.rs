@@ -53,8 +53,9 @@ impl Factored {
 }
 
 impl Newton<'_> {
-    /// Returns `-w dt/dx` of every surface point, by surface: surfaces constrained by penalty first, then
-    /// contact.
+    /// Returns the stiffness of every surface point, N/m, by surface: `-w dt/dx` with the weight `w`, the
+    /// traction `t` and the position `x`. Surfaces constrained by penalty come first, then the contact
+    /// surface, then the points of the mass table with the tangent of the inertia.
     fn surface_blocks(&self, balance: &Balance) -> Vec<Vec<Matrix3>> {
         let mut blocks: Vec<Vec<Matrix3>> = (self.problem.penalties.iter())
             .map(|h| {
