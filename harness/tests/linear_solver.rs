@@ -43,8 +43,8 @@ fn iterations_that_are_asked_for_come_to_what_a_factor_gives() {
     assert_eq!(iterated.len(), 5);
     for (a, b) in iterated.iter().zip(&factored) {
         assert_eq!(a["linear_solver"], "multigrid", "{a}");
-        assert_eq!(factorisation(a), "multigrid levels for conjugate gradients (asked for)");
-        assert_eq!(factorisation(b), "one, for all load levels (asked for)");
+        assert_eq!(factorisation(a), "multigrid levels for conjugate gradients (requested)");
+        assert_eq!(factorisation(b), "one, for all load levels (requested)");
         let count = metric(a, "linear-iterations").unwrap();
         // The parameters of a cloud are not displacements, and rough parameter fields are nearly as soft as
         // smooth ones.
@@ -92,7 +92,7 @@ fn nearly_incompressible_elements_that_share_dilations_are_iterated_with_pressur
     };
     let (iterated, factored) = (of("amg"), of("direct"));
     assert_eq!(iterated["linear_solver"], "multigrid-pressures", "{iterated}");
-    assert_eq!(factorisation(&iterated), "multigrid levels for displacements and pressures (asked for)");
+    assert_eq!(factorisation(&iterated), "multigrid levels for displacements and pressures (requested)");
     for name in ["max", "strain-energy"] {
         let (a, b) = (metric(&iterated, name).unwrap(), metric(&factored, name).unwrap());
         assert!((a - b).abs() < 1e-7 * b, "{name}: {a} and {b}");

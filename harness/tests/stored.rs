@@ -105,7 +105,7 @@ fn a_record_of_one_solution_does_not_know_its_error() {
     let done = tissuebench(&["run", &write(&dir, "s.toml", &text), "--once"]);
     assert_eq!(done.code, 0, "{}", done.stderr);
     let line = done.stdout.lines().find(|line| line.starts_with("compared with hex8 with ")).unwrap();
-    assert!(line.contains("whose own error is unknown: it is of hex8 alone"), "{line}");
+    assert!(line.contains("whose own error is unknown: only the solution by hex8 is stored"), "{line}");
 }
 
 #[test]

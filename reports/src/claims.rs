@@ -183,7 +183,7 @@ impl Relation {
         let limit = format!("claimed at most {}", significant(self.at_most, 2));
         let Some(matched) = Matched::of(&right, &left) else {
             let none = format!(
-                "no run has a time and {} on both sides, or they reach no error in common",
+                "one side has no run with a time and {}, or the two sides reach no common error",
                 self.error
             );
             return (None, none);

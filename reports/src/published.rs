@@ -63,7 +63,8 @@ const PUBLICATIONS: [Publication; 1] = [Publication {
     efg_nodes: 83,
     kernel: "cubic-spline",
     scheme: "inverse-distance",
-    caveat: "Geometry, supports and the position of the jaws are estimated from the publication's pictures: only times and orders of magnitude can be compared.",
+    caveat: "Geometry, supports and the position of the jaws are estimated from the publication's pictures, so only \
+             times and orders of magnitude can be compared.",
 }];
 
 /// One published number.

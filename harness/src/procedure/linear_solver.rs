@@ -93,8 +93,8 @@ pub(super) fn serves(method: &Discretisation, setup: &Setup, asked: LinearSolver
     let (unknowns, compact) = (3 * method.nodes().len(), compactness(method.nodes()));
     let of_cube = unknowns as f64 * compact;
     match (asked, direct) {
-        (LinearSolver::Direct, _) => (Serves::Factor, "asked for".into()),
-        (LinearSolver::Amg, _) => (iterated, "asked for".into()),
+        (LinearSolver::Direct, _) => (Serves::Factor, "requested".into()),
+        (LinearSolver::Amg, _) => (iterated, "requested".into()),
         (LinearSolver::Auto, Some(why)) => (Serves::Factor, why.into()),
         (LinearSolver::Auto, None) => {
             let iterates = of_cube >= needed;

@@ -47,7 +47,7 @@ pub fn check(history: &Path) -> Result<(), ReportError> {
     if !trends(history)?.is_empty() {
         return Ok(());
     }
-    let reason = "it holds no history; `tissuebench history add` begins one".into();
+    let reason = "the folder holds no history; `tissuebench history add` starts one".into();
     Err(RecordError::Content { path: history.into(), reason }.into())
 }
 

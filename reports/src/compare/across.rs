@@ -43,7 +43,7 @@ pub fn across(pair: &mut (RunSet, RunSet), settings: &[String]) -> Result<(), St
     let clears = settings.iter().map(|word| {
         SETTINGS.iter().find(|(name, _)| name == word).map(|(_, clear)| *clear).ok_or_else(|| {
             let known: Vec<&str> = SETTINGS.iter().map(|(name, _)| *name).collect();
-            format!("--across {word}: is no setting of a run; take one of {}", known.join(", "))
+            format!("--across {word}: is not a setting of a run; give one of {}", known.join(", "))
         })
     });
     let clears: Vec<Clear> = clears.collect::<Result<_, _>>()?;
@@ -59,7 +59,8 @@ pub fn across(pair: &mut (RunSet, RunSet), settings: &[String]) -> Result<(), St
             let first = owners.entry(record.run.clone()).or_insert_with(|| (own.clone(), name.clone()));
             if first.0 != own {
                 return Err(format!(
-                    "--across {}: '{}' and '{name}' are of the same results and differ in nothing else; leave one of them out",
+                    "--across {}: '{}' and '{name}' belong to the same results and differ in no other setting; leave \
+                     one of the two out",
                     settings.join(" --across "),
                     first.1
                 ));
@@ -99,8 +100,8 @@ mod tests {
     fn a_word_that_is_no_setting_and_runs_that_nothing_else_tells_apart_are_refused() {
         let mut pair = (set(&[("a", "standard", 1.0), ("a", "nodal-mean", 2.0)]), set(&[]));
         let bad = across(&mut pair, &["dilatation".into()]).unwrap_err();
-        assert!(bad.contains("is no setting") && bad.contains("dilation"), "{bad}");
+        assert!(bad.contains("is not a setting") && bad.contains("dilation"), "{bad}");
         let bad = across(&mut pair, &["dilation".into()]).unwrap_err();
-        assert!(bad.contains("differ in nothing else"), "{bad}");
+        assert!(bad.contains("differ in no other setting"), "{bad}");
     }
 }

@@ -55,10 +55,11 @@ fn figure(group: &[Run]) -> Option<Figure> {
         rows.push(("published, EFG from FE".into(), DIRECTIONS.map(|(q, _)| published(q)), GREY));
     }
     let mut caption = String::from(
-        "Root mean square of the displacement difference from the reference, one scale for all columns; each method in its colour",
+        "Root mean square of the displacement difference from the reference, with one scale for all columns and one \
+         colour per method",
     );
     if publication.is_some() {
-        caption += ", grey what the publication's text gives for EFG against its own FE";
+        caption += "; grey: the published difference of EFG from the publication's own FE";
     }
     if usual.iter().map(|s| s.runs.len()).sum::<usize>() > 24 {
         caption += "; the finest run of each method";

@@ -23,13 +23,12 @@ pub(super) fn conditioning(runs: &[Run]) -> Vec<Figure> {
     let figure = |(page, panels): (usize, &[(String, Vec<Line>)])| Figure {
         name: paged("conditioning", page),
         title: continued("Conditioning of the moment matrix", page),
-        caption: "Median condition number over all integration points; the bar reaches up to the worst"
-            .into(),
+        caption: "Median condition number over all integration points; the bar extends to the largest".into(),
         canvas: canvas(
             panels,
             "condition number [1]",
             true,
-            "Marker: median over the points; bar: up to the worst point.",
+            "Marker: median over the points; bar: up to the largest.",
         ),
         data: Data::Plots(plotted(panels, "condition number [1]", true)),
     };
@@ -56,8 +55,9 @@ pub(super) fn neighbours(runs: &[Run]) -> Vec<Figure> {
     vec![Figure {
         name: "neighbours".into(),
         title: "Neighbours per integration point".into(),
-        caption: "Mean number of nodes whose support covers an integration point; the bar spans the least and the most".into(),
-        canvas: canvas(&panels, "neighbours [1]", false, "Marker: mean over the points; bar: least to most."),
+        caption: "Mean number of nodes whose support covers an integration point; the bar spans the smallest and the \
+                  largest number".into(),
+        canvas: canvas(&panels, "neighbours [1]", false, "Marker: mean over the points; bar: smallest to largest number."),
         data: Data::Plots(plotted(&panels, "neighbours [1]", false)),
     }]
 }

@@ -79,14 +79,15 @@ fn figure(quantity: &str, page: usize, panels: &[Paned]) -> Figure {
             }
         })
         .collect();
-    let note = "Grey: slopes promised by theory. Errors at rounding level are not drawn.";
+    let note = "Grey: theoretical slopes. Errors at rounding level are not drawn.";
     Figure {
         name: paged(&format!("convergence-{quantity}"), page),
         title: continued(
             &format!("Convergence of the {}", label(quantity).trim_end_matches(" [1]")),
             page,
         ),
-        caption: "Error against node spacing on logarithmic axes; the grey fan has the slopes theory promises for the methods in the panel".into(),
+        caption: "Error against node spacing on logarithmic axes; the grey fan shows the theoretical slopes of the \
+                  methods in the panel".into(),
         canvas: multiples(contents, &styles, note),
         data: Data::Plots(plots),
     }

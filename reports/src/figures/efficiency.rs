@@ -34,16 +34,16 @@ fn figure(question: &Question, clock: Clock, page: usize, panels: &[Ask]) -> Fig
         Clock::Repeated => (
             "efficiency-repeated",
             "Time of a repeated solve against error",
-            "Time that 99 of 100 solves of a loop prepared once take at most (of fewer solves the slowest), each for the displacement of \
-             all nodes,",
+            "99th percentile of the time of a solve in a loop that is prepared once (the slowest of fewer than 100 \
+             solves), each for the displacement of all nodes,",
         ),
     };
     Figure {
         name: paged(&format!("{name}{}", question.ending), page),
         title: continued(&format!("{title}: {}", question.name), page),
         caption: format!(
-            "{time} against the relative error of the {}, a line for each method through its sizes; the grey staircase is the Pareto front \
-             of three runs or more: no run drawn is both faster and more accurate",
+            "{time} against the relative error of the {}, with one line per method through its sizes; the grey \
+             staircase is the Pareto front of three or more runs: no run in the panel is both faster and more accurate",
             question.name
         ),
         canvas: multiples(contents, &styles, &note(question, clock, panels)),
@@ -199,10 +199,11 @@ fn note(question: &Question, clock: Clock, panels: &[Ask]) -> String {
         }
     }
     if clock == Clock::First && panels.iter().any(|panel| panel.by == Seconds::Cpu) {
-        note += " CPU time where the machine was busy: seconds of all processors together.";
+        note += " CPU time, summed over all processors, is shown if the machine was busy.";
     }
     if question.scalar {
-        note += " A single number can be right by chance: a thin line leads to the error as which a run counts, a third of its displacement's.";
+        note += " A single number can be accurate by chance: a thin line leads to the error that is used instead, a \
+                 third of the displacement error.";
     }
     let several = panels.len() > 1;
     let place = |p: &Ask| if several { format!(" ({})", p.title) } else { String::new() };
@@ -217,7 +218,7 @@ fn note(question: &Question, clock: Clock, panels: &[Ask]) -> String {
         note += &format!(" Errors below 10⁻⁶ are drawn at 10⁻⁶ ({}).", list(&floored));
     }
     if panels.iter().any(|p| p.kernels) {
-        note += " Kernels: a marker for each size and rule of integration.";
+        note += " Kernels: one marker for each size and integration rule.";
     }
     note
 }

@@ -56,8 +56,8 @@ pub(super) fn forces(runs: &[Run]) -> Vec<Figure> {
     figures(
         "tool-force",
         "Tool force",
-        "Force on the tool while it closes, the finest run of each method: over the closure, over time where the scene has one, and minus that \
-         of the reference at the same closure",
+        "Force on the tool during closure, for the finest run of each method: over the closure, over time if the \
+         scene is dynamic, and minus the reference force at the same closure",
         panels,
     )
 }
@@ -100,7 +100,8 @@ pub(super) fn energies(runs: &[Run]) -> Vec<Figure> {
     figures(
         "energy-time",
         "Energy over time",
-        "Where the energy is at every step, the finest run of each method; the work of the loads is the sum of the others where none is lost",
+        "Energy balance at every step, for the finest run of each method; without numerical loss, the work of the \
+         loads equals the sum of the other terms",
         panels,
     )
 }
@@ -131,8 +132,8 @@ pub(super) fn spectra(runs: &[Run]) -> Vec<Figure> {
     figures(
         "spectrum",
         "Frequency spectrum",
-        "Computed over exact frequency of the lowest modes in order, the finest run of each method; a spurious slow mode lies near zero and \
-         shifts all others",
+        "Ratio of computed to exact frequency of the lowest modes in order, for the finest run of each method; a \
+         spurious slow mode lies near zero and shifts all others",
         panels,
     )
 }

@@ -127,7 +127,8 @@ fn figure(page: usize, panels: &[(String, &'static str, Vec<Sweep>)]) -> Figure 
     Figure {
         name: paged("locking", page),
         title: continued("Locking: error against Poisson's ratio", page),
-        caption: "Each method at one size while the material becomes incompressible; a method that locks climbs to the right, its tip deflection falls".into(),
+        caption: "Each method at one size as the material becomes incompressible; the error of a method that locks \
+                  grows to the right, and its tip deflection falls".into(),
         canvas: multiples(contents, &styles, "Errors below 10⁻⁶ are drawn at 10⁻⁶."),
         data: Data::Plots(panels.iter().map(plotted).collect()),
     }

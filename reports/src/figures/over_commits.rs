@@ -18,8 +18,8 @@ pub(super) fn figure(trends: &[Trend]) -> Option<Figure> {
     (!trends.is_empty()).then(|| Figure {
         name: "over-commits".into(),
         title: TITLE.into(),
-        caption: "As ratios to the first commit: the geometric mean of all errors, and the processor seconds of one pass over all runs, each at its \
-                  shortest. Marked are steps outside of noise"
+        caption: "Ratios to the first commit: the geometric mean of all errors, and the processor seconds of one pass \
+                  over all runs, with the shortest repeat of each run. Changes outside noise are marked"
             .into(),
         canvas: over_commits(trends),
         data: Data::Rows(csv(trends)),
@@ -34,7 +34,7 @@ fn csv(trends: &[Trend]) -> String {
         "label",
         "errors over the first",
         "processor seconds over the first",
-        "outside of noise",
+        "outside noise",
     ];
     let mut out = csv_line(&head);
     for (trend, point) in trends.iter().flat_map(|trend| trend.points.iter().map(move |point| (trend, point)))
@@ -69,7 +69,7 @@ pub(crate) fn over_commits(trends: &[Trend]) -> Canvas {
         panel("Errors", "mean error over the first [1]", trends, &styles, errors, Point::errors_moved),
         panel("Times", "processor seconds over the first [1]", trends, &styles, seconds, Point::times_moved),
     ];
-    multiples(panels, &styles, "Marked: steps outside of noise.")
+    multiples(panels, &styles, "Marked: changes outside noise.")
 }
 
 fn panel<'a>(

@@ -45,14 +45,14 @@ pub(super) fn figure(runs: &[Run]) -> Option<Figure> {
     let styles = styles(&plot::labels(std::slice::from_ref(&plot)));
     let content = content(&plot, &styles);
     let note = format!(
-        "Of methods that were run on {CASES} or more of the cases that any method reaches. Up and to the left is better."
+        "Methods that were run on at least {CASES} of the cases that any method reaches. Up and to the left is better."
     );
     Some(Figure {
         name: "profile".into(),
         title: format!("Performance profile: within {}", wanted()),
         caption: format!(
-            "Share of the cases of each method on which it is within {} of the tool force, or of the displacement where no force is known, in at \
-             most so many times the time of the fastest method there (Dolan and More 2002)",
+            "Share of its cases in which a method is within {} of the tool force (or of the displacement if no force \
+             is known), against the ratio of its time to the time of the fastest method (Dolan and More 2002)",
             wanted()
         ),
         canvas: multiples(vec![content], &styles, &note),

@@ -69,9 +69,9 @@ fn figure(case: &str, chosen: &[Chosen], runs: &[Run]) -> Figure {
     let outlines = sections.iter().flat_map(|(f, _)| tools(f)).flatten();
     let pose = Pose::new(sections.len(), corners.chain(outlines));
     let note = format!(
-        "Orthographic view onto the plane of the tools' travel and the body's length; tools grey. Cells have straight edges. The pressure is the mean \
-         over each cell, positive in compression, not smoothed. The colours end at {} kPa: 98 % of the cells stay below their method's \
-         limit, and this is the middle one of these limits.",
+        "Orthographic view onto the plane of the tools' travel and the body's length; tools grey. Cells have straight \
+         edges. The pressure is the mean over each cell, positive in compression, not smoothed. The colours end at {} \
+         kPa, the median over the methods of the pressure that 98 % of the cells stay below.",
         significant(limit * 1e-3, 3)
     );
     let notes = wrapped(&note, WIDTH - 20.0);
@@ -103,8 +103,9 @@ fn figure(case: &str, chosen: &[Chosen], runs: &[Run]) -> Figure {
     Figure {
         name: format!("pressure-{}", slug(case)),
         title: format!("Pressure between the tools, {case}"),
-        caption: "Section through the deformed body in the plane of the tools' travel, every cell coloured by its mean pressure as the method itself has it \
-                  (of the projected dilation or the pressure field, where it has one), under one colour scale"
+        caption: "Section through the deformed body in the plane of the tools' travel. Each cell is coloured by its \
+                  mean pressure as used by the method (from the projected dilation or the pressure field, if any), \
+                  with one colour scale"
             .into(),
         canvas,
         data: Data::Picture(case.into()),

@@ -21,8 +21,8 @@ pub(super) fn maps(axes: &[Axis]) -> Vec<Figure> {
         name: format!("stability-{}-{}", slug(&axis.case), slug(&axis.name)),
         title: format!("Where methods bend and break: {}, {}", axis.case, axis.name),
         caption: format!(
-            "Numbers: {} in per cent; colours: its classes. Bold: twice as large as at {} or more, where a method bends; from {} % on it \
-             is wrong",
+            "Numbers: {} in per cent; colours: classes of this error. Bold: at least twice the error at {}, where a \
+             method bends; a result with {} % or more is wrong",
             label(&axis.judge),
             value(axis, axis.base),
             significant(100.0 * axis.wrong, 2),
@@ -111,7 +111,7 @@ fn draw(axis: &Axis) -> Canvas {
 
 fn note(axis: &Axis) -> String {
     format!(
-        "Numbers: {} in per cent. Bold: twice that at {} or more (it bends). Wrong: {} % or more.",
+        "Numbers: {} in per cent. Bold: at least twice the value at {} (the method bends). Wrong: {} % or more.",
         label(&axis.judge),
         value(axis, axis.base),
         significant(100.0 * axis.wrong, 2),

@@ -229,8 +229,7 @@ fn caption(tools: bool, chosen: &[Chosen]) -> String {
         text += "; the tools stand where each run ended";
     }
     if chosen.iter().any(|c| !c.1.is_empty()) {
-        text +=
-            "; of each family the run farthest from the reference and the nearest, or the reference itself";
+        text += "; for each family, the run farthest from the reference and the nearest run, or the reference itself";
     }
     text
 }

@@ -76,8 +76,10 @@ fn transfer_figure(runs: &[Run]) -> Option<Figure> {
     legend(&mut canvas, &styles, (12.0, bottom + 34.0), WIDTH - 20.0, false);
     if floored {
         let unit = if scale > 1.0 { " mm" } else { "" };
-        let note =
-            format!("Errors below {}{unit} are drawn at that value; the table has them all.", tick(floor));
+        let note = format!(
+            "Errors below {}{unit} are drawn at that value; the table lists all errors.",
+            tick(floor)
+        );
         canvas.text((12.0, bottom + below + 8.0), &note, TEXT, GREY, Anchor::Start);
     }
     let mut rows = csv_line(&["scheme", "source", label]);
@@ -90,9 +92,10 @@ fn transfer_figure(runs: &[Run]) -> Option<Figure> {
     Some(Figure {
         name: format!("transfer-{}", slug(case)),
         title: format!("Transfer schemes compared, {case}"),
-        caption: "Error of the displacement at the target points after each scheme carried it there: of a prescribed field it is the transfer's own, \
-                  of a method's result it holds the method's error too, which own-rows (the method's own shape functions) shows alone. Several \
-                  markers of one source in a row are its kernels and numbers of nodes"
+        caption: "Error of the displacement at the target points after transfer by each scheme. For a prescribed \
+                  field, this is the error of the transfer alone. For a method's result, the method's own error is \
+                  included; own-rows (the method's own shape functions) shows the method's error alone. Several \
+                  markers of one source in a row are different kernels and numbers of nodes"
             .into(),
         canvas,
         data: Data::Rows(rows),

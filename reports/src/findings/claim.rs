@@ -57,8 +57,8 @@ fn verdict(group: &[Run], share: f64) -> Option<String> {
     if phrases.is_empty() {
         return missing.map(|family| {
             format!(
-                "the publication claims that EFG is about as accurate as FEM at {less} less cost. This can't be judged here: no {family} run \
-                 has both a time and an error."
+                "the publication claims that EFG is about as accurate as FEM at {less} less cost. This claim can't be \
+                 judged here: no {family} run has both a time and an error."
             )
         });
     }
@@ -68,8 +68,8 @@ fn verdict(group: &[Run], share: f64) -> Option<String> {
     let verdicts = words.iter().zip(&sides).filter(|(_, names)| !names.is_empty());
     let verdicts: Vec<String> = verdicts.map(|(words, names)| format!("{words} {}", list(names))).collect();
     Some(format!(
-        "the fastest EFG run is compared with the fastest FEM run ({}) at equal error. {} The publication claims {less} less cost at \
-         about the same accuracy. This {}.",
+        "the fastest EFG run is compared with the fastest FEM run ({}) at equal error. {} The publication claims \
+         {less} less cost at about the same accuracy. This claim {}.",
         list(&elements),
         phrases.join(" "),
         verdicts.join(", ")
@@ -108,8 +108,8 @@ impl Matched {
         let (limit, family, other, beyond) =
             if fem > efg { (fem, "FEM", "EFG", efg) } else { (efg, "EFG", "FEM", fem) };
         format!(
-            "For the {name} it takes {span} times as long, down to an error of {} (no {family} run is more accurate; the best {other} \
-             run has {}).",
+            "For the {name}, EFG takes {span} times as long, down to an error of {} (no {family} run is more \
+             accurate; the best {other} run has {}).",
             percent(limit),
             percent(beyond)
         )
@@ -165,12 +165,15 @@ mod tests {
     fn the_claim_is_held_against_the_runs() {
         assert_eq!(
             verdict(500.0, 0.1),
-            "jaws: the fastest EFG run is compared with the fastest FEM run (hex20 and tet4) at equal error. For the displacement it takes \
-             0.50 to 50 times as long, down to an error of 10.0 % (no EFG run is more accurate; the best FEM run has 10.0 %). The \
-             publication claims 99.5 % less cost at about the same accuracy. This does not hold for displacement."
+            "jaws: the fastest EFG run is compared with the fastest FEM run (hex20 and tet4) at equal error. For the \
+             displacement, EFG takes 0.50 to 50 times as long, down to an error of 10.0 % (no EFG run is more \
+             accurate; the best FEM run has 10.0 %). The publication claims 99.5 % less cost at about the same \
+             accuracy. This claim does not hold for displacement."
         );
-        assert!(verdict(0.04, 0.1).ends_with("accuracy. This holds for displacement."));
-        assert!(verdict(4.0, 0.1).ends_with("accuracy. This holds at some errors only for displacement."));
+        assert!(verdict(0.04, 0.1).ends_with("accuracy. This claim holds for displacement."));
+        assert!(
+            verdict(4.0, 0.1).ends_with("accuracy. This claim holds at some errors only for displacement.")
+        );
         let coarse = verdict(0.04, 0.15);
         assert!(
             coarse.contains(
@@ -208,8 +211,8 @@ mod tests {
         assert_eq!(
             claim(&runs(&records)),
             [
-                "jaws: the publication claims that EFG is about as accurate as FEM at 99.5 % less cost. This can't be judged here: no \
-              EFG run has both a time and an error."
+                "jaws: the publication claims that EFG is about as accurate as FEM at 99.5 % less cost. This claim \
+                 can't be judged here: no EFG run has both a time and an error."
             ]
         );
         records.iter_mut().for_each(|r| r.published.clear());

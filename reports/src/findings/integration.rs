@@ -28,8 +28,8 @@ pub(super) fn integration(runs: &[Run]) -> Vec<String> {
             }
         };
         out.push(format!(
-            "{} at ν = {}: in {} of {} clouds the error of integration is larger than that of discretisation{places}. {} with {} nodes and {} cells \
-             per node has the largest ratio, {}.",
+            "{} at ν = {}: in {} of {} clouds the integration error is larger than the discretisation error{places}. \
+             {} with {} nodes and {} cells per node has the largest ratio, {}.",
             most.run.is.case,
             ratio(most.run.is.poisson),
             worse.len(),

@@ -71,8 +71,8 @@ fn maxima(pairs: &[Pair]) -> Vec<String> {
         let theirs = [pair.paper.value, y_theirs.paper.value, z_theirs.paper.value];
         let [a, b, c] = [x / theirs[0], y / theirs[1], z / theirs[2]].map(percent);
         out.push(format!(
-            "{}, {}: the largest displacements are {}, {} and {} mm in x, y and z. The published ones are {}, {} and {} mm; ours are {a}, {b} and {c} \
-             of them.",
+            "{}, {}: the largest displacements are {}, {} and {} mm in x, y and z. The published displacements are \
+             {}, {} and {} mm; ours are {a}, {b} and {c} of the published values.",
             pair.run.is.case,
             pair.run.is.method,
             mm(x),
@@ -142,7 +142,7 @@ fn limits(runs: &[Run]) -> Vec<String> {
             }
             (None, Some(reached)) if reached > load => {
                 format!(
-                    " There it loses stability; the solver finds another equilibrium and reaches {} of the load.",
+                    " The body then loses stability; the solver finds another equilibrium and reaches {} of the load.",
                     percent(reached)
                 )
             }

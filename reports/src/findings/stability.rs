@@ -19,16 +19,16 @@ fn sentence(axis: &Axis) -> String {
     let broken: Vec<String> = methods.iter().filter_map(|m| breaks(axis, m)).collect();
     let mut text = format!("{}, {}: ", axis.case, axis.name);
     text += &match (steady.len(), methods.len()) {
-        (all, of) if all == of => "every method holds all over".to_string(),
-        (0, _) => "no method holds all over".to_string(),
-        _ => format!("{} {} all over", list(&steady), if steady.len() == 1 { "holds" } else { "hold" }),
+        (all, of) if all == of => "every method holds at all values".to_string(),
+        (0, _) => "no method holds at all values".to_string(),
+        _ => format!("{} {} at all values", list(&steady), if steady.len() == 1 { "holds" } else { "hold" }),
     };
     if !broken.is_empty() {
         text += &format!("; wrong or refused: {}", broken.join(", "));
     }
     let silent: Vec<String> = methods.iter().filter(|m| axis.silent(m) > 0).map(|m| m.to_string()).collect();
     if !silent.is_empty() {
-        text += &format!("; wrong without a word: {}", list(&silent));
+        text += &format!("; wrong without a warning: {}", list(&silent));
     }
     text + "."
 }
@@ -79,8 +79,8 @@ mod tests {
         };
         assert_eq!(
             sentence(&axis),
-            "bending, Poisson's ratio: hex8-mean holds all over; wrong or refused: tet4 from 0.45 on, worse from 0.45 on; \
-             wrong without a word: worse."
+            "bending, Poisson's ratio: hex8-mean holds at all values; wrong or refused: tet4 from 0.45 on, worse from 0.45 on; \
+             wrong without a warning: worse."
         );
     }
 }

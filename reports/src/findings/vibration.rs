@@ -29,7 +29,7 @@ pub(super) fn vibrations(runs: &[Run]) -> Vec<String> {
             }
             if !parts.is_empty() {
                 out.push(format!(
-                    "{case}: the first frequency of {called} differs from the exact one by {}.",
+                    "{case}: the first frequency of {called} differs from the exact frequency by {}.",
                     list(&parts)
                 ));
             }

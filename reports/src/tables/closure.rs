@@ -12,9 +12,9 @@ pub(super) fn force_closure(runs: &[Run]) -> Table {
     let mut table = Table::new(
         "force-closure",
         "Tool force against closure",
-        "Force on the first tool at every step, the finest run of each method, beside the reference at the same closure (between two of its steps on \
-         a straight line), the ends of the reference's uncertainty where it has one, and the deviation from the reference. Where no reference is \
-         recorded, the method that has no error against it stands for it",
+        "Force on the first tool at every step, for the finest run of each method, with the reference force at the \
+         same closure (interpolated linearly between steps), the bounds of the reference's uncertainty if known, and \
+         the deviation from the reference. If no reference is recorded, the method without a deviation takes its place",
         &[
             ("case", Words),
             ("step", Number),

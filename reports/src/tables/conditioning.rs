@@ -9,8 +9,8 @@ pub(super) fn conditioning(runs: &[Run]) -> Table {
     let mut table = Table::new(
         "conditioning",
         "Neighbours and conditioning",
-        "Neighbours per integration point, condition number of the moment matrix (shifted and scaled basis), and points that needed a fallback: \
-         a larger support, a regularised moment matrix, a lower order",
+        "Neighbours per integration point, condition number of the moment matrix (shifted and scaled basis), and \
+         numbers of points that needed a fallback: a larger support, a regularised moment matrix, or a lower order",
         &[
             ("case", Words),
             ("method", Words),

@@ -34,8 +34,9 @@ pub(super) fn cost(runs: &[Run]) -> Table {
     let mut table = Table::new(
         "cost",
         "Growth of cost",
-        "Exponent p of time ~ nodes^p by least squares over all sizes of a method (three or more that span a factor of four), with its \
-         standard error; time to prepare per integration point and memory beyond the input per integration point at the largest size",
+        "Exponent p of time ~ nodes^p by least squares over all sizes of a method (three or more sizes that span a \
+         factor of four), with its standard error; preparation time and memory beyond the input, both per integration \
+         point at the largest size",
         &[
             ("case", Words),
             ("ν [1]", Number),

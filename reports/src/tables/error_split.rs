@@ -71,11 +71,12 @@ pub(crate) fn parts<'a, 'r>(runs: &'a [Run<'r>]) -> Vec<Parts<'a, 'r>> {
 pub(super) fn error_split(runs: &[Run]) -> Table {
     let mut table = Table::new(
         "error-split",
-        "What the errors of clouds are made of",
-        "RMS of the displacement. Discretisation is the same cloud, finely integrated, from the reference; integration is the cloud from itself, finely \
-         integrated; transfer is the cloud carried over by inverse distance from its own shape functions; the whole is the cloud with its own shape \
-         functions from the reference. The reference's own error is 0 where it is exact, and is reported elsewhere by the elements nearest to it. RMS do not \
-         add up",
+        "Components of the errors of clouds",
+        "RMS differences of the displacement. Discretisation: the finely integrated cloud, from the reference. \
+         Integration: the cloud, from the same cloud finely integrated. Transfer: the cloud after transfer by inverse \
+         distance, from its own shape functions. Whole: the cloud with its own shape functions, from the reference. \
+         Reference: the reference's own error, 0 if exact, otherwise estimated by the elements nearest to the \
+         reference. RMS values do not add up",
         &[
             ("case", Words),
             ("ν [1]", Number),

@@ -31,7 +31,7 @@ pub(super) fn rms(runs: &[Run]) -> Table {
         runs,
         "rms",
         "RMS errors",
-        "Root mean square of the displacement difference from the reference, by direction and of the magnitude",
+        "Root mean square of the displacement difference from the reference, by direction and in magnitude",
         &[("RMS x [mm]", "rms-x"), ("RMS y [mm]", "rms-y"), ("RMS z [mm]", "rms-z"), ("RMS |u| [mm]", "rms")],
         1e3,
         Cell::Scientific,
@@ -44,8 +44,8 @@ pub(super) fn maxima(runs: &[Run]) -> Table {
         runs,
         "maxima",
         "Largest displacements",
-        "Largest displacement at the end by direction and of the magnitude, the largest of all recorded states of a motion, and the largest \
-         error of the magnitude",
+        "Largest displacement at the end by direction and in magnitude, the largest magnitude over all recorded \
+         states in dynamics, and the largest error of the magnitude",
         &[
             ("max x [mm]", "max-x"),
             ("max y [mm]", "max-y"),

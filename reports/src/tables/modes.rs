@@ -10,9 +10,9 @@ pub(super) fn modes(runs: &[Run]) -> Table {
     let mut table = Table::new(
         "modes",
         "Vibrations",
-        "Error of the frequency of the mode nearest to the exact one, with the share of its displacement that is exact; largest error of the \
-         lowest frequencies in order; modes slower than 0.9 of the slowest exact one; rigid motions; motions without mass; critical \
-         time step of central differences",
+        "Frequency error of the mode nearest to the exact mode, with the share of its displacement that is exact; \
+         largest error of the lowest frequencies in order; number of modes slower than 0.9 of the slowest exact mode; \
+         rigid motions; motions without mass; critical time step of central differences",
         &[
             ("case", Words),
             ("method", Words),

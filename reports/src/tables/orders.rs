@@ -14,8 +14,9 @@ pub(super) fn observed(runs: &[Run]) -> Table {
     let mut table = Table::new(
         "orders",
         "Observed order of convergence",
-        "Slope of log error against log h by least squares with its standard error and 95 % band (Student's t), and the order between the two finest levels; \
-         asymptotic where the last two pairs agree within 0.15, oscillatory where errors grow and shrink, divergent where they grow at last",
+        "Slope of log error against log h by least squares with its standard error and 95 % band (Student's t), and \
+         the order between the two finest levels. Asymptotic: the last two pairs agree within 0.15. Oscillatory: \
+         errors grow and shrink. Divergent: errors grow at the finest levels",
         &[
             ("case", Words),
             ("ν [1]", Number),
@@ -57,8 +58,10 @@ pub(super) fn convergence_index(runs: &[Run]) -> Table {
     let mut table = Table::new(
         "grid-convergence",
         "Grid convergence index",
-        "Outcomes on the three finest levels: apparent order, Richardson's extrapolation and the grid convergence index of the finest and the next level (safety \
-         factor 1.25); r^p GCI21 / GCI32 is 1 within 0.05 in the asymptotic range. Changes that alternate or grow have no order. Directions that move less than a thousandth of the largest displacement are left out",
+        "Results on the three finest levels: apparent order, Richardson's extrapolation and the grid convergence \
+         index of the finest and the next level (safety factor 1.25); r^p GCI21 / GCI32 is 1 within 0.05 in the \
+         asymptotic range. No order is defined if the changes alternate or grow. Directions with less than a \
+         thousandth of the largest displacement are left out",
         &[
             ("case", Words),
             ("ν [1]", Number),

@@ -12,7 +12,7 @@ pub(super) fn checks(set: &RunSet) -> Table {
     let mut table = Table::new(
         "checks",
         "Checks",
-        "Every bound on a number, in SI units, and whether it held",
+        "Every bound on a number, in SI units, and its verdict",
         &[
             ("status", Words),
             ("case", Words),
@@ -62,8 +62,8 @@ pub(super) fn failures(set: &RunSet) -> Table {
     let mut table = Table::new(
         "failed-runs",
         "Runs that ended early",
-        "Runs that gave no numbers or those of a part of their load only, and why. A partial run is in tables and figures of what it reached, \
-         and in none where errors of whole runs are compared",
+        "Runs without numbers, or with numbers for a part of the load only, and the reason. A partial run appears in \
+         tables and figures of the states that it reached, but not in comparisons of the errors of complete runs",
         &[("result", Words), ("case", Words), ("method", Words), ("load [1]", Number), ("reason", Words)],
     );
     let mut failures: Vec<_> = set.failures.iter().collect();
@@ -85,7 +85,7 @@ pub(super) fn warnings(set: &RunSet) -> Table {
     let mut table = Table::new(
         "warnings",
         "Warnings",
-        "Runs that gave numbers which are to be read with care, and why; `tissuebench list warnings` explains the codes",
+        "Runs whose numbers need care, and the reason; `tissuebench list warnings` explains the codes",
         &[
             ("case", Words),
             ("method", Words),
@@ -128,7 +128,7 @@ pub(super) fn plan(set: &RunSet) -> Table {
     let mut table = Table::new(
         "plan",
         "Stages run and skipped",
-        "Over all runs: each stage with the reason it ran or was skipped",
+        "Stages of all runs, with the reason for which each stage was run or skipped",
         &[("stage", Words), ("outcome", Words), ("because", Words), ("runs", Number)],
     );
     let mut counts: BTreeMap<(&str, bool, String), (u64, BTreeSet<u64>)> = BTreeMap::new();

@@ -9,7 +9,9 @@ pub(super) fn over_commits(trends: &[Trend]) -> Table {
     let mut table = Table::new(
         "over-commits",
         "Commits",
-        "Processor seconds of one pass over all runs, each at its shortest; times and errors also over those of the first commit, of the runs that both have. Outside of noise since the commit before: errors that changed by more than a millionth, and times that a comparison of both would call",
+        "Processor seconds of one pass over all runs, with the shortest repeat of each run; times and errors also \
+         relative to the first commit, over the runs of both commits. Outside noise, relative to the previous commit: \
+         errors that changed by more than a millionth, and times that a comparison of both commits reports",
         &[
             ("study", Words),
             ("machine", Words),
@@ -21,7 +23,7 @@ pub(super) fn over_commits(trends: &[Trend]) -> Table {
             ("CPU [s]", Number),
             ("CPU over the first [1]", Number),
             ("errors over the first [1]", Number),
-            ("outside of noise", Words),
+            ("outside noise", Words),
         ],
     );
     for (trend, point) in trends.iter().flat_map(|trend| trend.points.iter().map(move |point| (trend, point)))

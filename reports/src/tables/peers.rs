@@ -20,9 +20,10 @@ pub(super) fn peers(runs: &[Run]) -> Table {
     let mut table = Table::new(
         "solver-times",
         "Other solvers on the same mesh",
-        "Median times of all phases of ours and of their whole process: its start, reading and writing too. Own phases are those that \
-         a solver reports of itself. A ratio above 1: this program is faster. Seconds of processors are known to a hundredth, so that \
-         their ratio is left out below a tenth. Errors are measured by us: with the same elements and integration they are the same",
+        "Median time of all phases of this program, and of the whole process of the other solver, with its start, \
+         reading and writing. Own phases: times reported by the solver itself. With a ratio above 1, this program is \
+         faster. CPU times have a resolution of 0.01 s, so their ratio is left out below 0.1 s. All errors are \
+         measured here: with the same elements and integration, the errors are the same",
         &[
             ("case", Words),
             ("ν [1]", Number),

@@ -16,8 +16,9 @@ pub(super) fn placement(clouds: &[Clouds]) -> Table {
     let mut table = Table::new(
         "placement",
         "Node placement",
-        "The same method on clouds of one number of nodes that differ by their seed: how many carried the whole load, and the least, the \
-         quartiles and the most of what they gave. The other tables have the first seed only",
+        "The same method on clouds with the same number of nodes but different seeds: the number of clouds that \
+         reached the full load, and the minimum, the quartiles and the maximum of each result. The other tables show \
+         the first seed only",
         &[
             ("case", Words),
             ("method", Words),

@@ -50,8 +50,8 @@ pub(super) fn supports(runs: &[Run]) -> Table {
         ("y [N]", Number),
         ("z [N]", Number),
     ];
-    let caption = "Force with which each support holds the body at the end, along the axes that it holds, of the finest run of each method; \
-                   supports are numbered as in the scene";
+    let caption = "Force of each support on the body at the end, along the constrained axes, for the finest run of \
+                   each method; supports are numbered as in the scene";
     of_places(Table::new("support-forces", "Forces of supports", caption, &header), runs, "reaction", 1.0)
 }
 
@@ -66,8 +66,8 @@ pub(super) fn means(runs: &[Run]) -> Table {
         ("y [mm]", Number),
         ("z [mm]", Number),
     ];
-    let caption = "Mean displacement, by area, of the faces that output.means names, at the end, of the finest run of each method; faces are \
-                   numbered as in the scene";
+    let caption = "Area-weighted mean displacement of the faces in output.means at the end, for the finest run of \
+                   each method; faces are numbered as in the scene";
     of_places(Table::new("face-means", "Mean displacement of faces", caption, &header), runs, "mean", 1e3)
 }
 
@@ -76,14 +76,15 @@ pub(super) fn frequencies(runs: &[Run]) -> Table {
     let mut table = Table::new(
         "frequencies",
         "Frequencies",
-        "Frequencies of the lowest modes of vibration, of the finest run of each method, and over the exact ones where these are known",
+        "Frequencies of the lowest modes of vibration, for the finest run of each method, and their ratio to the \
+         exact frequencies if known",
         &[
             ("case", Words),
             ("method", Words),
             ("nodes", Number),
             ("mode", Number),
             ("frequency [Hz]", Number),
-            ("of exact [1]", Number),
+            ("/ exact [1]", Number),
         ],
     );
     for (run, label) in finest(runs) {

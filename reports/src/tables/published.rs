@@ -156,10 +156,11 @@ fn ours(publication: &Publication, case: &[Run], run: &Run, quantity: &str) -> O
 
 /// Table of published numbers: value, place, computed value and speed-up.
 pub(super) fn beside_ours(runs: &[Run]) -> Table {
-    let caption = "Published numbers with the place where they stand, and ours for the matching discretisation. The RMS compares EFG, carried over by inverse \
-                   distance, with linear tetrahedra (with the case's reference where a study left that out). Geometry and supports are a reading of the \
-                   publication, not an identification; load is the part of the published force that was carried. A time of solving stands beside runs with contact \
-                   alone, that of finite elements beside explicit dynamics alone";
+    let caption = "Published numbers with their place in the publication, and ours for the matching discretisation. \
+                   The RMS compares EFG, transferred by inverse distance, with linear tetrahedra (with the case's \
+                   reference if the study has no linear tetrahedra). Geometry and supports are our interpretation of \
+                   the publication; load is the fraction of the published force that was reached. Solution times are \
+                   compared with runs with contact only, and the times of finite elements with explicit dynamics only";
     let mut table = Table::new(
         "published",
         "Beside the publication",
@@ -207,9 +208,10 @@ pub(super) fn beside_ours(runs: &[Run]) -> Table {
 pub(super) fn rms_parts(runs: &[Run]) -> Table {
     let mut table = Table::new(
         "published-rms",
-        "Where the difference between EFG and FE comes from",
-        "RMS over the nodes of the finite elements. The whole, the cloud without the transfer, and the parts by themselves: the transfer of a field \
-         that is known, the cloud's discretisation, and the elements' own error. RMS do not add up",
+        "Components of the difference between EFG and FE",
+        "RMS over the nodes of the finite elements: the whole difference, the difference without the transfer, and \
+         each part alone: the transfer of a known field, the discretisation of the cloud, and the error of the \
+         elements. RMS values do not add up",
         &[
             ("case", Words),
             ("difference", Words),

@@ -13,10 +13,10 @@ pub(super) fn repeated(runs: &[Run]) -> Table {
     let mut table = Table::new(
         "repeated",
         "Repeated solves",
-        "Time of one solve of a loop prepared once: the median, and what 99 % and 99.9 % of all take at most; frames per second at p99, and \
-         whether each of two rates holds there, that of haptics and that of pictures. Where there are fewer than 100 frames, p99 is the \
-         slowest. A frame gives the displacement of all nodes, or of the probes and loaded faces alone. Times below 0.001 ms are not \
-         resolved: a frame is timed by two readings of the clock, which take some 50 ns",
+        "Time of one solve in a loop that is prepared once: the median and the percentiles p99 and p99.9; frames per \
+         second at p99, and whether this rate suffices for haptics and for pictures. With fewer than 100 frames, p99 \
+         is the slowest frame. A frame gives the displacement of all nodes, or only of the probes and loaded faces. \
+         Times below 0.001 ms are not resolved: a frame is timed by two readings of the clock, which take about 50 ns",
         &[
             ("case", Words),
             ("ν [1]", Number),

@@ -27,9 +27,9 @@ pub(super) fn solvers(set: &RunSet) -> Table {
     let mut table = Table::new(
         "solvers",
         "Solvers and cases",
-        "How the runs of each solver ended: ok; stalled on the way; refused by the solver itself; failed or timed-out; not-offered \
-         where the case asks for more than the adapter offers or the solver is not installed; stale where an answer was of another \
-         problem. All errors are measured here; times are those of the solver's processes",
+        "Status of the runs of each solver: ok; stalled before the full load; refused by the solver itself; failed or \
+         timed-out; not-offered if the adapter lacks a feature of the case or the solver is not installed; stale if \
+         the answer belongs to another problem. All errors are measured here; times are those of the solver's processes",
         &header,
     );
     for case in cases {
@@ -43,7 +43,7 @@ pub(super) fn solvers(set: &RunSet) -> Table {
 
 /// Statuses with their counts, as `ok` or `ok 3, stalled 1`.
 fn text(ends: Option<&BTreeMap<&str, usize>>) -> String {
-    let Some(ends) = ends else { return "not asked".into() };
+    let Some(ends) = ends else { return "not run".into() };
     match ends.iter().collect::<Vec<_>>()[..] {
         [(status, 1)] => status.to_string(),
         ref several => {

@@ -12,8 +12,9 @@ pub(super) fn stability(set: &RunSet) -> Table {
     let mut table = Table::new(
         "stability",
         "Where methods bend and break",
-        "Along each axis: the first values, down and up from the base, at which the error is twice that at the base (bends) and at \
-         which the result is wrong, refused or unfinished (breaks); and how many results are wrong without a word",
+        "Along each axis: the first values below and above the base at which the error is twice the error at the base \
+         (bends), and at which the result is wrong, refused or unfinished (breaks); silent: the number of results \
+         that are wrong without a warning",
         &[
             ("case", Words),
             ("axis", Words),

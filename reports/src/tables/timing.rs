@@ -16,10 +16,11 @@ pub(super) fn phases(runs: &[Run], machine: &Machine) -> Table {
         "timing",
         "Run time by phase",
         &format!(
-            "On {}, {} threads. Seconds are on the wall (median ± interquartile range over repeats, no range where there was one repeat only); of the \
-             processors (median), where the machine was not quiet or a run of the case took more than 1.2 times as long on the wall; or on the wall, \
-             the least repeat, where runs were made at once. Most memory of the method at once, beyond the input (mesh, cloud, reference), and of the \
-             whole process. Transfer schemes have a table of their own",
+            "On {}, {} threads. Times are wall-clock times (median ± interquartile range over repeats; no range for a \
+             single repeat). If the machine was not quiet, or a run of the case had a wall-clock time of more than \
+             1.2 times its CPU time, times are CPU times (median). If runs were concurrent, times are the shortest \
+             wall-clock time of the repeats. Memory is the peak of the method beyond the input (mesh, cloud, \
+             reference), and the peak of the whole process. Transfer schemes have a separate table",
             machine.processor(),
             machine.threads
         ),

@@ -9,10 +9,12 @@ use crate::table::{Cell, Table};
 
 /// Table of error and cost of every scheme, by transferred field.
 pub(super) fn schemes(runs: &[Run]) -> Table {
-    let caption = "Two numbers at the target points, and the cost. The error is the distance of the transferred displacement from the reference: of a \
-         prescribed field it is the transfer's own (rms in the records); of a method's result it holds the method's error too, which own-rows (the method's own shape functions) \
-         shows alone. The change is the distance from the method's own displacement there (transfer-rms in the records): what the transfer does, whatever \
-         the reference. Cost: building the weights (prepare) and applying them (transfer)";
+    let caption = "Two numbers at the target points, and the cost. The error (rms in the records) is the distance of \
+                   the transferred displacement from the reference. For a prescribed field, this is the error of the \
+                   transfer alone; for a method's result, the method's own error is included, which own-rows (the \
+                   method's own shape functions) shows alone. The change (transfer-rms in the records) is the \
+                   distance from the method's own displacement at these points, and is independent of the reference. \
+                   Cost: building the weights (prepare) and applying the weights (transfer)";
     let mut table = Table::new(
         "transfer",
         "Transfer schemes",

@@ -19,9 +19,10 @@ pub(super) fn within(runs: &[Run]) -> Table {
         "within",
         &format!("Cheapest within {within}"),
         &format!(
-            "Time of the cheapest run of each method within {within} of the tool force of each case, or of its displacement where no force is \
-             known; a force counts as a third of the displacement's error where that is larger. Reached: on how many of the cases that any \
-             method reaches and that it was run on"
+            "Time of the cheapest run of each method within {within} of the tool force of each case, or of the \
+             displacement if no force is known. The error of a force is at least a third of the displacement error. \
+             Reached: the number of cases that the method reached, of the cases in which it was run and that any \
+             method reaches"
         ),
         &header,
     );
