@@ -84,10 +84,10 @@ pub fn smoothed_rows(
 /// `h = V / (c A)` with `V` (m^3) the volume of the cell, `A` (m^2) the area of all its listed facets, and
 /// `c` = 1 for constant, 8/3 for linear gradients.
 ///
-/// Nitsche's method with the penalty `beta = gamma (lambda + 2 mu) / h` is then definite for every `gamma >
-/// 1`, for any overlap of supports and any Poisson's ratio. If the boundary stress used the gradients of the
-/// shape functions themselves, no sufficient `gamma` would be known, because smoothing averages a part of
-/// these gradients out of the energy.
+/// Nitsche's method with the penalty `beta = gamma (lambda + 2 mu) / h` is then definite for every
+/// `gamma > 1`, for any overlap of supports and any Poisson's ratio. If the boundary stress used the
+/// gradients of the shape functions themselves, no sufficient `gamma` would be known, because smoothing
+/// averages a part of these gradients out of the energy.
 pub fn smoothed_trace(
     background: &Mesh,
     facets: &[Facet],

@@ -2,9 +2,9 @@
 
 use crate::ShapeError;
 
-/// Fields on a surface as combinations of their values at points of the volume quadrature, `f(x_s) = sum_q
-/// c_sq f(x_q)`, with the lengths of a trace inequality. The inequality bounds the integral of `f^2` over the
-/// surface by that over the volume ([`TraceRows::new`]).
+/// Fields on a surface as combinations of their values at points of the volume quadrature,
+/// `f(x_s) = sum_q c_sq f(x_q)`, with the lengths of a trace inequality. The inequality bounds the integral
+/// of `f^2` over the surface by that over the volume ([`TraceRows::new`]).
 ///
 /// A boundary stress of this form consists of the quantities that the energy integrates. Nitsche's method is
 /// then definite with a known factor, which does not hold for gradients of the shape functions at the

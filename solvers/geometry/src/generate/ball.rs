@@ -17,8 +17,8 @@ const CORE: f64 = 0.45;
 /// tetrahedra. Facet group: "surface". Quadratic surface nodes lie on the sphere.
 ///
 /// The mesh is the image of a mesh of the cube [-1, 1]^3. For even `n`, the hexahedra of this cube for `2 n`
-/// are those for `n`, halved along each axis. The corner nodes of `n` are therefore also corner nodes of `2
-/// n`, `4 n`, ...
+/// are those for `n`, halved along each axis. The corner nodes of `n` are therefore also corner nodes of
+/// `2 n`, `4 n`, ...
 ///
 /// # Errors
 /// A radius that is not positive, or `n` out of range.
