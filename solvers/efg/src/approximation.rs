@@ -27,9 +27,9 @@ const UNITY: Unity = Unity::Within(1e-8);
 /// Shape functions over a cloud of nodes with individual support radii, by moving least squares or maximum
 /// entropy.
 ///
-/// Node `I` contributes at `x` if `|x - x_I| < R_I`, or if `x` lies in its [`Ellipsoid`]. If the neighbours
-/// do not determine the basis at a point, these remedies are tried in order, and each is counted in
-/// [`MlsInfo`]:
+/// Node `I` contributes at `x` if `|x - x_I| < R_I` or, with ellipsoidal supports, if `x` lies in its
+/// [`Ellipsoid`]. If the neighbours do not determine the basis at a point, these remedies are tried in order,
+/// and each is counted in [`MlsInfo`]:
 ///
 /// - All supports are enlarged at that point by a common factor of at most 3: 1.4 times the relative distance
 ///   `|x - x_I| / R_I` of the `2m`-th nearest node, with `m` the number of basis terms.
@@ -53,8 +53,8 @@ pub struct Approximation {
     gaps: Option<Gaps>,
 }
 
-/// Function that finds the background cells of the points, if they are not yet known; only a body with gaps
-/// needs the cells.
+/// Function that returns the background cell of each point, if the caller knows the cells. `None` lets them
+/// be searched. Only a body with gaps needs the cells.
 pub(crate) type Cells<'a> = Option<&'a dyn Fn() -> Vec<u32>>;
 
 /// Kind of shape functions.
@@ -179,7 +179,7 @@ impl Approximation {
 
     /// Regularises the quadratic block of the moment matrix at every point by `mu` times the sum of the
     /// weights (modified moving least squares; Joldes et al. 2015). Linear fields stay exact, quadratic
-    /// fields nearly so. The setting has no effect on the linear basis and on maximum entropy.
+    /// fields nearly so. The setting is meant for the quadratic basis, and has no effect on maximum entropy.
     ///
     /// # Errors
     /// A `mu` outside 0 to 1.
@@ -286,7 +286,7 @@ impl Approximation {
         self.point_rows_in(points.to_vec(), None)
     }
 
-    /// Computes [`Approximation::point_rows`] for points whose background cells may be known.
+    /// Computes [`Approximation::point_rows`] for points whose background cells the caller may know.
     pub(crate) fn point_rows_in(
         &self,
         points: Vec<Point3>,
@@ -301,7 +301,7 @@ impl Approximation {
         self.grad_rows_in(points.to_vec(), None)
     }
 
-    /// Computes [`Approximation::grad_rows`] for points whose background cells may be known.
+    /// Computes [`Approximation::grad_rows`] for points whose background cells the caller may know.
     pub(crate) fn grad_rows_in(
         &self,
         points: Vec<Point3>,

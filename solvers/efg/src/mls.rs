@@ -42,9 +42,9 @@ impl Ball {
     }
 }
 
-/// Linear moments that the shape functions must have about the point, `sum_I phi_I p(x_I - x)`, and their
-/// derivatives with respect to the point for a frozen basis. Lengths are in metres; indices are the term (1,
-/// x, y, z) and the axis.
+/// Linear moments that the shape functions must have about the point `x`:
+/// `values[i] = sum_I phi_I p_i(x_I - x)` and `slopes[i][a] = sum_I phi_I,a p_i(x_I - x)`, with the terms `p`
+/// = 1, x, y, z and the axis `a`. Lengths are in metres.
 #[derive(Clone, Copy)]
 pub(crate) struct Moments {
     pub(crate) values: [f64; 4],
@@ -52,7 +52,7 @@ pub(crate) struct Moments {
 }
 
 impl Moments {
-    /// Moments of functions that reproduce the basis alone.
+    /// Moments of functions that reproduce linear fields without the help of finite elements.
     pub(crate) const COMPLETE: Moments = Moments {
         values: [1.0, 0.0, 0.0, 0.0],
         slopes: [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
@@ -157,7 +157,7 @@ impl Group {
         }
     }
 
-    /// Sets the moments of a point's shape functions; [`Group::load`] sets complete moments.
+    /// Sets the moments of a point's shape functions; [`Group::load`] sets [`Moments::COMPLETE`].
     #[inline(always)]
     pub(crate) fn aim(&mut self, lane: usize, moments: &Moments) {
         for i in 0..4 {

@@ -26,6 +26,10 @@ pub enum Support {
 impl Support {
     /// Returns the support radii (m), one per node. `spacing` (m, one per node) is the spacing of the cloud;
     /// [`Support::Neighbours`] ignores it.
+    ///
+    /// # Errors
+    /// A parameter out of range, a node that is not finite, fewer nodes than neighbours, a number of spacings
+    /// that is not that of the nodes, or a radius that is not positive.
     pub fn radii(self, nodes: &[Point3], spacing: &[f64]) -> Result<Vec<f64>, EfgError> {
         self.check(nodes)?;
         let radii: Vec<f64> = match self {

@@ -58,7 +58,7 @@ impl CellKind {
         }
     }
 
-    /// Number of nodes.
+    /// Number of nodes of a cell of this kind.
     pub fn node_count(self) -> usize {
         match self {
             CellKind::Tet4 => 4,
@@ -68,7 +68,7 @@ impl CellKind {
         }
     }
 
-    /// Number of corner nodes; they come first in the cell's node list.
+    /// Number of corner nodes of a cell of this kind; they come first in the cell's node list.
     pub fn corner_count(self) -> usize {
         if self.is_tet() { 4 } else { 8 }
     }
@@ -110,7 +110,7 @@ impl CellKind {
 }
 
 impl FaceKind {
-    /// Number of corner nodes: 3 or 4.
+    /// Number of corner nodes of a face of this kind: 3 or 4.
     pub fn corner_count(self) -> usize {
         if matches!(self, FaceKind::Tri3 | FaceKind::Tri6) { 3 } else { 4 }
     }

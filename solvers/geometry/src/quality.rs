@@ -51,7 +51,8 @@ pub struct Quality {
 /// Measures the quality of a mesh.
 ///
 /// # Errors
-/// An element with `det J <= 0` at a node or quadrature point.
+/// An element with `det J <= 0` at a node or quadrature point. Values up to 1e-12 times the cube of the
+/// longest edge count as zero.
 pub fn check(mesh: &Mesh) -> Result<Quality, InvertedElement> {
     let mut quality: Option<Quality> = None;
     let mut folded: Option<InvertedElement> = None;

@@ -139,7 +139,8 @@ impl Approximation {
         Ok(())
     }
 
-    /// Returns the condition numbers of a group's fits, `None` if a fit failed or is impossible.
+    /// Fits the shape functions of a group, which keeps them for [`Group::store`]. Returns the condition
+    /// number of the moment matrix of each point, or `None` if the fit failed or has too few neighbours.
     #[inline(always)]
     pub(super) fn fit<const GRAD: bool>(
         &self,
@@ -161,7 +162,8 @@ impl Approximation {
 }
 
 on_path! {
-    /// Values of the cloud's own functions at some points, in wide registers.
+    /// Computes the chunk of values of the cloud's own functions (without finite elements) at some points, in
+    /// wide registers.
     fn fill_values(of: &Approximation, points: &[Point3], chunk: &mut Chunk) -> Result<(), EfgError> = fill_values_in
 }
 
@@ -175,7 +177,8 @@ fn fill_values_in<const FMA: bool>(
 }
 
 on_path! {
-    /// Values and gradients of the cloud's own functions at some points, in wide registers.
+    /// Computes the chunk of values and gradients of the cloud's own functions (without finite elements) at
+    /// some points, in wide registers.
     pub(super) fn fill_gradients(of: &Approximation, points: &[Point3], chunk: &mut Chunk) -> Result<(), EfgError> = fill_gradients_in
 }
 

@@ -197,14 +197,14 @@ impl Content {
         self.regions[cell as usize] = region;
     }
 
-    /// Region of this name, added if it is new.
+    /// Index of the region of this name, which is added if it is new.
     pub(super) fn region(&mut self, place: Place, name: &str) -> Parsed<u16> {
         let at = self.region_names.place(name);
         let region = u16::try_from(at).ok().filter(|&region| region != NO_REGION);
         region.ok_or((place, Problem::TooMany { what: "regions", count: at }))
     }
 
-    /// Facet group of this name, added if it is new.
+    /// Index of the facet group of this name, which is added if it is new.
     pub(super) fn group(&mut self, name: &str) -> usize {
         self.group_names.place(name)
     }
@@ -271,7 +271,7 @@ impl Content {
         self.element_numbers.get(number).is_some()
     }
 
-    /// Index of the node with this number.
+    /// Index of the node with this number in the file, `None` if there is none.
     pub(super) fn node_of(&self, number: u64) -> Option<u32> {
         self.node_numbers.get(number)
     }
@@ -286,7 +286,7 @@ impl Content {
         self.region_names.list.iter().map(String::as_str)
     }
 
-    /// Names of facet groups and of node sets, which become facet groups.
+    /// Names of all facet groups so far: those of faces, and the node sets, which become facet groups.
     pub(super) fn surfaces(&self) -> impl Iterator<Item = &str> {
         let sets = self.node_sets.iter().map(|(name, _)| name.as_str());
         self.group_names.list.iter().map(String::as_str).chain(sets)

@@ -21,7 +21,8 @@ impl Names {
     }
 }
 
-/// Removes regions without cells.
+/// Removes regions without cells, from the region index of each cell and the names of all regions. Returns
+/// both lists with the regions renumbered.
 pub(super) fn without_empty(regions: Vec<u16>, names: Vec<String>) -> (Vec<u16>, Vec<String>) {
     let mut has = vec![false; names.len()];
     regions.iter().for_each(|&r| has[r as usize] = true);

@@ -37,7 +37,7 @@ impl Numbers {
         self.others.insert(number, place).is_none()
     }
 
-    /// Index of a number.
+    /// Index of a number, `None` for an unknown number.
     pub(super) fn get(&self, number: u64) -> Option<u32> {
         match number.checked_sub(self.first) {
             Some(place) if place < self.run => Some(place as u32),

@@ -87,7 +87,7 @@ pub(super) fn lost(array: &Array, of_cells: bool, taken: bool) -> LeftOut {
     LeftOut { place: array.place, what: format!("array '{}' of {of}{range}", array.name), kind }
 }
 
-/// Cells of a grid.
+/// Cells of a VTK grid: the type and the points of each, with its region and groups.
 pub(super) struct Cells {
     /// Number of points in the preceding grids of the file, from which the indices in `list` count.
     pub first: u64,

@@ -15,7 +15,8 @@ impl Parts {
     /// The undivided face.
     pub const WHOLE: Parts = Parts::Inside(1);
 
-    /// Points and weights on the parts of a triangle. `rule` is the rule on the whole triangle.
+    /// Returns the rule on the divided reference triangle. `rule` is the rule on an undivided triangle, which
+    /// is applied to each part ([`Parts::Inside`]) or ignored ([`Parts::Corners`]).
     pub fn tri(self, rule: &Rule<2>) -> Rule<2> {
         match self {
             Parts::Inside(1) => rule.clone(),
@@ -29,7 +30,8 @@ impl Parts {
         }
     }
 
-    /// Points and weights on the parts of a square. `rule` is the rule on the whole square.
+    /// Returns the rule on the divided reference square. `rule` is the rule on an undivided square, used as
+    /// in [`Parts::tri`].
     pub fn quad(self, rule: &Rule<2>) -> Rule<2> {
         match self {
             Parts::Inside(1) => rule.clone(),

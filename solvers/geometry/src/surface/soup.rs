@@ -70,13 +70,13 @@ impl Soup {
         Soup { points, triangles, faces, groups: self.groups.of_triangles(&kept) }
     }
 
-    /// Length of the diagonal of the bounding box.
+    /// Length of the diagonal of the bounding box of all points, in the unit of the file.
     pub(super) fn diagonal(&self) -> f64 {
         let (low, high) = super::tree::bounds(self.points.iter().copied());
         (high - low).norm()
     }
 
-    /// Centre of a triangle.
+    /// Centre of a triangle, in the unit of the file.
     pub(super) fn middle(&self, triangle: usize) -> Point3 {
         Point3::from(self.corners(triangle).iter().map(|p| p.coords).sum::<Vector3>() / 3.0)
     }

@@ -21,7 +21,8 @@ fn letters(keyword: &str) -> String {
     keyword.chars().filter(|c| !matches!(c, ' ' | '-')).collect()
 }
 
-/// Full spelling of an upper-case keyword, or `None` for an unknown keyword.
+/// Standard spelling, with blanks and hyphens, of an upper-case keyword that may lack them. `None` for an
+/// unknown keyword.
 pub(super) fn known(keyword: &str) -> Option<&'static str> {
     KNOWN.get(&letters(keyword)).copied()
 }

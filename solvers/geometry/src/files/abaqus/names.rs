@@ -22,7 +22,8 @@ impl Shared {
         Shared { regions: repeated(regions), surfaces: repeated(surfaces.chain([capitals(assembly)])) }
     }
 
-    /// Name in the mesh of an instance's region or surface.
+    /// Name that a region or surface of an instance gets in the mesh: `INSTANCE.NAME` if the name occurs more
+    /// than once, `NAME` otherwise.
     pub(super) fn full(&self, instance: &str, of: Named, name: &str) -> String {
         let shared = match of {
             Named::Region => &self.regions,

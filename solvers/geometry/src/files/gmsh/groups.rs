@@ -11,7 +11,11 @@ use super::super::lines::Lines;
 pub(super) struct Names(HashMap<(u64, u64), String>);
 
 impl Names {
-    /// Adds a name. Regions keep the order of the names.
+    /// Adds the name of a physical group, given with its dimension and tag. The name of a solid also becomes
+    /// a region, so regions keep the order of the names.
+    ///
+    /// # Errors
+    /// A second name for the same dimension and tag.
     pub(super) fn add(
         &mut self,
         content: &mut Content,
@@ -27,7 +31,8 @@ impl Names {
         }
     }
 
-    /// Region of a solid's physical tag; the tag 0 gives "body".
+    /// Index of the region of a solid's physical tag. The tag 0 gives the region "body", a tag without a name
+    /// "region-TAG".
     pub(super) fn region(&self, content: &mut Content, place: Place, tag: u64) -> Parsed<u16> {
         match self.0.get(&(3, tag)) {
             _ if tag == 0 => content.region(place, "body"),
@@ -36,7 +41,7 @@ impl Names {
         }
     }
 
-    /// Facet group of a surface's physical tag.
+    /// Index of the facet group of a surface's physical tag; a tag without a name gives "surface-TAG".
     pub(super) fn group(&self, content: &mut Content, tag: u64) -> usize {
         match self.0.get(&(2, tag)) {
             Some(name) => content.group(name),
