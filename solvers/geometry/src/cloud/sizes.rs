@@ -16,11 +16,13 @@ pub struct Sizes {
 }
 
 impl Sizes {
-    /// Computes spacings from a first-order error at the nodes of a cloud, such as that of a gradient. The
-    /// density of nodes is proportional to `h^-3`. For a fixed number of nodes, the mean square of an error
-    /// `C h` is therefore least with a spacing `h ~ C^(-2/5)`. The coarsest spacing is at most `ratio` times
-    /// the finest. The geometric mean of these two is that of the spacings at all nodes. Spacings grow by at
-    /// most 0.3 of the distance.
+    /// Computes spacings from an error of first order in the spacing, such as that of a gradient. `error` has
+    /// one value per node of the cloud, in any unit. The density of nodes is proportional to `h^-3`. For a
+    /// fixed number of nodes, the mean square of an error `C h` is therefore least with a spacing
+    /// `h ~ C^(-2/5)`.
+    ///
+    /// These spacings are limited to a range around their geometric mean, from `1 / sqrt(ratio)` to
+    /// `sqrt(ratio)` times this mean. Spacings grow by at most 0.3 of the distance.
     ///
     /// # Errors
     /// Nodes that cannot be searched.

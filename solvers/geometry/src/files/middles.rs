@@ -9,8 +9,8 @@ use crate::{CellKind, Point3};
 /// Largest distance of a mid-edge node from the midpoint of its edge, as a fraction of the edge's length.
 const NEAR: f64 = 0.25;
 
-/// Reorders the mid-edge nodes of each kind whose cells all have the same other order. Returns the kinds that
-/// were reordered with their numbers of cells.
+/// Reorders the mid-edge nodes of every cell kind whose cells all share an order other than the format's.
+/// Returns the kinds that were reordered, with their numbers of cells.
 pub(super) fn put_in_order(
     kinds: &[CellKind],
     nodes: &mut [u32],

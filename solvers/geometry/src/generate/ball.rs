@@ -47,21 +47,22 @@ pub fn kidney_mesh(kind: CellKind, n: usize) -> Result<Mesh, GenerateError> {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Drawn {
     /// Cells of 0.27 of the uniform size under the jaw's edges and 0.30 under the surface, the strongest
-    /// grading that a coarse mesh allows. The inner block has `3 n` and `7 n / 2` cells across along x and y
-    /// and `(n - 1) / 2` cells from z = 0 to its top, with `n` layers around it.
+    /// grading that a coarse mesh allows. The inner block has `3 n` cells along x, `7 n / 2` along y and
+    /// `(n - 1) / 2` along z from z = 0 to its top, with `n` layers around it.
     ///
     /// Between jaws that close by 7 mm, the force of 5,149 hex20 nodes is within 0.6 % of that of 14,219
     /// nodes with mild grading, from 1.4 mm on. Finer meshes fold: with 11,216 nodes, hex20-p1 was unstable
     /// from 6.0 mm on and a cell of hex20-reduced inverted at 6.3 mm.
     Strongly,
-    /// Cells of 0.38 and 0.55 of the uniform size, for fine meshes, whose cells fold under the stronger
-    /// grading. The counts are `16 n / 5`, `4 n`, `3 n / 5` and `4 n / 5`.
+    /// Cells of 0.38 of the uniform size under the edges and 0.55 under the surface, for fine meshes, whose
+    /// cells fold under the stronger grading. The counts in the same order are `16 n / 5`, `4 n`, `3 n / 5`
+    /// and `4 n / 5`.
     Mildly,
 }
 
 impl Drawn {
-    /// Cells across the inner block (both halves along z), and layers around it; each count is at least 1 per
-    /// half.
+    /// Returns the cells of the inner block along x, y and z (both halves), and the layers around the block.
+    /// The counts along z and of layers are at least 1 per half.
     fn cells(self, n: usize) -> ([usize; 3], usize) {
         match self {
             Drawn::Strongly => ([3 * n, 7 * n / 2, 2 * (n.saturating_sub(1) / 2).max(1)], n),

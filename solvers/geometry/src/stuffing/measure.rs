@@ -33,7 +33,8 @@ impl Fit {
     }
 }
 
-/// Measures the volumes, and the distances at corners, centres and grid points of the triangles on both.
+/// Measures both volumes, and the distances between the surface and the mesh's boundary in both directions.
+/// Sample points are the corners, centres and grid points of the triangles of each.
 pub fn fit(surface: &Surface, mesh: &Mesh) -> Fit {
     let boundary: Vec<[u32; 3]> = (mesh.boundary().iter())
         .flat_map(|&facet| {

@@ -16,8 +16,8 @@ const STEPS: f64 = 6.0;
 /// bisections would only approach spacings at which the number jumps because the lattice meets a plane face.
 /// Such a mesh is the worst of its size.
 const HALVES: usize = 3;
-/// Size, as a fraction of a step, and number of the spacings tried beyond the first step with enough nodes if
-/// none is close. The number of nodes often decreases again after a jump.
+/// Finer spacings tried after the first step with enough nodes, if no mesh so far is close: their distance as
+/// a fraction of a step, and their number. The number of nodes often decreases again after a jump.
 const PART: f64 = 0.25;
 const BEYOND: usize = 6;
 /// Number of steps that are always tried from the first that fills the body. Inside thin walls a finer step

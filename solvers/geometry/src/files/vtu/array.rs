@@ -35,9 +35,9 @@ pub(super) enum Numbers {
 
 /// Largest ratio of unpacked to packed bytes; zlib compresses zeros about a thousandfold.
 const MOST_SHRUNK: usize = 1100;
-/// Largest bytes and numbers of an array for which any compression is accepted, such as the types of eight
-/// million cells. A larger array may have at most 32 numbers per packed byte. Otherwise a file of one
-/// mebibyte could take ten gigabytes.
+/// Size of an array, in bytes and in numbers, up to which any compression is accepted; the types of eight
+/// million cells have this size. A larger array may have at most 32 numbers per packed byte. Otherwise a file
+/// of one mebibyte could take ten gigabytes.
 const SHRUNK_BYTES: usize = 1 << 26;
 const SHRUNK_NUMBERS: usize = 1 << 23;
 const LARGE_SHRUNK: usize = 32;
