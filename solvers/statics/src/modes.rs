@@ -42,10 +42,11 @@ pub struct Modes {
     /// `s = mu / rho (pi / L)^2` with the diagonal `L` of the nodes' box, (rad/s)^2: the squared frequency
     /// of a shear wave across the body.
     pub scale: f64,
-    /// Largest `|K v - omega^2 M v| / ((omega^2 + s) |M v|)` of all modes.
+    /// Largest relative residual `|K v - omega^2 M v| / ((omega^2 + s) |M v|)` of all modes, with `s` from
+    /// `scale`.
     pub residual: f64,
-    /// Number of unknowns that have stiffness but no mass: modes of infinite frequency, which are not listed
-    /// above. The number is 0 if only the lowest modes were computed.
+    /// Number of unknowns that have stiffness but no mass. Their modes have infinite frequency and are not
+    /// among `squared` and `shapes`. The number is 0 if only the lowest modes were computed.
     pub massless: usize,
     /// Number of rigid motions that the supports leave free. Any further modes of frequency zero strain the
     /// body without energy.

@@ -77,7 +77,7 @@ impl Pairs {
         &self.nodes[self.node_offsets[group]..self.node_offsets[group + 1]]
     }
 
-    /// Returns the groups with their nodes as rows.
+    /// Returns the nodes of all groups, one row per group.
     pub fn connectivity(&self) -> Connectivity<'_> {
         Connectivity { offsets: &self.node_offsets, nodes: &self.nodes, seen_by: &[] }
     }

@@ -75,8 +75,8 @@ impl PointTangent {
     }
 }
 
-/// `b` and `n` of a node in a group. The component of column c is repeated in all lanes of that column of a
-/// block.
+/// Entries of one node in the vectors `b` (1/m) and `n` (N) of [`GroupHessian`].
+/// The component of column c is repeated in all lanes of that column of a block.
 #[derive(Clone, Copy)]
 #[repr(C, align(64))]
 pub(crate) struct GroupRow {
@@ -92,7 +92,7 @@ impl GroupRow {
         GroupRow { b: by_column(b), n: by_column(n), ninth: [b.z, n.z, 0.0, 0.0] }
     }
 
-    /// Returns `b` and `n`.
+    /// Returns the entries of the node in `b` (1/m) and `n` (N).
     pub fn both(&self) -> (Vector3, Vector3) {
         let vector = |v: &[f64; 8]| Vector3::new(v[0], v[3], v[6]);
         (vector(&self.b), vector(&self.n))

@@ -94,8 +94,8 @@ pub struct StaticWork {
     pub assemblies: u64,
     /// Number of numeric factorisations, more than assemblies if tangents are not definite.
     pub factorisations: u64,
-    /// Number of linear systems solved: one per iteration, and with a pressure field one per trial whose
-    /// residual did not fall.
+    /// Number of linear systems solved: one per iteration. With a pressure field, every trial whose residual
+    /// did not fall adds one.
     pub solves: u64,
     /// Number of iterations of the linear solver, with a factor kept from another tangent or with sliding
     /// friction.

@@ -302,7 +302,8 @@ impl<'a> System<'a> {
         entries
     }
 
-    /// Gathers the unknowns from nodal vectors and pressures.
+    /// Returns the vector of unknowns: the free components of the nodal vectors `nodal`, then the values
+    /// `pressure`, one per pressure parameter. Nothing is multiplied by [`System::pressure_scale`].
     pub fn gather(&self, nodal: &[Vector3], pressure: &[f64]) -> Vec<f64> {
         let mut out = vec![0.0; self.dim()];
         for (dof, &at) in self.place.iter().enumerate().filter(|(_, at)| **at != CONSTRAINED) {
@@ -312,7 +313,8 @@ impl<'a> System<'a> {
         out
     }
 
-    /// Adds `factor` times the unknowns to nodal vectors and pressures.
+    /// Adds `factor` times the increments `step` of the unknowns to the nodal vectors `nodal` and the values
+    /// `pressure`; the inverse of [`System::gather`]. Constrained components remain unchanged.
     pub fn scatter_add(&self, step: &[f64], factor: f64, nodal: &mut [Vector3], pressure: &mut [f64]) {
         for (dof, &at) in self.place.iter().enumerate().filter(|(_, at)| **at != CONSTRAINED) {
             nodal[dof / 3][dof % 3] += factor * step[at];
@@ -322,14 +324,14 @@ impl<'a> System<'a> {
         }
     }
 
-    /// Returns `K du` for the increments `du` of constrained degrees of freedom, to be subtracted from the
-    /// right-hand side of the free ones.
+    /// Returns the nodal forces `K du` (N) of the increments `du` (m) of the constrained degrees of
+    /// freedom, to be subtracted from the right-hand side of the free degrees of freedom.
     pub fn held_part(&self, step: &[Vector3]) -> Vec<Vector3> {
         self.stiffness.multiply(step)
     }
 
-    /// Subtracts the effect of the increments `step` of constrained degrees of freedom from the right-hand
-    /// side of the pressures.
+    /// Subtracts the volume changes (m^3) due to the increments `step` (m) of the constrained degrees of
+    /// freedom from the right-hand side `right` of the pressures.
     pub fn subtract_held_pressure(&self, hessian: &Hessian, step: &[Vector3], right: &mut [f64]) {
         if right.is_empty() {
             return;
