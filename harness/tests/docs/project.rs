@@ -45,6 +45,17 @@ fn the_workflow_runs_the_commands_of_the_readme() {
     }
 }
 
+#[test]
+fn the_rules_for_contributors_have_the_limits_of_the_tests() {
+    let rooms = text("harness/tests/rooms.rs");
+    let limit = |name: &str| {
+        let after = rooms.split_once(&format!("assert!({name} <= ")).expect("a limit in rooms.rs").1;
+        after.split(',').next().expect("a number").to_string()
+    };
+    let rule = format!("at most {} lines, a function at most {}.", limit("lines"), limit("longest"));
+    assert!(text("CONTRIBUTING.md").contains(&rule), "CONTRIBUTING.md: no '{rule}'");
+}
+
 /// A fork has no secrets and no settings; its first push must succeed all the same.
 #[test]
 fn workflows_run_in_a_fork_as_they_are() {
