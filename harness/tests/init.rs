@@ -103,7 +103,7 @@ fn a_scene_is_replaced_only_by_force() {
     let init = |more: &[&str]| tissuebench(&[&["init", "--file", &file, "--out", &out], more].concat());
     assert_eq!(init(&[]).code, 0);
     let first = std::fs::read_to_string(&out).unwrap();
-    assert_fails(&init(&["--young", "5 kPa"]), 2, "bean.toml: exists; --force replaces it");
+    assert_fails(&init(&["--young", "5 kPa"]), 2, "bean.toml: exists; replace the file with --force");
     assert_eq!(std::fs::read_to_string(&out).unwrap(), first);
     assert_eq!(init(&["--young", "5 kPa", "--force"]).code, 0);
     assert!(std::fs::read_to_string(&out).unwrap().contains("young = \"5 kPa\""));
@@ -187,12 +187,12 @@ fn what_makes_no_scene_is_refused_by_its_option() {
     refused(&["--hold", "lid"], "--hold 'lid': the file names bean; or write comparisons");
     refused(&["--hold", "z < 3"], "--hold");
     refused(&["--hold", "z < -30 mm"], "no corner of the surface lies there");
-    refused(&["--hold", "z < 30 mm"], "holds the whole body");
-    refused(&["--hold", "z > 10 mm"], "holds what the plate from the top touches first");
+    refused(&["--hold", "z < 30 mm"], "constrains the whole body");
+    refused(&["--hold", "z > 10 mm"], "constrains the point that the plate from the top touches first");
     refused(&["--closure", "40 mm"], "the body is only 30 mm high");
     refused(&["--load", "1 kPa"], "--load '1 kPa': ");
-    refused(&["--gap", "1 mm", "--strain", "small"], "there is no plate at small strain");
-    refused(&["--methods", "tet4,hex8"], "'hex8' is none of tet4, tet4-nodal, tet10, efg");
+    refused(&["--gap", "1 mm", "--strain", "small"], "small strain has no plate");
+    refused(&["--methods", "tet4,hex8"], "'hex8' is not one of tet4, tet4-nodal, tet10, efg");
     refused(&["--nodes", "3"], "--nodes '3': a number from 100 to 200000");
     refused(&["--spacing", "20 mm"], "is too large for the body");
     assert_fails(&tissuebench(&["init", "--out", &out]), 2, "--file is needed");

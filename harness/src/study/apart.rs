@@ -20,17 +20,17 @@ use crate::run::case_name;
 const SHORTEST_PAUSE: Duration = Duration::from_micros(200);
 const LONGEST_PAUSE: Duration = Duration::from_millis(50);
 
-/// How runs are kept apart from each other.
+/// Isolation of runs from each other.
 #[derive(Args)]
 pub struct ApartArgs {
-    /// Run each experiment in a process of its own: a crash, an endless run or one that takes too much memory
-    /// costs that one alone. Its reference is solved there too
+    /// Execute each run, with its reference, in its own process: a crash, an endless loop or a lack of memory
+    /// affects only this run
     #[arg(long)]
     pub isolate: bool,
-    /// Time that a run may take, its reference included, such as "60 s" or "10 min"
+    /// Time limit of a run, including its reference, such as "60 s" or "10 min"
     #[arg(long, value_name = "TIME", requires = "isolate", value_parser = duration)]
     pub time_limit: Option<Duration>,
-    /// Memory that a run may allocate, such as 500MB or "2 GiB" (Linux)
+    /// Memory limit of a run, such as 500MB or "2 GiB" (Linux only)
     #[arg(long, value_name = "SIZE", requires = "isolate", value_parser = bytes)]
     pub memory_limit: Option<u64>,
 }

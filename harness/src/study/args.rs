@@ -12,48 +12,49 @@ use super::apart::ApartArgs;
 pub struct VerifyArgs {
     /// The study file (default: cases/studies/verify.toml)
     pub study: Option<PathBuf>,
-    /// Only the runs of the quick tier
+    /// Execute only the runs of the quick tier
     #[arg(long)]
     pub quick: bool,
-    /// Only runs whose case or method contains this text
+    /// Execute only runs whose case or method contains this text
     #[arg(long, value_name = "TEXT")]
     pub filter: Option<String>,
-    /// Further choices
+    /// Further filters
     #[command(flatten)]
     pub filters: Filters,
-    /// Only the K-th of N shares of the runs, of about equal cost
+    /// Execute only the K-th of N shares of the runs, which have about equal cost
     #[arg(long, value_name = "K/N", value_parser = shard)]
     pub shard: Option<(usize, usize)>,
-    /// Runs at a time; more than 1 spoils the timings
+    /// Number of concurrent runs; more than 1 distorts the times
     #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub jobs: u16,
     /// Keep stored results of runs whose scene, method and program have not changed
     #[arg(long)]
     pub resume: bool,
-    /// Work on the study together with other processes in the same folder, which give this too: each run is
-    /// made once. Keeps stored results as --resume does
+    /// Share the study with other processes that use --join on the same folder: each run is executed once.
+    /// Stored results are kept as with --resume
     #[arg(long)]
     pub join: bool,
-    /// How runs are kept apart.
+    /// Isolation of runs.
     #[command(flatten)]
     pub apart: ApartArgs,
-    /// Run what is estimated to take more than twice the memory of this machine or half a day
+    /// Run even if the estimate exceeds twice the memory of this machine or half a day
     #[arg(long)]
     pub force: bool,
-    /// Errors only
+    /// Print only errors
     #[arg(short, long)]
     pub quiet: bool,
-    /// A line for each run
+    /// Print one line per run
     #[arg(short, long, conflicts_with = "quiet")]
     pub verbose: bool,
-    /// Where to put records, tables, figures and the report, in place of those of an earlier run of the study
+    /// Folder for records, tables, figures and the report; replaces the results of an earlier run of the
+    /// study
     #[arg(long, value_name = "DIR", default_value = "results")]
     pub out: PathBuf,
-    /// Foresee what runs take by the times stored in these results of this machine, for --dry-run, --shard
-    /// and refusals
+    /// Estimate run times from the times stored in these results of this machine, for --dry-run, --shard and
+    /// refusals
     #[arg(long, value_name = "DIR")]
     pub times: Option<PathBuf>,
-    /// Also draw the errors and times over commits of this folder, which `history add` fills
+    /// Also plot errors and times over the commits in this folder, filled by `history add`
     #[arg(long, value_name = "DIR")]
     pub history: Option<PathBuf>,
 }

@@ -6,20 +6,20 @@ use serde::{Deserialize, Serialize};
 
 use super::tasks::Task;
 
-/// Choices of runs by their names; a run is made that fits all of them.
+/// Filters of runs by their names; a run has to pass all filters.
 #[derive(Args, Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Filters {
-    /// Only these cases; `*` stands for any text (may be given several times)
+    /// Execute only these cases; `*` matches any text (repeatable)
     #[arg(long = "case", value_name = "NAME")]
     pub cases: Vec<String>,
-    /// Only these methods; `*` stands for any text (may be given several times)
+    /// Execute only these methods; `*` matches any text (repeatable)
     #[arg(long = "method", value_name = "ID")]
     pub methods: Vec<String>,
-    /// Only runs with one of these tags: a tag of the study, what the scene is for (patch, smooth, ...), its
-    /// procedure, the method's family, or quick (may be given several times)
+    /// Execute only runs with one of these tags: a tag of the study, the purpose of the scene (patch, smooth,
+    /// ...), its procedure, the method's family, or quick (repeatable)
     #[arg(long = "tag", value_name = "TAG")]
     pub tags: Vec<String>,
-    /// No runs whose case or method contains this text or that have this tag (may be given several times)
+    /// Leave out runs whose case or method contains this text, and runs with this tag (repeatable)
     #[arg(long = "not", value_name = "TEXT")]
     pub not: Vec<String>,
 }

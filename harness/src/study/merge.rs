@@ -20,12 +20,12 @@ const NOTE: &str = "study.json";
 /// Arguments of `merge`.
 #[derive(Args)]
 pub struct MergeArgs {
-    /// Where to put the results of the whole study
+    /// Folder for the results of the whole study
     pub out: PathBuf,
-    /// The folders of the shares
+    /// Folders of the shares
     #[arg(required = true)]
     pub shares: Vec<PathBuf>,
-    /// The study file, where it is elsewhere now
+    /// Study file, if its path has changed
     #[arg(long, value_name = "FILE")]
     pub study: Option<PathBuf>,
 }

@@ -17,8 +17,8 @@ use crate::cli::fail;
 pub enum AdapterAction {
     /// List all adapters, their folders, and whether their requirements are installed
     List,
-    /// Check a solver against exact solutions and this program's elements: rigid motion, linear patch,
-    /// balance of forces, agreement
+    /// Check a solver against exact solutions and this program's elements: rigid motion, linear patch, force
+    /// balance, agreement
     Check {
         /// Name of the adapter
         name: String,
@@ -32,12 +32,12 @@ pub enum AdapterAction {
         /// Folder for the answer
         answer: PathBuf,
     },
-    /// Install the Python packages that an adapter needs, in a virtual environment of its own
+    /// Install the Python packages that an adapter needs in a separate virtual environment
     Install {
         /// Name of the adapter
         name: String,
     },
-    /// Copy the folder of an adapter as the start of another adapter
+    /// Copy the folder of an adapter as the basis of another adapter
     Copy {
         /// Name of the adapter
         name: String,

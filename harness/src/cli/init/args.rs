@@ -115,6 +115,6 @@ pub(super) fn choice<T: ValueEnum>(text: &str) -> Result<T, String> {
         let known: Vec<String> = T::value_variants().iter().cloned().map(word).collect();
         let near = catalogue::nearest(text, known.iter().map(String::as_str));
         let near = near.map_or(String::new(), |near| format!("; did you mean '{near}'?"));
-        format!("is none of {}{near}", known.join(", "))
+        format!("is not one of {}{near}", known.join(", "))
     })
 }

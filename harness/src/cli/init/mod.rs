@@ -61,7 +61,7 @@ pub fn init(args: &InitArgs) -> Result<(), Failure> {
     let file = args.file.as_deref().map(Path::to_string_lossy);
     let read = |text: &str| match Path::new(text) {
         path if path.is_file() => Ok(path.to_path_buf()),
-        path if path.exists() => Err("is no file; give a surface (STL, OBJ, PLY) or a mesh file".into()),
+        path if path.exists() => Err("is not a file; give a surface (STL, OBJ, PLY) or a mesh file".into()),
         _ => Err("there is no such file; give a surface (STL, OBJ, PLY) or a mesh file".into()),
     };
     let file: PathBuf = ask.value("file", file.as_deref(), "Surface or mesh file of the organ", "", read)?;
@@ -80,7 +80,7 @@ pub fn init(args: &InitArgs) -> Result<(), Failure> {
     }
     if let Some((mesh, pieces)) = meshes.unheld(held)? {
         let problem = format!(
-            "does not hold the mesh of {mesh}, which has {pieces} pieces: hold more of the body, or give more --nodes"
+            "does not constrain the mesh of {mesh}, which has {pieces} pieces: constrain more of the body, or give more --nodes"
         );
         return Err(input(format!("--hold '{}': {problem}", place::words(held))));
     }
@@ -97,7 +97,7 @@ pub fn init(args: &InitArgs) -> Result<(), Failure> {
         row(if at == 0 { "defaults" } else { "" }, &format!("{given:width$}  {question}"));
     }
     if wanted.parts != FINENESS[0].0 {
-        row("sizes", "finer than usual, so that every mesh reaches the plate and what is held");
+        row("sizes", "finer than usual, so that every mesh reaches the plate and the constrained part");
     }
     for (at, line) in files::summary(&model_of(&file)).iter().enumerate() {
         row(if at == 0 { "left out" } else { "" }, line);
@@ -122,7 +122,9 @@ fn free(out: &Path, file: &Path, force: bool) -> Result<(), Failure> {
     }
     if out.exists() && !force {
         let name = out.display();
-        return Err(input(format!("{name}: exists; --force replaces it, --out names another")));
+        return Err(input(format!(
+            "{name}: exists; replace the file with --force, or name another file with --out"
+        )));
     }
     Ok(())
 }
@@ -148,14 +150,14 @@ fn wanted(
     organ: &Organ,
     unit: LengthUnit,
 ) -> Result<(Wanted, Meshes), Failure> {
-    let question = "How large strains become: small or large";
+    let question = "Range of strains: small or large";
     let strain = ask.value("strain", args.strain.as_deref(), question, "large", choice::<Strain>)?;
     let (young, young_value) =
         ask.value("young", args.young.as_deref(), "Young's modulus", "20 kPa", |text| {
             quantity(Dimension::Pressure, text).map(|value| (text.to_string(), value))
         })?;
     let poisson = ask.value("poisson", args.poisson.as_deref(), "Poisson's ratio", "0.45", ratio)?;
-    let question = "Methods, of tet4, tet4-nodal, tet10 and efg";
+    let question = "Methods: tet4, tet4-nodal, tet10 and efg";
     let methods = ask.value("methods", args.methods.as_deref(), question, "tet4,tet10,efg", methods)?;
     let described = |metres: f64| scene_text::length(metres, unit, organ.largest_extent());
     let size = match &args.spacing {
@@ -192,7 +194,7 @@ fn wanted(
     let side = ask.value("press-from", args.press_from.as_deref(), question, &best, choice::<Side>)?;
     let meshes = pressed(&mut wanted, side)?;
     let Hold::Where(default) = wanted.hold.clone() else { unreachable!("comparisons so far") };
-    let question = "What is held: comparisons of x, y and z, or a surface of the mesh file";
+    let question = "Constrained part: comparisons of x, y and z, or a surface of the mesh file";
     wanted.hold = ask.value("hold", args.hold.as_deref(), question, &default, |text| held(text, organ))?;
     let height = organ.extent(side.axis());
     let short = meshes.shortest(organ.bounds, side);
@@ -215,7 +217,7 @@ fn gap(args: &InitArgs, strain: Strain) -> Result<f64, Failure> {
             quantity(Dimension::Length, text).map_err(|bad| input(format!("--gap '{text}': {bad}")))
         }
         (Some(text), Strain::Small) => {
-            Err(input(format!("--gap '{text}': there is no plate at small strain; --strain large has one")))
+            Err(input(format!("--gap '{text}': small strain has no plate; give --strain large")))
         }
     }
 }
@@ -236,7 +238,7 @@ fn fine_enough(wanted: &mut Wanted, organ: &Organ, part: f64, out: &Path) -> Res
     let reaches = |name: &str, mesh: &Mesh| match meshes::short(mesh, organ.bounds, side) {
         short if short > SHORT * height => {
             let short = described(short);
-            Err(input(format!("the mesh of {name} ends {short} from where the plate touches")))
+            Err(input(format!("the mesh of {name} ends {short} from the contact point of the plate")))
         }
         _ => Ok(()),
     };
@@ -258,14 +260,16 @@ fn fine_enough(wanted: &mut Wanted, organ: &Organ, part: f64, out: &Path) -> Res
                 None => return Ok(meshes),
                 Some((name, pieces)) => {
                     why = format!(
-                        "the mesh of {name} has {pieces} pieces, of which some reach no part that is held"
+                        "the mesh of {name} has {pieces} pieces, and some do not reach the constrained part"
                     )
                 }
             }
         }
     }
-    let problem =
-        format!("no mesh of up to {} does: {why}; give more, or another --press-from", size.described());
+    let problem = format!(
+        "no mesh of up to {} is suitable: {why}; give a finer size, or another --press-from",
+        size.described()
+    );
     Err(input(problem))
 }
 
@@ -286,7 +290,8 @@ fn path_from(out: &Path, file: &Path) -> Result<String, Failure> {
     let (folder, file) = (real(folder)?, real(file)?);
     let path = file.strip_prefix(&folder).unwrap_or(&file);
     let text = path.to_str();
-    text.map(String::from).ok_or_else(|| input(format!("--file '{}': its name is no text", file.display())))
+    text.map(String::from)
+        .ok_or_else(|| input(format!("--file '{}': the name of the file is not valid text", file.display())))
 }
 
 /// Parses a positive quantity and returns its value in SI units.
@@ -360,7 +365,7 @@ fn driven(args: &InitArgs, ask: &mut Questions, strain: Strain, way: &str) -> Re
         quantity(dimension, text).map_err(|bad| input(format!("--load '{text}': {bad}")))?;
         return Ok(Drive::Load(text.clone()));
     }
-    let question = "How far the plate presses into the body";
+    let question = "Displacement of the plate into the body";
     let read = |text: &str| quantity(Dimension::Length, text).map(Drive::Closure);
     ask.value("closure", args.closure.as_deref(), question, way, read)
 }
@@ -378,12 +383,13 @@ fn holds(region: &Region, organ: &Organ, side: Side) -> Result<(), Failure> {
         ));
     }
     if count == organ.surface.points().len() {
-        return refuse("holds the whole body; hold a part of it");
+        return refuse("constrains the whole body; constrain a part of the body");
     }
     if inside(&organ.first_touched(side)) {
         let side = word(side);
         return refuse(&format!(
-            "holds what the plate from the {side} touches first; hold another part, or --press-from another side"
+            "constrains the point that the plate from the {side} touches first; constrain another part, or give \
+             another side with --press-from"
         ));
     }
     Ok(())

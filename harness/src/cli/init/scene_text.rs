@@ -113,17 +113,17 @@ fn head(wanted: &Wanted) -> String {
     };
     format!(
         r#"# Written by `tissuebench init`. Run it:  tissuebench run THIS --out RESULTS   (then open RESULTS/report/report.html)
-# `tissuebench plan THIS` says what a run does, `tissuebench list` which other names there are.
+# `tissuebench plan THIS` prints the stages of a run, and `tissuebench list` prints all names that a scene can use.
 title = {title}
 
-# The body: a closed surface is filled with tetrahedra as fine as each method says; of a mesh the boundary is.
+# The body. A closed surface, or the boundary of a mesh, is filled with tetrahedra of the size that each method gives.
 [body]
 shape = "file"
 path = {path}
 unit = "{unit}"
 
-# The tissue. Nearer to 0.5 it keeps its volume better, and simple elements lock: try 0.49 and see which errors grow.
-# `tissuebench list laws` names the others.
+# The tissue. With a Poisson's ratio near 0.5 the tissue is nearly incompressible, and simple elements lock: try 0.49.
+# `tissuebench list laws` prints the other laws.
 [material]
 law = "{law}"
 young = {young}
@@ -163,8 +163,8 @@ impl Wanted {
         };
         let [low, high] = self.bounds.map(|p| [0, 1, 2].map(|axis| self.length(p[axis])));
         format!(
-            r#"# What is held: nodes where comparisons hold, joined by 'and', or `on` a surface that the file names.
-# The body is x = {} to {}, y = {} to {}, z = {} to {}. fix = "xy" lets it slide along z.
+            r#"# The constrained part: nodes that satisfy comparisons joined by 'and', or `on` a named surface of the file.
+# The body is x = {} to {}, y = {} to {}, z = {} to {}. fix = "xy" lets the body slide along z.
 [[support]]
 {place}
 fix = "xyz"
@@ -182,7 +182,7 @@ fix = "xyz"
                 let place = format!("where = \"{} {than} {from}\"", self.axis());
                 match drive {
                     Drive::Closure(by) => format!(
-                        r#"# The end of the body at the plate, moved as one, as if it stuck. At small strain nothing finds where it touches: for a plate in
+                        r#"# The end of the body, moved as if bonded to a plate. Small strain has no contact search: for a plate in
 # contact, run `tissuebench init --strain large`.
 [[support]]
 {place}
@@ -221,8 +221,8 @@ pressure = {}
         // MPa/mm is 1e9 Pa/m.
         let penalty = STIFF * self.young_value / self.height() / 1e9;
         format!(
-            r#"# A rigid plate from the {side}. `closure` is its way, `force` its force; `penalty` its pressure per penetration. Other shapes:
-# sphere, cylinder, capsule, rounded-box; friction = 0.3 needs `stick` too.
+            r#"# A rigid plate from the {side}: `closure` is its displacement, `force` its force, `penalty` its pressure per penetration. Other shapes:
+# sphere, cylinder, capsule, rounded-box; friction = 0.3 also needs `stick`.
 [[tool]]
 name = "plate"
 shape = "plate"
@@ -247,13 +247,13 @@ steps = 4
         let [near, middle] =
             self.probes.map(|p| [0, 1, 2].map(|axis| format!("\"{}\"", self.length(p[axis]))).join(", "));
         format!(
-            r#"# What errors are measured against: a method below on a finer mesh. Take it finer until the errors stay as they are. Once it is
-# good, `tissuebench reference` stores it, and `record = "FILE"` takes it from there.
+            r#"# The reference for the errors: a method below on a finer mesh. Refine the reference until the errors no longer change. Then
+# `tissuebench reference` can store the solution, and `record = "FILE"` reads the stored file.
 [reference]
 method = "{method}"
 size = {{ {size} }}
 
-# Points where displacements are reported: close to the plate, and in the middle.
+# Points at which displacements are reported: close to the plate, and in the middle.
 [output]
 probes = [[{near}], [{middle}]]
 "#,
@@ -271,8 +271,8 @@ probes = [[{near}], [{middle}]]
     /// Returns the tables of all methods, each in three sizes.
     fn run_by(&self) -> String {
         let mut text = String::from(
-            "# What is run: each method in three sizes makes one curve of run time against error. Leave out what you need not.\n\
-             # `nodes` is met within some percent; `spacing = \"3 mm\"` is the mean length of the edges.\n",
+            "# The methods. Each method in three sizes gives one curve of run time against error. Remove methods that you do not need.\n\
+             # `nodes` is met within a few per cent; `spacing = \"3 mm\"` is the mean length of the edges.\n",
         );
         for &method in &self.methods {
             writeln!(text, "\n# {}", about(method)).expect("a string");
@@ -293,15 +293,13 @@ probes = [[{near}], [{middle}]]
 
 fn about(method: Method) -> &'static str {
     match method {
-        Method::Tet4 => "tet4: the simplest element; too stiff where tissue keeps its volume.",
-        Method::Tet4Nodal => {
-            "tet4-nodal: the same with volume changes averaged at nodes, which does not lock."
-        }
+        Method::Tet4 => "tet4: the simplest element; too stiff for nearly incompressible tissue.",
+        Method::Tet4Nodal => "tet4-nodal: tet4 with volume changes averaged at nodes, which does not lock.",
         Method::Tet10 => {
-            "tet10: curved displacements, fewer elements for the same error. Twice the nodes of the others, as edges have them too."
+            "tet10: quadratic displacements, fewer elements for the same error. Twice the nodes of the other methods, because edges have nodes too."
         }
         Method::Efg => {
-            "efg: element-free Galerkin, a cloud of the nodes of a mesh, whose cells only integrate. Try basis = \"quadratic\" with \
+            "efg: element-free Galerkin on the nodes of a mesh, whose cells serve for integration only. Try basis = \"quadratic\" with \
              support_scale = 2.2."
         }
     }
