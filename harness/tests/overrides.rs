@@ -35,7 +35,7 @@ fn a_key_that_is_set_counts_as_that_of_the_file() {
     let later = text.replace("\"format\": 1", "\"format\": 1000");
     assert_ne!(later, text);
     std::fs::write(Path::new(&out).join("provenance.json"), later).unwrap();
-    assert_fails(&tissuebench(&["report", &out]), 2, "is of version 1000");
+    assert_fails(&tissuebench(&["report", &out]), 2, "has version 1000");
 }
 
 #[test]

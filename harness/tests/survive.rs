@@ -214,7 +214,7 @@ fn results_of_a_killed_study_are_incomplete() {
     for args in [vec!["report", &out], vec!["baseline", &out, "--file", &inside(&dir, "b.toml"), "--accept"]]
     {
         let done = tissuebench(&args);
-        assert_fails(&done, 5, &format!("{out} is incomplete: the results of study.toml were begun there"));
+        assert_fails(&done, 5, &format!("{out} is incomplete: some results of study.toml are missing"));
     }
     write(&dir, "b2.toml", &BLOCK.replace("young = \"20 kPa\"", "young = \"22 kPa\""));
     assert_eq!(tissuebench(&[&verify[..], &["--resume"]].concat()).code, 0);

@@ -37,7 +37,7 @@ fn format(py: Python<'_>, path: &Path, version: Option<&str>) -> PyResult<Format
     };
     match format {
         Format::Gmsh(_) => Ok(Format::Gmsh(version)),
-        _ => Err(input(py, &format!("{}: version is of Gmsh's format; write a .msh file", path.display()))),
+        _ => Err(input(py, &format!("{}: version applies to Gmsh's format only; write a .msh file", path.display()))),
     }
 }
 
@@ -87,7 +87,7 @@ impl Mesh {
         let unit = metres(py, unit)?;
         let format = format(py, &path, version)?;
         if self.source.is_some() && self.source == disk::Identity::of(&path) {
-            let problem = "is the input file that the mesh was read from; give another name";
+            let problem = "is the input file of the mesh; give another name";
             return Err(input(py, &format!("{}: {problem}", path.display())));
         }
         let written = py.detach(|| files::write_as(&self.mesh, &path, unit, format));

@@ -69,7 +69,8 @@ impl Problem {
             return Err(input(
                 py,
                 &format!(
-                    "u: node {node} is {gap:e} m along {axis} off the {value:e} m that its support prescribes; at most {percent} % of the largest displacement, {largest:e} m"
+                    "u: node {node} differs by {gap:e} m along {axis} from the {value:e} m of its support; at most \
+                     {percent} % of the largest displacement, {largest:e} m, is allowed"
                 ),
             ));
         }
@@ -88,7 +89,7 @@ impl Problem {
                 };
                 let (count, tools) = (given.shape()[0], self.posed.tools());
                 if count != tools.len() {
-                    let problem = format!("tool_forces: of {count} tools; the scene has {}", tools.len());
+                    let problem = format!("tool_forces: {count} tools given; the scene has {}", tools.len());
                     return Err(input(py, &problem));
                 }
                 Ok(fields(py, "tool_forces", given)?.into_iter().zip(tools).map(along).collect())
@@ -233,7 +234,7 @@ impl Problem {
         })?;
         let outcome = outcome.map_err(|failure| of_failure(py, &failure))?;
         if let Some(bad) = outcome.records().iter().find(|record| !record.value.is_finite()) {
-            return Err(input(py, &format!("u: is so large that {} is not finite", bad.quantity)));
+            return Err(input(py, &format!("u: is too large: {} is not finite", bad.quantity)));
         }
         Ok(Run { scene: self.scene.clone(), outcome: Arc::new(outcome) })
     }

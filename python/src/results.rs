@@ -130,16 +130,16 @@ impl Results {
     fn add(&self, py: Python<'_>, run: &Run) -> PyResult<()> {
         let (case, other) = (case_name(&self.scene), &run.outcome.identity.case);
         if case != *other {
-            return Err(input(py, &format!("the run is of {other}, the results are of {case}")));
+            return Err(input(py, &format!("the run belongs to {other}, but the results belong to {case}")));
         }
         if run.scene.text() != self.scene.text() {
             let (a, b) = (run.scene.file(), self.scene.file());
-            return Err(input(py, &format!("the run is of another scene of the name {case} ({a}, {b})")));
+            return Err(input(py, &format!("the run belongs to another scene with the name {case} ({a}, {b})")));
         }
         let mut finished = self.finished.lock().expect("no thread panicked");
         if finished.iter().any(|known| id(known) == id(&run.outcome)) {
             let problem =
-                format!("a run of {} is among the results; give another name of the solver", run.label());
+                format!("the results already have a run of {}; give the solver another name", run.label());
             return Err(input(py, &problem));
         }
         finished.push(run.outcome.clone());

@@ -111,7 +111,7 @@ pub(crate) fn verify(
     let mut plan = read.map_err(|errors| of_scene(py, &errors))?;
     plan.select(&args);
     if plan.is_empty() {
-        return Err(input(py, &format!("{}: no run fits", study.display())));
+        return Err(input(py, &format!("{}: no run matches the selection", study.display())));
     }
     let finished = wait(py, progress, move |watch, reporter| {
         plan.watched_by(watch.clone());

@@ -46,8 +46,8 @@ pub(crate) fn unforked(py: Python<'_>) -> PyResult<()> {
     if *FIRST.get_or_init(|| id) == id {
         return Ok(());
     }
-    let problem = "this process was forked after its parent had used tissuebench, whose threads it does not have; \
-                   start it anew: multiprocessing.get_context(\"spawn\")";
+    let problem = "this process was forked after its parent had used tissuebench, and lacks the threads of \
+                   tissuebench; start the process with multiprocessing.get_context(\"spawn\")";
     Err(not_run(py, problem))
 }
 

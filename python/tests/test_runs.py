@@ -111,7 +111,7 @@ def test_errors_have_file_line_and_key(tmp_path):
 
 
 def test_an_unknown_method_is_named(block):
-    with pytest.raises(tb.SceneError, match="no method 'tet5'; it has tet4, hex8, hex20, efg"):
+    with pytest.raises(tb.SceneError, match="no method 'tet5'; known methods are tet4, hex8, hex20, efg"):
         block.run("tet5")
 
 
@@ -255,5 +255,5 @@ def test_a_study_runs_and_resumes(study, tmp_path):
 
 
 def test_a_study_without_runs_is_refused(study, tmp_path):
-    with pytest.raises(tb.SceneError, match="no run fits"):
+    with pytest.raises(tb.SceneError, match="no run matches the selection"):
         tb.verify(study, out=tmp_path / "out", methods=["nonsense"])

@@ -8,10 +8,11 @@ use thiserror::Error;
 #[derive(Debug, Error)]
 pub enum RecordError {
     /// A folder without results.
-    #[error("{path} holds no results (no provenance.json); `tissuebench run SCENE --out {path}` or `tissuebench verify --out {path}` writes some", path = .0.display())]
+    #[error("{path} holds no results (no provenance.json); write results with `tissuebench run SCENE --out {path}` or \
+             `tissuebench verify --out {path}`", path = .0.display())]
     NoResults(PathBuf),
     /// A folder whose study or run was started but has not finished.
-    #[error("{path} is incomplete: the results of {of} were begun there and are not all written; run it again, a study with --resume to keep what is finished", path = .path.display())]
+    #[error("{path} is incomplete: some results of {of} are missing; repeat the run, or continue a study with --resume", path = .path.display())]
     Incomplete {
         /// The folder.
         path: PathBuf,
@@ -27,7 +28,7 @@ pub enum RecordError {
         to: &'static str,
     },
     /// A record with a number that is not finite.
-    #[error("{case}, {method}: {field} of {quantity} is {value}, which isn't a finite number")]
+    #[error("{case}, {method}: {field} of {quantity} is {value}, which is not a finite number")]
     NotFinite {
         /// Case of the record.
         case: String,

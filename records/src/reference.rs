@@ -54,7 +54,7 @@ impl Reference {
             return name;
         }
         format!(
-            "{name}, whose own error is about {} (by {}): a smaller one says nothing",
+            "{name}, whose own error is about {} (by {}): smaller errors are not significant",
             list(&known),
             list(&self.by)
         )
@@ -88,7 +88,7 @@ mod tests {
         assert_eq!(
             known.sentence(),
             "tet4 with 75 nodes, whose own error is about 90.0 % of displacement and 20.0 % of the peak (by tet4 with 18 nodes and tet10 \
-             with 75 nodes): a smaller one says nothing"
+             with 75 nodes): smaller errors are not significant"
         );
         let unknown = Reference { band: BTreeMap::new(), unknown: "its mesh is a file".into(), ..known };
         assert_eq!(unknown.sentence(), "tet4 with 75 nodes, whose own error is unknown: its mesh is a file");

@@ -143,12 +143,12 @@ impl SurfaceField {
             return Err(wrong(format!("a triangle names point {t} of {n}")));
         }
         if self.points.iter().chain(&self.displacement).flatten().any(|v| !v.is_finite()) {
-            return Err(wrong("a coordinate or a displacement isn't finite".into()));
+            return Err(wrong("a coordinate or a displacement is not finite".into()));
         }
         let cells = || self.section.iter().flat_map(|s| &s.cells);
         let more = self.tools.iter().flat_map(|t| &t.points).chain(cells().flat_map(|c| &c.corners));
         if more.flatten().any(|v| !v.is_finite()) || cells().any(|c| !c.pressure.is_finite()) {
-            return Err(wrong("a tool or a section holds a number that isn't finite".into()));
+            return Err(wrong("a tool or a section holds a number that is not finite".into()));
         }
         Ok(())
     }

@@ -207,7 +207,9 @@ pub fn read_marked(dir: &Path) -> Result<RunSet, RecordError> {
     }
     let Version { format } = read_json(&provenance)?;
     if format > FORMAT {
-        let reason = format!("is of version {format}; this program reads up to {FORMAT}: take a newer one");
+        let reason = format!(
+            "has version {format}, but this program reads versions up to {FORMAT}: use a newer version of the program"
+        );
         return Err(RecordError::Content { path: provenance, reason });
     }
     let fields_dir = dir.join("fields");

@@ -80,7 +80,7 @@ fn numbers_that_are_none_are_refused() {
         set.records[7].value = bad;
         let message = write_run(dir.path(), &set).unwrap_err().to_string();
         assert!(
-            message.contains("isn't a finite number") && message.contains(&set.records[7].quantity),
+            message.contains("is not a finite number") && message.contains(&set.records[7].quantity),
             "{message}"
         );
         let mut set = common::study();

@@ -43,7 +43,7 @@ pub(crate) fn instructions(root: &Path, accept: bool) -> Result<u8> {
     let program = root.join("target/release/examples/kernels");
     let mut lines =
         valgrind(&program, &["--tool=none"], &[])?.0.lines().map(String::from).collect::<Vec<_>>();
-    ensure!(lines.len() > 1, "{} prints no names of kernels", program.display());
+    ensure!(lines.len() > 1, "{} printed no names of kernels", program.display());
     let names = lines.split_off(1);
     let version = Command::new("rustc").arg("--version").output().context("could not start rustc")?;
     let found = Accepted {

@@ -190,7 +190,7 @@ fn ci() -> Result<u8> {
 fn page(report: &Path) -> Result<u8> {
     let folder = root().join("reports/page");
     if Command::new("node").arg("--version").output().is_err() {
-        let why = "node is not installed: the page is not tested in a browser";
+        let why = "node is not installed, so the page is not tested in a browser";
         return skips::skipped(&root(), "node", why);
     }
     let node = |args: &[&std::ffi::OsStr]| -> Result<u8> {
@@ -203,7 +203,7 @@ fn page(report: &Path) -> Result<u8> {
             return Ok(code);
         }
     } else {
-        let why = "no reports/page/node_modules: the page's script is not built again (`npm ci` there)";
+        let why = "reports/page/node_modules is missing, so the script of the page is not rebuilt (run `npm ci` in reports/page)";
         let code = skips::skipped(&root(), "node_modules", why)?;
         if code != 0 {
             return Ok(code);
@@ -287,7 +287,9 @@ fn book() -> Result<u8> {
     match Command::new("mdbook").arg("build").arg(root().join("docs")).status() {
         Ok(status) => Ok(code_of(status)),
         Err(_) => {
-            eprintln!("xtask: docs/src/reference is fresh; `cargo install mdbook` to build the book itself");
+            eprintln!(
+                "xtask: docs/src/reference is up to date; `cargo install mdbook` to build the book itself"
+            );
             Ok(0)
         }
     }

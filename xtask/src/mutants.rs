@@ -55,7 +55,7 @@ pub(crate) fn mutants(root: &Path, names: &[String]) -> Result<u8> {
         let built = cargo(root, &target).arg("--no-run").output()?;
         let said = String::from_utf8_lossy(&built.stderr);
         let said = &said[said.find("\nerror").unwrap_or(0)..];
-        ensure!(built.status.success(), "cargo {target} does not build:{said}");
+        ensure!(built.status.success(), "cargo {target} failed to build:{said}");
     }
     for test in tests {
         let output = run(root, test, "")?;
@@ -85,7 +85,7 @@ fn read(path: &Path) -> Result<Vec<Mutant>> {
     let text = std::fs::read_to_string(path).with_context(|| format!("{} can't be read", path.display()))?;
     let List { mutant } = toml::from_str(&text).with_context(|| path.display().to_string())?;
     let names: BTreeSet<&str> = mutant.iter().map(|m| m.name.as_str()).collect();
-    ensure!(names.len() == mutant.len(), "{}: two mutants have one name", path.display());
+    ensure!(names.len() == mutant.len(), "{}: two mutants have the same name", path.display());
     Ok(mutant)
 }
 
@@ -116,7 +116,7 @@ fn copy(root: &Path, mutants: &[Mutant]) -> Result<()> {
     }
     remove_others(&to, &kept)?;
     match faults.into_iter().next() {
-        Some((file, faults)) => bail!("{}: git knows no file {file}", faults[0].name),
+        Some((file, faults)) => bail!("{}: the file {file} is not in git", faults[0].name),
         None => Ok(()),
     }
 }
@@ -140,9 +140,9 @@ fn with_faults(text: &str, mutants: &[&Mutant]) -> Result<String> {
     let mut places: BTreeMap<usize, (&str, String)> = BTreeMap::new();
     for Mutant { name, file, find, replace, .. } in mutants {
         let at: Vec<usize> = text.match_indices(find.as_str()).map(|(at, _)| at).collect();
-        let [at] = at[..] else { bail!("{name}: {file} has `{find}` {} times, not once", at.len()) };
+        let [at] = at[..] else { bail!("{name}: {file} contains `{find}` {} times, not once", at.len()) };
         let (old, new) = places.entry(at).or_insert((find, find.clone()));
-        ensure!(old == find, "{name}: {file} has two faults in `{find}`, in parts that overlap");
+        ensure!(old == find, "{name}: {file} has two overlapping faults in `{find}`");
         *new = format!(
             "(if {{ static ON: std::sync::LazyLock<bool> = std::sync::LazyLock::new(|| \
              std::env::var_os(\"{SWITCH}\").is_some_and(|on| on == \"{name}\")); *ON }} {{ {replace} }} else {{ {new} }})"
@@ -151,7 +151,7 @@ fn with_faults(text: &str, mutants: &[&Mutant]) -> Result<String> {
     let mut out = String::new();
     let mut done = 0;
     for (at, (old, new)) in places {
-        ensure!(at >= done, "{}: two faults in `{old}`, in parts that overlap", mutants[0].file);
+        ensure!(at >= done, "{}: two overlapping faults in `{old}`", mutants[0].file);
         out += &text[done..at];
         out += &new;
         done = at + old.len();
@@ -166,7 +166,7 @@ fn target(test: &str) -> Result<String> {
         ["baseline", ..] => Ok("test --package tissuebench-harness --test verify".into()),
         [package, "lib", ..] => Ok(format!("test --package tissuebench-{package} --lib")),
         [package, name, ..] => Ok(format!("test --package tissuebench-{package} --test {name}")),
-        _ => bail!("`{test}` is no test: say `PACKAGE lib|TEST [FILTER]` or `baseline TEXT`"),
+        _ => bail!("`{test}` is not a test: write `PACKAGE lib|TEST [FILTER]` or `baseline TEXT`"),
     }
 }
 

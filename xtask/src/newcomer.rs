@@ -23,7 +23,7 @@ pub(super) fn newcomer(root: &Path) -> Result<u8> {
     std::fs::create_dir_all(&folder)?;
     let page = std::fs::read_to_string(root.join(PAGE)).context(PAGE)?;
     let commands = commands(&page);
-    ensure!(commands.iter().any(|line| line.starts_with("cargo install")), "{PAGE} installs nothing");
+    ensure!(commands.iter().any(|line| line.starts_with("cargo install")), "{PAGE} has no install command");
     ensure!(commands.len() >= 4, "{PAGE} has no path from the install to a run");
     let (clone, installed) = (folder.join("tissuebench"), folder.join("installed"));
     let mut git = Command::new("git");
@@ -49,7 +49,7 @@ pub(super) fn newcomer(root: &Path) -> Result<u8> {
         ensure!(status.success(), "`{command}` ended with {status}");
     }
     for made in MADE {
-        ensure!(clone.join(made).exists(), "{made} was not made");
+        ensure!(clone.join(made).exists(), "{made} was not created");
     }
     eprintln!("xtask: {all:7.1} s  in all, of {LIMIT} s");
     Ok(u8::from(all > LIMIT))

@@ -39,7 +39,11 @@ pub(crate) fn nightly(root: &Path, minutes: u32) -> Result<u8> {
 /// Checks licences, advisories, sources and versions of all dependencies.
 fn deny(root: &Path) -> Result<u8> {
     if !has("cargo-deny") {
-        return skipped(root, "cargo-deny", "cargo-deny is not installed: the dependencies are not checked");
+        return skipped(
+            root,
+            "cargo-deny",
+            "cargo-deny is not installed, so the dependencies are not checked",
+        );
     }
     crate::cargo(&["deny", "--locked", "check"], &[])
 }
@@ -47,7 +51,7 @@ fn deny(root: &Path) -> Result<u8> {
 /// Runs every fuzz target for some minutes, starting from its corpus; new inputs stay in target/fuzz.
 fn fuzz(root: &Path, minutes: u32) -> Result<u8> {
     if !has("cargo-fuzz") {
-        return skipped(root, "cargo-fuzz", "cargo-fuzz is not installed: the readers are not fuzzed");
+        return skipped(root, "cargo-fuzz", "cargo-fuzz is not installed, so the readers are not fuzzed");
     }
     let mut targets: Vec<_> = std::fs::read_dir(root.join("fuzz/engine/fuzz_targets"))?
         .filter_map(|entry| Some(entry.ok()?.path().file_stem()?.to_os_string()))

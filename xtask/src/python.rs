@@ -19,7 +19,7 @@ pub(crate) fn python(root: &Path) -> Result<u8> {
     let missing: Vec<&str> = NEEDED.into_iter().filter(missing).collect();
     if !missing.is_empty() {
         let why = format!(
-            "the Python module is not tested, as {} can't import {}; PYTHON names another interpreter",
+            "the Python module is not tested, because {} can't import {}; set PYTHON to another interpreter",
             python.display(),
             missing.join(", ")
         );
@@ -30,7 +30,7 @@ pub(crate) fn python(root: &Path) -> Result<u8> {
     if code != 0 {
         return Ok(code);
     }
-    eprintln!("xtask: building the wheel; as long as tissuebench itself the first time");
+    eprintln!("xtask: building the wheel; the first build takes as long as tissuebench itself");
     let work = root.join("target/python");
     let wheels = work.join("wheels");
     if wheels.exists() {
