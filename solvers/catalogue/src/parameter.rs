@@ -23,7 +23,7 @@ pub struct Parameter {
     pub meaning: &'static str,
 }
 
-/// Kind of value of a parameter.
+/// Kind of value of a parameter: a number, a whole number, a vector, a list or a flag.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// A number.
@@ -83,7 +83,7 @@ impl Parameter {
         Parameter { required: false, ..self }
     }
 
-    /// Returns the parameter with another kind of value.
+    /// Returns the parameter with values of another kind: a vector, a list, a whole number or a flag.
     pub const fn of(self, kind: Kind) -> Parameter {
         Parameter { kind, ..self }
     }

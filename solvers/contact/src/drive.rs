@@ -4,7 +4,7 @@ use shape::Vector3;
 
 use crate::{Contacts, Tool};
 
-/// Drive of a tool: its displacement or its force at the end of the loading, approached in proportion to
+/// Drive of a tool: its displacement or its force at the end of the loading. The value grows in proportion to
 /// time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Drive {
@@ -43,7 +43,8 @@ pub struct ToolState {
 }
 
 impl ToolState {
-    /// Collects the state at a closure (m). `contacts` is `None` if no point is near the tool.
+    /// Collects the state of a tool with the displacement `closure` (m) along its direction. `contacts` is
+    /// `None` if no point is near the tool.
     pub fn new(closure: f64, contacts: Option<&Contacts>) -> ToolState {
         let zero = Vector3::zeros;
         ToolState {

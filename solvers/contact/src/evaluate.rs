@@ -30,9 +30,9 @@ pub struct Contacts {
 /// Counters of evaluations and of the work that they skipped; they add up over calls.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ContactCounts {
-    /// Number of evaluations.
+    /// Number of evaluations of one tool against the surface.
     pub evaluations: u64,
-    /// Number of evaluations skipped as a whole, because no point was near the tool.
+    /// Number of these evaluations that were skipped as a whole, because no point was near the tool.
     pub skipped: u64,
     /// Number of points whose distance was computed.
     pub distances: u64,

@@ -5,11 +5,11 @@ use shape::{Point3, PointRows, Vector3};
 
 use super::{ContactError, ContactSurface, Stand, Tool};
 
-/// Largest depth in a tool without contact that is accepted during the loading, when points may be about to
-/// touch. The depth is relative to the distance between the deepest surface location and the nearest contact
-/// point.
+/// Largest accepted overlap during the loading, if a tool overlaps the surface between its contact points and
+/// touches none of them yet. The overlap is the depth of a surface location in the tool, divided by the
+/// distance (undeformed) from this location to the nearest contact point.
 pub const ON_THE_WAY: f64 = 0.5;
-/// Largest accepted depth as [`ON_THE_WAY`], at the end of the loading, when no contact can follow.
+/// Largest accepted overlap as [`ON_THE_WAY`], at the end of the loading, when no contact can follow.
 const IN_THE_END: f64 = 0.01;
 /// Number of subdivisions of a triangle into four, to find its deepest location.
 const DIVISIONS: usize = 5;
@@ -52,9 +52,10 @@ impl<'a> Outline<'a> {
 }
 
 impl ContactSurface<'_> {
-    /// Checks that no corner of the outline is too deep in a tool that touches no point. Use the check for
-    /// reported states during the loading. It accepts depths up to [`ON_THE_WAY`], at which the next point
-    /// may be about to touch. Without an outline the check passes.
+    /// Checks that a tool that touches no contact point does not overlap the outline by too much. Only the
+    /// corners of the outline are tested. A corner may be as deep as [`ON_THE_WAY`] allows, because a contact
+    /// point may be about to touch, but no deeper than [`Tool::deepest`]. Use this check for reported states
+    /// during the loading, and [`ContactSurface::check_end`] at the end. Without an outline the check passes.
     ///
     /// # Errors
     ///
@@ -72,8 +73,10 @@ impl ContactSurface<'_> {
         self.refuse(worst)
     }
 
-    /// Checks at the end of the loading that no location of the outline is in a tool that touches no point.
-    /// No further point can come into contact then. Without an outline the check passes.
+    /// Checks at the end of the loading that a tool that touches no contact point does not overlap the
+    /// outline. All of the outline is searched, between its corners too. The depth may be up to a hundredth
+    /// of the distance to the nearest contact point, but no more than [`Tool::deepest`]. Without an outline
+    /// the check passes.
     ///
     /// # Errors
     ///

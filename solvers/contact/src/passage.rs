@@ -46,7 +46,8 @@ impl ContactSurface<'_> {
     /// states whether the tool touches any point of the surface at the end.
     ///
     /// A point that goes deeper along its path than [`Tool::deepest`] has been jumped over: points that slide
-    /// along a tool cut its corners by less. If nothing touches at the end, a much smaller depth is an error.
+    /// along a tool cut its corners by less. If nothing touches at the end, the limit is 8 % of
+    /// [`Tool::deepest`], and the corners of the outline are checked as well.
     ///
     /// # Errors
     ///

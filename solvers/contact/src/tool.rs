@@ -5,7 +5,8 @@ use shape::{Matrix3, Point3, Vector3};
 use super::law::Response;
 use super::{ContactError, ContactLaw, Slip, ToolShape};
 
-/// Rigid tool that moves by `closure * along` (m) without rotating.
+/// Rigid tool that moves by `closure * along` (m) without rotating. The `closure` (m) is its displacement
+/// along the unit vector `along`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tool {
     shape: ToolShape,
@@ -34,8 +35,8 @@ pub struct PointContact {
 }
 
 impl Tool {
-    /// Makes a tool. `at` (m) is the position of the shape's origin at closure 0. `rotation` (3, 3) maps the
-    /// shape's axes to the world's. `along` is the unit direction of motion.
+    /// Makes a tool. `at` (m) is the position of the shape's origin at closure 0, before any displacement.
+    /// `rotation` (3, 3) maps the shape's axes to the world's. `along` is the unit direction of motion.
     ///
     /// # Errors
     ///

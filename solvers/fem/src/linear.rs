@@ -5,9 +5,9 @@ use shape::{Coarser, Rows, Unity};
 
 use crate::FemError;
 
-/// Returns the linear mesh of a mesh with quadratic cells, or `None` for a mesh of linear cells alone. Its
-/// nodes are the corners of all cells. The linear function of a corner is 1 at the corner and 1/2 at the
-/// mid-edge nodes of its edges.
+/// Returns the interpolation from the corners of a mesh with quadratic cells to all its nodes, or `None` for
+/// a mesh of linear cells alone. The corners of all cells are the nodes of the coarser, linear mesh. The
+/// linear function of a corner is 1 at the corner and 1/2 at the mid-edge nodes of its edges.
 ///
 /// # Errors
 ///

@@ -21,8 +21,10 @@ pub fn surface_rows(mesh: &Mesh, facets: &[Facet], rule: &SurfaceRule) -> Result
     divided_surface_rows(mesh, facets, rule, &[])
 }
 
-/// Returns rows as [`surface_rows`], with the points on equal parts of each facet. `parts` holds the division
-/// of each facet, or is empty for whole facets.
+/// Returns rows as [`surface_rows`] on subdivided facets. `parts` holds one entry per facet: with `n` equal
+/// parts along each edge, the points are the points of the rule on each of the `n * n` parts
+/// ([`Parts::Inside`]) or the corners of the parts ([`Parts::Corners`]). An empty `parts` leaves all facets
+/// whole.
 ///
 /// # Errors
 ///

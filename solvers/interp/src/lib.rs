@@ -54,7 +54,7 @@ pub struct TransferInfo {
     /// (natural neighbour). Other schemes always report 0.
     pub outside: usize,
     /// Number of targets for which the plain formula was replaced: by an enlarged support (Shepard, moving
-    /// least squares), a regularised or reduced basis (moving least squares), or the best linear field
-    /// instead of the volumes (natural neighbour).
+    /// least squares), by a regularised or reduced basis (moving least squares), or by a linear field fitted
+    /// to the natural neighbours, because rounding spoilt the Voronoi volumes (natural neighbour).
     pub fallbacks: usize,
 }

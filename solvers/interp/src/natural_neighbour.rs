@@ -54,11 +54,11 @@ const SCHEME: &str = "natural-neighbour";
 /// cell touches.
 ///
 /// Beyond the hull no cell is bounded. A target there (counted in [`TransferInfo::outside`]) takes the linear
-/// field that best fits the natural neighbours of the closest point of the hull, weighted by their
-/// coordinates. This is still exact for linear fields, and continuous. These coordinates are computed just
-/// inside the hull, at a depth of a millionth of the distance to the cloud's middle. If rounding spoils the
-/// volumes, the target takes the linear field that best fits its natural neighbours with equal weights, and
-/// is counted in [`TransferInfo::fallbacks`].
+/// field that best fits the natural neighbours of the closest point of the hull. Each neighbour is weighted
+/// by its coordinate `V_i / sum_j V_j` at that point. This is still exact for linear fields, and continuous.
+/// The coordinates are computed just inside the hull, at a depth of a millionth of the distance to the
+/// cloud's middle. If rounding spoils the volumes, the target takes the linear field that best fits its
+/// natural neighbours with equal weights, and is counted in [`TransferInfo::fallbacks`].
 pub fn natural_neighbour(
     nodes: &[Point3],
     targets: &[Point3],

@@ -335,14 +335,14 @@ metrics! {
         "seconds for all phases except reading files";
 }
 
-/// Four parts of [`RMS`]: along x, y and z, and of the magnitude.
+/// [`RMS`] along x, y and z, then of the magnitude of the difference.
 pub static RMS_PARTS: [&Metric; 4] = [&RMS_X, &RMS_Y, &RMS_Z, &RMS];
 
-/// Four parts of [`INTEGRATION_RMS`]: along x, y and z, and of the magnitude.
+/// [`INTEGRATION_RMS`] along x, y and z, then of the magnitude of the difference.
 pub static INTEGRATION_RMS_PARTS: [&Metric; 4] =
     [&INTEGRATION_RMS_X, &INTEGRATION_RMS_Y, &INTEGRATION_RMS_Z, &INTEGRATION_RMS];
 
-/// Four parts of [`DISCRETISATION_RMS`]: along x, y and z, and of the magnitude.
+/// [`DISCRETISATION_RMS`] along x, y and z, then of the magnitude of the difference.
 pub static DISCRETISATION_RMS_PARTS: [&Metric; 4] =
     [&DISCRETISATION_RMS_X, &DISCRETISATION_RMS_Y, &DISCRETISATION_RMS_Z, &DISCRETISATION_RMS];
 
@@ -352,13 +352,13 @@ pub static REACTION_PARTS: [&Metric; 3] = [&REACTION_X, &REACTION_Y, &REACTION_Z
 /// Metrics of the mean displacement of a face along x, y and z.
 pub static MEAN_PARTS: [&Metric; 3] = [&MEAN_X, &MEAN_Y, &MEAN_Z];
 
-/// Four parts of [`BESIDE_RMS`]: along x, y and z, and of the magnitude.
+/// [`BESIDE_RMS`] along x, y and z, then of the magnitude of the difference.
 pub static BESIDE_RMS_PARTS: [&Metric; 4] = [&BESIDE_RMS_X, &BESIDE_RMS_Y, &BESIDE_RMS_Z, &BESIDE_RMS];
 
-/// Four parts of [`TRANSFER_ONLY_RMS`]: along x, y and z, and of the magnitude.
+/// [`TRANSFER_ONLY_RMS`] along x, y and z, then of the magnitude of the difference.
 pub static TRANSFER_ONLY_RMS_PARTS: [&Metric; 4] =
     [&TRANSFER_ONLY_RMS_X, &TRANSFER_ONLY_RMS_Y, &TRANSFER_ONLY_RMS_Z, &TRANSFER_ONLY_RMS];
 
-/// Four parts of [`BESIDE_TRANSFER_RMS`]: along x, y and z, and of the magnitude.
+/// [`BESIDE_TRANSFER_RMS`] along x, y and z, then of the magnitude of the difference.
 pub static BESIDE_TRANSFER_RMS_PARTS: [&Metric; 4] =
     [&BESIDE_TRANSFER_RMS_X, &BESIDE_TRANSFER_RMS_Y, &BESIDE_TRANSFER_RMS_Z, &BESIDE_TRANSFER_RMS];

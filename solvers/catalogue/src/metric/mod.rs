@@ -25,7 +25,7 @@ pub struct Metric {
     pub meaning: &'static str,
 }
 
-/// Kind of number that a metric is.
+/// Kind of a metric: error, order of convergence, cost, result, count, or value per tool or support.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// A distance from the right value: lower is better.
@@ -104,7 +104,8 @@ impl Metric {
         matches!(self.kind, Kind::Error | Kind::Cost)
     }
 
-    /// Returns the name of the metric for one tool, support or face, counted from 0.
+    /// Returns the name of the metric for one tool, support or face. `index` counts from 0: 0 gives the bare
+    /// name, 1 appends `-2`, 2 appends `-3`.
     pub fn numbered(&self, index: usize) -> String {
         if index == 0 { self.name.into() } else { format!("{}-{}", self.name, index + 1) }
     }

@@ -38,8 +38,8 @@ trait Shape {
     /// Returns points whose convex hull is the shape, for pictures of it next to a body of size `body`.
     fn outline(&self, body: f64) -> Vec<Vector3>;
 
-    /// Returns the default direction of the frame's z axis for a tool that moves along a direction; `None`
-    /// for a shape that is aligned with the axes of the scene.
+    /// Returns the default direction of the z axis of the tool's frame; `None` if the frame has the axes of
+    /// the scene by default.
     fn axis(&self, _along: Vector3) -> Option<Vector3> {
         None
     }
@@ -161,13 +161,15 @@ impl ToolShape {
         self.shape().inradius()
     }
 
-    /// Returns points whose convex hull is the tool, for pictures of it next to a body of size `body` (m).
+    /// Returns points (m, in the tool's frame) whose convex hull is the tool, for pictures. A plate, which is
+    /// unbounded, is drawn as a slab as wide as the body, `body` (m).
     pub fn outline(&self, body: f64) -> Vec<Vector3> {
         self.shape().outline(body)
     }
 
-    /// Returns the surface as quadrangles, for pictures of it next to a body of size `body` (m). A grid on
-    /// the bounding box of the tool is projected towards the middle of the box. Edges of boxes stay edges.
+    /// Returns the surface as points (m, in the tool's frame) and quadrangles, for pictures. A plate, which
+    /// is unbounded, is drawn as a slab as wide as the body, `body` (m). For other shapes, a grid on the
+    /// bounding box of the tool is projected towards the middle of the box. Edges of boxes stay edges.
     pub fn skin(&self, body: f64) -> (Vec<Vector3>, Vec<[u32; 4]>) {
         let outline = self.outline(body);
         let low = outline.iter().fold(Vector3::repeat(f64::INFINITY), |low, p| low.inf(p));
@@ -190,8 +192,9 @@ impl ToolShape {
         (points, quads)
     }
 
-    /// Returns the default direction of the frame's z axis for a tool that moves along a unit vector; `None`
-    /// for a shape that is aligned with the axes of the scene.
+    /// Returns the default direction of the z axis of the tool's frame: the direction of motion `along` (unit
+    /// vector) for a plate, the scene's z axis for a cylinder or capsule. Returns `None` for other shapes,
+    /// whose frame has the axes of the scene by default.
     pub fn axis(&self, along: Vector3) -> Option<Vector3> {
         self.shape().axis(along)
     }
