@@ -177,7 +177,7 @@ impl Range {
     }
 }
 
-/// Formats a number as people write it: a small number with its power of ten.
+/// Formats a number for messages, such as `0.05` or, below 1e-3 in magnitude, `2e-4`.
 pub fn short(number: f64) -> String {
     if number != 0.0 && number.abs() < 1e-3 { format!("{number:e}") } else { number.to_string() }
 }

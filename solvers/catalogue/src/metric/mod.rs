@@ -8,7 +8,8 @@ use crate::Dimension;
 use crate::names::nearest;
 use crate::problem::Problem;
 
-/// Number computed from one run, or from a family of runs at several levels.
+/// Name, label, dimension and meaning of a number that is computed from one run, or from a family of runs at
+/// several levels.
 #[derive(Debug, PartialEq, Eq)]
 pub struct Metric {
     /// Name in files, records and tables.
