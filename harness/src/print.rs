@@ -95,7 +95,7 @@ pub(crate) fn code(code: u8) -> u8 {
     let lost = LOST.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).take();
     match lost.or(flushed) {
         Some(bad) if bad.kind() != ErrorKind::BrokenPipe => {
-            eprintln!("tissuebench: stdout can't be written: {bad}; what was printed there is not whole");
+            eprintln!("tissuebench: stdout can't be written: {bad}; the printed output is incomplete");
             if code == 0 { 5 } else { code }
         }
         _ => code,

@@ -154,7 +154,7 @@ def test_a_displacement_of_our_own_has_our_own_errors(block):
     [
         (np.zeros((3, 3)), "3 nodes; the problem has 75"),
         (np.zeros((75, 2)), "give \\(n, 3\\)"),
-        (np.zeros((2, 75, 3)), "2 fields"),
+        (np.zeros((2, 75, 3)), "2 displacement fields"),
         (np.full((75, 3), np.nan), "node 0 is not finite"),
         (np.zeros(75), "shape"),
         (np.full((75, 3), 1e-3), "differs by 1e-3 m along [xyz] from the 0e0 m"),
@@ -194,7 +194,7 @@ def test_contact_forces_of_a_displacement_are_those_of_the_scene(root):
     nodal = np.zeros((1, len(problem.nodes), 3))
     nodal[0, 0] = [0.1, 0.2, -1.5]
     assert problem.compare(run.displacement, tool_forces=nodal)["tool-force"] == 1.5
-    with pytest.raises(tb.SceneError, match="2 tools given"):
+    with pytest.raises(tb.SceneError, match="2 tool forces given"):
         problem.compare(run.displacement, tool_forces=[1.0, 2.0])
 
 

@@ -30,10 +30,7 @@ pub(crate) fn note(adapter: &Found, passed: bool) {
     }
     let folder = file.parent().map(std::fs::create_dir_all);
     if let Err(bad) = folder.unwrap_or(Ok(())).and_then(|()| disk::write(&file, state(adapter))) {
-        eprintln!(
-            "tissuebench: {}: can't be written: {bad}; the adapter counts as unchecked",
-            file.display()
-        );
+        eprintln!("tissuebench: {}: can't be written: {bad}; the adapter remains unchecked", file.display());
     }
 }
 

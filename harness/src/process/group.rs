@@ -159,7 +159,7 @@ fn allocated() -> io::Result<u64> {
 pub(crate) fn limit(_: u32, memory: Option<u64>) -> io::Result<()> {
     match memory {
         None => Ok(()),
-        Some(_) => Err(io::Error::other("--memory-limit is for Linux only")),
+        Some(_) => Err(io::Error::other("--memory-limit is supported on Linux only")),
     }
 }
 

@@ -190,7 +190,7 @@ impl Posed {
         }
         for field in &found.fields {
             if field.len() != nodes {
-                return wrong(format!("the displacement of {} nodes; the problem has {nodes}", field.len()));
+                return wrong(format!("the displacement has {} nodes; the problem has {nodes}", field.len()));
             }
             if let Some(node) = field.iter().position(|u| !u.iter().all(|c| c.is_finite())) {
                 return wrong(format!("the displacement of node {node} is not finite"));
@@ -199,7 +199,7 @@ impl Posed {
         let tools = self.setup.tools.len();
         match &found.pushed {
             Some(forces) if forces.len() != tools => {
-                wrong(format!("forces of {} tools; the scene has {tools}", forces.len()))
+                wrong(format!("{} tool forces given; the scene has {tools}", forces.len()))
             }
             Some(forces) if !forces.iter().all(|force| force.is_finite()) => {
                 wrong("a force on a tool is not finite".into())

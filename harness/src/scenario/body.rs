@@ -181,7 +181,7 @@ fn few_enough(nodes: f64) -> Result<(), Failure> {
         return Ok(());
     }
     let problem = format!("gives {nodes:.0} nodes; at most {MOST_NODES} are supported");
-    Err(Failure::input(Key::Size(""), problem, "make it coarser"))
+    Err(Failure::input(Key::Size(""), problem, "take a coarser mesh"))
 }
 
 fn cuboid(
@@ -204,8 +204,8 @@ fn inverted(bad: InvertedElement, size: &Size, jitter: Option<Jitter>) -> Failur
             let help = "the nodes of a cell have to follow the order of the format";
             return Failure::input(Key::Size("file"), problem, help);
         }
-        (_, Some(_)) => (Key::Method("jitter.fraction"), "make it smaller"),
-        _ => (Key::Size(""), "make the grading closer to 1, or the mesh finer"),
+        (_, Some(_)) => (Key::Method("jitter.fraction"), "take a smaller fraction"),
+        _ => (Key::Size(""), "take a grading closer to 1, or a finer mesh"),
     };
     Failure::input(key, format!("gives a mesh in which {bad}"), help)
 }

@@ -105,7 +105,7 @@ impl FileBody {
             }
         };
         let stuffed = stuffed.map_err(|bad| {
-            Failure::input(Key::Size(""), format!("can't be meshed: {bad}"), "make it finer")
+            Failure::input(Key::Size(""), format!("can't be meshed: {bad}"), "take a finer mesh")
         })?;
         let mesh = match &self.mesh {
             None => stuffed.mesh,

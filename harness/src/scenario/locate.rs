@@ -90,10 +90,10 @@ impl Scenario<'_> {
             }
             EfgError::TooFewNodes { .. } => (ErrorKind::Invalid, Key::Size(""), "give more nodes"),
             EfgError::EmptyGrid { .. } => {
-                (ErrorKind::Invalid, Key::Method("integration.spacing"), "make it finer")
+                (ErrorKind::Invalid, Key::Method("integration.spacing"), "take a finer spacing")
             }
             EfgError::HugeGrid { .. } => {
-                (ErrorKind::Invalid, Key::Method("integration.spacing"), "make it coarser")
+                (ErrorKind::Invalid, Key::Method("integration.spacing"), "take a coarser spacing")
             }
             EfgError::NoRule { .. } => (
                 ErrorKind::Invalid,
@@ -214,7 +214,7 @@ impl Scenario<'_> {
                 finding(ErrorKind::NotRun, Key::Size(""), text, help)
             }
             SolveError::Algebra(AlgebraError::TooLarge { .. }) => {
-                finding(ErrorKind::NotRun, Key::Size(""), text, "make it coarser")
+                finding(ErrorKind::NotRun, Key::Size(""), text, "take a coarser mesh")
             }
             _ => finding(ErrorKind::NotRun, Key::Method(""), text, ""),
         }

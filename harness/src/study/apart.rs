@@ -184,7 +184,8 @@ pub(crate) fn experiment(args: &ExperimentArgs) -> Result<(), Failure> {
     let plan = Plan::of_tables(study, &args.tables).map_err(unreadable)?;
     let verify = VerifyArgs { quick: args.quick, ..VerifyArgs::of(&args.study) };
     let index = (0..plan.len()).find(|&index| plan.key(index, &verify) == args.key);
-    let index = index.ok_or_else(|| Failure::Input("its scene has changed since the study began".into()))?;
+    let index = index
+        .ok_or_else(|| Failure::Input("the scene of this run has changed since the study began".into()))?;
     let result = plan.run(index, &verify, &mut None);
     if let Some(folder) = args.answer.parent() {
         std::fs::create_dir_all(folder).map_err(|bad| Failure::Run(bad.to_string()))?;

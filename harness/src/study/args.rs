@@ -109,7 +109,7 @@ pub enum Loudness {
 }
 
 fn shard(text: &str) -> Result<(usize, usize), String> {
-    let fix = "write it as K/N with K from 1 to N, such as 1/4";
+    let fix = "write K/N with K from 1 to N, such as 1/4";
     let (k, n) = text.split_once('/').ok_or(fix)?;
     let (k, n): (usize, usize) = (k.parse().map_err(|_| fix)?, n.parse().map_err(|_| fix)?);
     if (1..=n).contains(&k) { Ok((k, n)) } else { Err(fix.into()) }

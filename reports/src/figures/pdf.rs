@@ -43,14 +43,14 @@ pub(super) fn pdf(tree: &usvg::Tree, title: &str) -> Result<Vec<u8>, String> {
 fn group(content: &mut Content, of: &usvg::Group, paper: Transform) -> Result<(), String> {
     if of.opacity().get() < 1.0 || of.clip_path().is_some() || of.mask().is_some() || !of.filters().is_empty()
     {
-        return Err("a group that is clear, cut or filtered, which is not drawn as PDF".into());
+        return Err("a transparent, clipped or filtered group, which is not supported in PDF".into());
     }
     for node in of.children() {
         match node {
             usvg::Node::Group(inner) => group(content, inner, paper)?,
             usvg::Node::Path(shape) => path(content, shape, paper)?,
             usvg::Node::Text(text) => group(content, text.flattened(), paper)?,
-            usvg::Node::Image(_) => return Err("a picture, which is not drawn as PDF".into()),
+            usvg::Node::Image(_) => return Err("a picture, which is not supported in PDF".into()),
         }
     }
     Ok(())
@@ -122,7 +122,7 @@ fn rgb(paint: &usvg::Paint, opacity: usvg::Opacity) -> Result<[f32; 3], String> 
         usvg::Paint::Color(c) if opacity.get() == 1.0 => {
             Ok([c.red, c.green, c.blue].map(|part| rounded(f32::from(part) / 255.0)))
         }
-        _ => Err("a gradient, a pattern or a clear colour, which is not drawn as PDF".into()),
+        _ => Err("a gradient, a pattern or a transparent colour, which is not supported in PDF".into()),
     }
 }
 

@@ -7,10 +7,10 @@ use resvg::{tiny_skia, usvg};
 /// # Errors
 /// A picture that is too large.
 pub(super) fn png(tree: &usvg::Tree) -> Result<Vec<u8>, String> {
-    let size = tree.size().to_int_size().scale_by(2.0).ok_or("it is too large")?;
+    let size = tree.size().to_int_size().scale_by(2.0).ok_or("the picture is too large")?;
     let (width, height) = (size.width(), size.height());
     let mut pixels = tiny_skia::Pixmap::new(width, height)
-        .ok_or_else(|| format!("{width} x {height} pixels can't be held"))?;
+        .ok_or_else(|| format!("{width} x {height} pixels do not fit in memory"))?;
     pixels.fill(tiny_skia::Color::WHITE);
     resvg::render(tree, tiny_skia::Transform::from_scale(2.0, 2.0), &mut pixels.as_mut());
     // Every pixel of a white sheet is opaque, so three of its four bytes suffice.

@@ -205,7 +205,7 @@ fn figure(case: &str, chosen: &[Chosen], runs: &[Run]) -> Figure {
     axes(&mut canvas, (36.0, bottom + 24.0), &view);
     let note = match tools {
         true => {
-            "True deformation, orthographic view; one colour scale. Outlines: the tools, also where the body hides them."
+            "True deformation, orthographic view; one colour scale. Outlines: the tools, including the parts hidden by the body."
         }
         false => "True deformation, orthographic view; one colour scale.",
     };
