@@ -67,6 +67,7 @@ impl Drop for Folder {
 
 /// Creates a folder that other users cannot enter.
 fn private(path: &Path) -> io::Result<()> {
+    #[cfg_attr(not(unix), allow(unused_mut))]
     let mut builder = DirBuilder::new();
     #[cfg(unix)]
     std::os::unix::fs::DirBuilderExt::mode(&mut builder, 0o700);

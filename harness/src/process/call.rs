@@ -5,7 +5,7 @@ use std::process::{Command, ExitStatus, Stdio};
 use std::sync::mpsc;
 use std::time::{Duration, Instant};
 
-use super::group::{self, Started, last_words};
+use super::group::{Started, last_words};
 
 /// Bounds of the pause between two measurements of the processes; the pause is a tenth of the elapsed time.
 const SHORTEST_PAUSE: Duration = Duration::from_millis(3);
@@ -30,6 +30,7 @@ pub(crate) enum End {
     /// The program exited by itself.
     Exited(ExitStatus),
     OutOfTime,
+    #[cfg_attr(not(target_os = "linux"), allow(dead_code))]
     OutOfMemory,
 }
 
@@ -144,10 +145,10 @@ impl Watched {
 
 fn watch(started: &mut Started, began: Instant, limits: Limits) -> Watched {
     let id = started.id();
-    let (ended, end) = mpsc::channel();
+    let (ended, end) = mpsc::channel::<Instant>();
     #[cfg(unix)]
     std::thread::spawn(move || {
-        group::wait(id);
+        super::group::wait(id);
         ended.send(Instant::now())
     });
     let mut watched = Watched::default();
@@ -174,6 +175,7 @@ fn watch(started: &mut Started, began: Instant, limits: Limits) -> Watched {
         if watched.end.is_some() {
             started.kill();
             // A killed process ends later if it is waiting for a disk.
+            #[cfg(unix)]
             let _ = end.recv_timeout(limits.time);
             return watched;
         }

@@ -16,6 +16,7 @@ use super::members;
 
 /// Exit codes as in shells: for a program that does not exist, and the offset for one ended by a signal.
 const NOT_FOUND: u8 = 127;
+#[cfg(unix)]
 const SIGNAL: i32 = 128;
 
 /// Arguments of the hidden command `leash`.

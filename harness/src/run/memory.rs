@@ -42,6 +42,7 @@ impl Counted {
 
 /// Smallest block for which huge pages are requested, bytes. The quick study, whose blocks are 4 to 8 MB,
 /// takes as long with huge pages as without.
+#[cfg(target_os = "linux")]
 const LARGE: usize = 16 << 20;
 
 // SAFETY: every block is allocated, resized and freed by `System`; the counters do not touch it.
