@@ -1,4 +1,4 @@
-"""The engine. Numbers are SI: metres, newtons, pascals, seconds."""
+"""The compiled module. All numbers are in SI units: metres, newtons, pascals, seconds."""
 
 from collections.abc import Callable, Sequence
 from os import PathLike
@@ -10,8 +10,8 @@ from numpy.typing import ArrayLike, NDArray
 Path = str | PathLike[str]
 Floats = NDArray[np.float64]
 Event = dict[str, Any]
-"""An event with its name under `event`: `begin` (`runs`), `start`, `step` (`load`, `iterations`, `tool-forces`), `done` or
-`failed` (`reason`); each of a run has `case`, `method` and `run`."""
+"""A progress event. The name is stored under `event`: `begin` (`runs`), `start`, `step` (`load`, `iterations`, `tool-forces`), `done` or
+`failed` (`reason`). All events of a run have `case`, `method` and `run`."""
 
 class Tool(TypedDict):
     name: str
@@ -29,28 +29,28 @@ class Check(TypedDict):
 
 @final
 class Table:
-    """Records, one number a row. polars, pyarrow, pandas and duckdb take it over without a copy: `polars.DataFrame(table)`."""
+    """Records with one number per row. polars, pyarrow, pandas and duckdb read the table without a copy: `polars.DataFrame(table)`."""
 
     @property
     def columns(self) -> list[str]: ...
     def __len__(self) -> int: ...
     def __getitem__(self, name: str, /) -> Any:
-        """A column: numbers as an array of its own, absent ones as nan; texts as a list."""
+        """Returns a column: numbers as a new array with nan for missing values, texts as a list."""
 
     def __arrow_c_stream__(self, requested_schema: object | None = None) -> object: ...
     def __arrow_c_schema__(self) -> object: ...
 
 @final
 class Mesh:
-    """Tetrahedra or hexahedra; the nodes of a cell in VTK's order."""
+    """A mesh of tetrahedra or hexahedra, with the nodes of a cell in VTK's order."""
 
     def __new__(cls, points: ArrayLike, cells: ArrayLike) -> Mesh:
-        """From whole numbers of nodes; a cell that is inverted or flat is refused."""
+        """Creates a mesh from points (n, 3) and cells of node numbers; inverted or flat cells are refused."""
 
     @staticmethod
     def read(path: Path, unit: str = "mm") -> Mesh: ...
     def write(self, path: Path, unit: str = "mm", version: str | None = None) -> None:
-        """Writes .msh, .inp, .vtu or the boundary as .stl, by the name; `version` of a .msh is "2.2" (unless given) or "4.1"."""
+        """Writes .msh, .inp, .vtu, or the boundary as .stl, according to the file name; `version` of a .msh is "2.2" (default) or "4.1"."""
 
     @property
     def points(self) -> Floats: ...
@@ -65,7 +65,7 @@ class Mesh:
 
 @final
 class ShapeTable:
-    """Shape functions at points, as an operator: `table @ u` are the values there, `table.T @ f` nodal forces."""
+    """Shape functions at points, as an operator: `table @ u` gives values at the points, and `table.T @ f` gives nodal forces."""
 
     @property
     def shape(self) -> tuple[int, int]: ...
@@ -75,17 +75,17 @@ class ShapeTable:
     def weights(self) -> Floats | None: ...
     @property
     def outside(self) -> int | None:
-        """How many of the points lie outside, where that is known."""
+        """Number of points outside the nodes' hull or the mesh; None if unknown."""
 
     @property
     def T(self) -> Transposed: ...
     @property
     def csr(self) -> tuple[Floats, NDArray[np.uint32], NDArray[np.int64]]:
-        """`(data, indices, indptr)` as `scipy.sparse.csr_matrix` takes them."""
+        """`(data, indices, indptr)` in the format of `scipy.sparse.csr_matrix`."""
 
     def values(self, u: ArrayLike) -> Floats: ...
     def gradients(self, u: ArrayLike) -> Floats:
-        """`du_i / dX_j`, (points, 3, 3), where the table has gradients."""
+        """Returns `du_i / dX_j`, (points, 3, 3), if the table has gradients."""
 
     def __matmul__(self, u: ArrayLike, /) -> Floats: ...
 
@@ -97,7 +97,7 @@ class Transposed:
 
 @final
 class Run:
-    """One finished run."""
+    """A finished run."""
 
     @property
     def case(self) -> str: ...
@@ -105,11 +105,11 @@ class Run:
     def method(self) -> str: ...
     @property
     def status(self) -> str:
-        """`ok`, or how it ended early."""
+        """`ok`, or the kind of early end."""
 
     @property
     def failure(self) -> Exception | None:
-        """Why it ended early, where it did."""
+        """Reason of an early end, or None."""
 
     @property
     def nodes(self) -> int: ...
@@ -117,7 +117,7 @@ class Run:
     def dofs(self) -> int: ...
     @property
     def seconds(self) -> float | None:
-        """Median seconds of a pass."""
+        """Median time of a pass, s."""
 
     @property
     def metrics(self) -> dict[str, float]: ...
@@ -129,21 +129,21 @@ class Run:
     def records(self) -> Table: ...
     @property
     def probes(self) -> Floats:
-        """Displacement at the scene's probes, (probes, 3)."""
+        """Displacement at the scene's probes, m, (probes, 3)."""
 
     @property
     def mesh(self) -> Mesh:
-        """The undeformed body, where `states` were asked for; so the others below."""
+        """The undeformed body. This property and the properties below need a run with `states=True`."""
 
     @property
     def times(self) -> Floats: ...
     @property
     def displacements(self) -> Floats:
-        """(states, points, 3)."""
+        """Displacement of the points of the mesh at each state, m, (states, points, 3)."""
 
     @property
     def displacement(self) -> Floats:
-        """(points, 3), at the last state."""
+        """Displacement of the points of the mesh at the last state, m, (points, 3)."""
 
 @final
 class Results:
@@ -154,20 +154,20 @@ class Results:
     @property
     def failures(self) -> list[tuple[str, Exception]]: ...
     def __getitem__(self, method: str, /) -> Run:
-        """A method's run; its failure is raised."""
+        """Returns the run of a method, or raises the failure of the method."""
 
     def __len__(self) -> int: ...
     @property
     def records(self) -> Table: ...
     def add(self, run: Run) -> None:
-        """Adds a run of the same scene; one that is there already is refused."""
+        """Adds a run of the same scene; a run that already exists is refused."""
 
     def write(self, out: Path) -> None:
         """Writes a folder of results with its report."""
 
 @final
 class Problem:
-    """A method's problem for a solver of one's own."""
+    """The problem of a method, for a solver of the user."""
 
     @property
     def method(self) -> str: ...
@@ -183,22 +183,22 @@ class Problem:
 
     @property
     def steps(self) -> int:
-        """Load steps of the scene."""
+        """Number of load steps of the scene."""
 
     @property
     def fixed(self) -> tuple[NDArray[np.int64], Floats]:
-        """Prescribed components by `3 node + axis`, and their values."""
+        """Prescribed components by their number `3 node + axis`, and their values, m."""
 
     @property
     def force(self) -> Floats:
-        """Consistent nodal forces of all loads, (nodes, 3)."""
+        """Consistent nodal forces of all loads, N, (nodes, 3)."""
 
     @property
     def tools(self) -> list[Tool]: ...
     @property
     def quadrature(self) -> ShapeTable: ...
     def table(self, points: ArrayLike, *, gradients: bool = False) -> ShapeTable:
-        """The shape functions at points of the body."""
+        """Returns the shape functions at points of the body."""
 
     def compare(
         self,
@@ -208,16 +208,16 @@ class Problem:
         seconds: float | None = None,
         solver: str = "own",
     ) -> Run:
-        """Compares a displacement, (nodes, 3) at the end or (steps, nodes, 3), with the scene's reference.
+        """Compares a displacement (m), (nodes, 3) at the end or (steps, nodes, 3), with the scene's reference.
 
-        `tool_forces` are the forces of the tools along their ways, (tools,), or nodal forces that they exert on the body,
-        (tools, nodes, 3); by the scene's contact law where they are not given. A displacement that misses what supports prescribe by more
-        than 1 % of the largest is refused.
+        `tool_forces` (N) are the forces of the tools along their directions, (tools,), or their nodal forces on the body,
+        (tools, nodes, 3); by default the forces follow from the scene's contact law. A displacement that differs from a prescribed
+        displacement by more than 1 % of the largest displacement is refused.
         """
 
 @final
 class Scene:
-    """A scene that has been checked."""
+    """A checked scene."""
 
     @property
     def file(self) -> str: ...
@@ -234,7 +234,7 @@ class Scene:
         frames: bool = False,
         progress: Callable[[Event], object] | None = None,
     ) -> Run:
-        """Runs one method. `states` keeps the displacement, `frames` runs the scene's loop of frames, `once` repeats no timing."""
+        """Runs one method. `states` keeps the displacement, `frames` runs the scene's loop of frames, and `once` times a single run."""
 
     def run_all(
         self,
@@ -265,16 +265,16 @@ class Study:
 
 def load(path: Path) -> Scene: ...
 def parse(text: str, file: Path = "scene.toml") -> Scene:
-    """Reads a scene from text; `file` names it in messages, and paths in it are relative to its folder."""
+    """Reads a scene from text; `file` is its name in messages, and paths in the scene are relative to the folder of `file`."""
 
 def read(results: Path) -> Table:
-    """The records in a folder of results."""
+    """Reads the records in a folder of results."""
 
 def schemes() -> list[str]: ...
 def transfer(
     scheme: str, nodes: ArrayLike, targets: ArrayLike, *, mesh: Mesh | None = None, **parameters: float | bool
 ) -> ShapeTable:
-    """The table of a transfer scheme, by its name and parameters as in scenes."""
+    """Builds the table of a transfer scheme, with the name and the parameters used in scenes."""
 
 def verify(
     study: Path,

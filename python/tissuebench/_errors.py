@@ -1,10 +1,10 @@
-"""What goes wrong, with the place in the file."""
+"""Errors with their place in the file."""
 
 from __future__ import annotations
 
 
 class Error(Exception):
-    """Something could not be done. What is not known of its place is None."""
+    """Base class of all errors. Unknown parts of the place are None."""
 
     file: str | None
     line: int | None
@@ -34,13 +34,13 @@ class Error(Exception):
 
     @property
     def errors(self) -> list[Error]:
-        """Everything that is wrong, each with its place; the first of them is this error itself, where it is the only one."""
+        """All errors of the file, each with its place; a list of this error if there is only one."""
         return self._errors or [self]
 
 
 class SceneError(Error, ValueError):
-    """Input that makes no sense: exit code 2 of the command."""
+    """Invalid input: exit code 2 of the command."""
 
 
 class RunError(Error, RuntimeError):
-    """Sound input that could not be run, or files that could not be written: exit code 3 or 5 of the command."""
+    """Valid input that could not be run, or files that could not be written: exit code 3 or 5 of the command."""

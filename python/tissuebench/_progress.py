@@ -1,4 +1,4 @@
-"""Progress as lines, for people who wait."""
+"""Progress as one line of text."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import Any, TextIO
 
 
 def printed(file: TextIO | None = None):
-    """A `progress` that keeps one line up to date: `3 of 9  kidney-fair tet10  40 % of the load`."""
+    """Returns a `progress` function that updates one line: `3 of 9  kidney-fair tet10  40 % of the load`."""
     out = file or sys.stderr
     state: dict[str, Any] = {"runs": 0, "done": 0, "now": "", "width": 0}
 

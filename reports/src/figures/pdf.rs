@@ -171,8 +171,8 @@ mod tests {
         );
         for (inside, what) in [
             (gradient, "a gradient"),
-            (format!("<path fill-opacity=\"0.5\" {square}/>"), "a clear colour"),
-            (format!("<g opacity=\"0.5\"><path {square}/><path {square}/></g>"), "a group"),
+            (format!("<path fill-opacity=\"0.5\" {square}/>"), "a transparent colour"),
+            (format!("<g opacity=\"0.5\"><path {square}/><path {square}/></g>"), "clipped or filtered group"),
         ] {
             let found = refused(&inside);
             assert!(found.as_ref().is_some_and(|reason| reason.contains(what)), "{inside}: {found:?}");
