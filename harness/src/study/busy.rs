@@ -40,7 +40,7 @@ fn disturbed(busy: &Busy, run: &Record, took: &Took) -> String {
     let [wall, cpu] = [took.wall, took.cpu.unwrap_or(took.wall)].map(|seconds| 1e3 * seconds);
     format!(
         "the wall-clock time of {} of {} timed runs was more than 1.2 times the CPU time, with the largest ratio for \
-         {} with {} nodes of {}: {wall:.3} ms of wall-clock time for {cpu:.3} ms",
+         {} with {} nodes of {}: {wall:.3} ms of wall-clock time for {cpu:.3} ms of CPU time",
         busy.disturbed, busy.timed, run.method, run.nodes, run.case
     )
 }
@@ -83,7 +83,7 @@ mod tests {
         assert_eq!(
             found.message,
             "other programs used the processors: the wall-clock time of 1 of 1 timed runs was more than 1.2 times the CPU time, with the largest ratio \
-             for tet4 with 75 nodes of block: 18.800 ms of wall-clock time for 2.860 ms; runs of a case with such a run are compared by CPU time"
+             for tet4 with 75 nodes of block: 18.800 ms of wall-clock time for 2.860 ms of CPU time; runs of a case with such a run are compared by CPU time"
         );
         let loaded = Machine { load: Some(5.2), quiet: Some(false), ..quiet };
         let found = results(0.0188, 0.0187, loaded.clone()).warnings.remove(0);

@@ -183,7 +183,7 @@ const GRID: [Edit; 5] = [
     (|l| at(l, "POINTS").and_then(|n| word(&mut l[n + 1], 4, "x")), "expected a number, found 'x'"),
     (
         |l| at(l, "POINTS").and_then(|n| word(&mut l[n], 1, "4000000000")),
-        "too many numbers for the bytes of the file",
+        "too many numbers for the size of the file",
     ),
     (|l| word(&mut l[3], 1, "POLYDATA"), "expected UNSTRUCTURED_GRID"),
 ];

@@ -185,7 +185,11 @@ fn ranges_of_an_assembly_end_at_what_is_there() {
     assert_eq!(mesh.facet_group_nodes(mesh.group("most").unwrap()), [1, 2, 3, 4]);
     let changes = [
         ("10, 30, 10", "10, 70, 10", "a.inp:16: node set 'face' names node 70"),
-        ("100, 300, 100", "100, 300, 150", "a.inp:18: expected a last number that the steps"),
+        (
+            "100, 300, 100",
+            "100, 300, 150",
+            "a.inp:18: expected a last number that is a whole number of steps",
+        ),
         ("100, 300, 100", "200, 300, 100", "a.inp:18: element set 'all' names element 200"),
     ];
     let refusal = |text: &str| read("a.inp", text).err();
@@ -195,20 +199,24 @@ fn ranges_of_an_assembly_end_at_what_is_there() {
 #[test]
 fn keywords_that_nobody_has_are_refused_with_the_nearest() {
     let changes = [
-        ("*NODE\n", "*NODES\n", "a.inp:1: *NODES is no keyword of Abaqus or CalculiX; did you mean *NODE?"),
+        (
+            "*NODE\n",
+            "*NODES\n",
+            "a.inp:1: *NODES is not a keyword of Abaqus or CalculiX; did you mean *NODE?",
+        ),
         (
             "*ELEMENT, ",
             "*ELEMNT, ",
-            "a.inp:7: *ELEMNT is no keyword of Abaqus or CalculiX; did you mean *ELEMENT?",
+            "a.inp:7: *ELEMNT is not a keyword of Abaqus or CalculiX; did you mean *ELEMENT?",
         ),
         (
             "*ELSET, ",
             "*ELSTE, ",
-            "a.inp:12: *ELSTE is no keyword of Abaqus or CalculiX; did you mean *ELSET?",
+            "a.inp:12: *ELSTE is not a keyword of Abaqus or CalculiX; did you mean *ELSET?",
         ),
-        ("*ELSET, ", "*El Sett, ", "*EL SETT is no keyword of Abaqus or CalculiX; did you mean *ELSET?"),
-        ("*STEP", "*PART_INERTIA\n*STEP", "a.inp:16: *PART_INERTIA is no keyword of Abaqus or CalculiX"),
-        ("*STEP", "*\n*STEP", "a.inp:16: * is no keyword of Abaqus or CalculiX"),
+        ("*ELSET, ", "*El Sett, ", "*EL SETT is not a keyword of Abaqus or CalculiX; did you mean *ELSET?"),
+        ("*STEP", "*PART_INERTIA\n*STEP", "a.inp:16: *PART_INERTIA is not a keyword of Abaqus or CalculiX"),
+        ("*STEP", "*\n*STEP", "a.inp:16: * is not a keyword of Abaqus or CalculiX"),
         ("*STEP", "*END_STEP\n*STEP", "did you mean *END STEP?"),
     ];
     let refusal = |text: &str| read("a.inp", text).err();
@@ -218,5 +226,5 @@ fn keywords_that_nobody_has_are_refused_with_the_nearest() {
     let more = DECK.replace("*STEP", &format!("{others}*SOLIDSECTION, ELSET=all, MATERIAL=m\n*STEP"));
     assert_eq!(read("a.inp", &more).unwrap(), read("a.inp", DECK).unwrap());
     let keys = read("a.k", "*KEYWORD\n*NODE\n1, 0, 0, 0\n").unwrap_err();
-    assert_eq!(keys, "a.k:1: *KEYWORD is no keyword of Abaqus or CalculiX");
+    assert_eq!(keys, "a.k:1: *KEYWORD is not a keyword of Abaqus or CalculiX");
 }

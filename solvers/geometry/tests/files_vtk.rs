@@ -177,7 +177,7 @@ fn broken_grids_are_refused_with_their_place() {
             "m:4: expected UNSTRUCTURED_GRID (a mesh of cells), found 'POLYDATA'",
         ),
         ("POINTS 5 float", "POINTS 5 half", "m:8: expected a type of numbers"),
-        ("POINTS 5", "POINTS 5000000000", "m:8: too many numbers for the bytes of the file: 15000000000"),
+        ("POINTS 5", "POINTS 5000000000", "m:8: too many numbers for the size of the file: 15000000000"),
         ("POINTS 5", "POINTS many", "m:8: expected a number of values, found 'many'"),
         ("POINTS 5", "POINTS 6", "m:11: expected a number, found 'CELLS'"),
         ("POINTS 5", "POINTS 4", "expected a part of the format, such as POINTS or CELL_DATA, found '1'"),
@@ -196,7 +196,7 @@ fn broken_grids_are_refused_with_their_place() {
         ("CELL_TYPES 3\n10 10 5\n", "", "no CELL_TYPES section"),
         ("CELL_DATA 3", "CELL_DATA 2", "m:20: expected a part of the format"),
         ("material 1 3", "material 1 2", "m:26: expected a number of values, found 'stress'"),
-        ("0 0 0 1 1 1 1 1\n", "", "m:32: too many numbers for the bytes of the file: 8"),
+        ("0 0 0 1 1 1 1 1\n", "", "m:32: too many numbers for the size of the file: 8"),
         (
             "stress 2 3 double\n1 2 3 4 5 6",
             "stress 2 3 double\n1 2 3 4 5",

@@ -149,7 +149,7 @@ fn every_broken_text_is_refused_with_its_place() {
         ("end_header\n", "", "a.ply:11: expected a line of a PLY header"),
         ("format ascii", "format text", "expected format ascii"),
         ("format ascii 1.0\n", "", "no format section"),
-        ("vertex 4", "vertex 4000000000", "a.ply:4: too many elements for the bytes of the file: 4000000000"),
+        ("vertex 4", "vertex 4000000000", "a.ply:4: too many elements for the size of the file: 4000000000"),
         ("vertex 4", "vertex 5", "a.ply:"),
         ("vertex 4", "vertex 3", "a.ply:"),
         ("face 4", "face 5", "a.ply:20: the file ends before a value of an element"),
