@@ -1,26 +1,90 @@
-//! Order of the harness's modules: each module uses only those to its right. Files and functions stay small.
+//! Order of modules: each module uses only those to its right. Files and functions stay small.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-/// Modules from left to right.
-const ROOMS: [&str; 12] = [
-    "cli",
-    "study",
-    "run",
-    "measure",
-    "procedure",
-    "prepare",
-    "scenario",
-    "discretise",
-    "adapter",
-    "outcome",
-    "process",
-    "error",
-];
+/// A folder of modules in an order.
+struct House {
+    /// Folder of its files, below the repository.
+    folder: &'static str,
+    /// Path of its modules.
+    root: &'static str,
+    /// Modules from left to right. A module without a file of its own here belongs to the folder that is named.
+    rooms: &'static [&'static str],
+}
 
-fn source() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("src")
+/// The harness. Few files lie outside its rooms: the names it exports, and printing.
+const HARNESS: House = House {
+    folder: "harness/src",
+    root: "crate",
+    rooms: &[
+        "cli",
+        "study",
+        "run",
+        "measure",
+        "procedure",
+        "prepare",
+        "scenario",
+        "discretise",
+        "adapter",
+        "outcome",
+        "process",
+        "error",
+    ],
+};
+
+/// The reader of scene and study files: whole files, the parts of a scene, what they are written in.
+const SCENE: House = House {
+    folder: "cases/src/scene",
+    root: "crate::scene",
+    rooms: &[
+        "study",
+        "coverage",
+        "axis",
+        "load",
+        "shared",
+        "set",
+        "available",
+        "demands",
+        "scene",
+        "output",
+        "reference",
+        "check",
+        "method",
+        "method::over_mesh",
+        "method::external",
+        "method::fem",
+        "method::efg",
+        "method::cloud",
+        "method::functions",
+        "method::integration",
+        "method::essential",
+        "method::common",
+        "tool",
+        "condition",
+        "field",
+        "material",
+        "body",
+        "procedure",
+        "selection",
+        "mesh_file",
+        "purpose",
+        "vocabulary",
+        "report",
+        "document",
+        "limits",
+        "conform",
+        "sources",
+        "error",
+        "units",
+        "region",
+        "expression",
+        "words",
+    ],
+};
+
+fn repository() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap().to_path_buf()
 }
 
 /// Rust files below a folder, with their texts.
@@ -37,53 +101,142 @@ fn files(folder: &Path) -> Vec<(PathBuf, String)> {
     found
 }
 
-/// Index of a file's module: the first part of its path below `src`.
-fn room(path: &Path) -> Option<usize> {
-    let below = path.strip_prefix(source()).unwrap().with_extension("");
-    let first = below.components().next()?.as_os_str().to_str()?.to_string();
-    ROOMS.iter().position(|room| *room == first)
+impl House {
+    /// The files with the paths of their modules.
+    fn modules(&self) -> Vec<(String, String)> {
+        let folder = repository().join(self.folder);
+        let module = |path: &Path| {
+            let below = path.strip_prefix(&folder).unwrap().with_extension("");
+            let parts = below.components().map(|part| part.as_os_str().to_str().unwrap());
+            let parts = parts.filter(|part| !["mod", "lib", "main"].contains(part));
+            std::iter::once(self.root).chain(parts).collect::<Vec<_>>().join("::")
+        };
+        files(&folder).into_iter().map(|(path, text)| (module(&path), text)).collect()
+    }
+
+    /// Index of the smallest room that has a path.
+    fn room(&self, path: &str) -> Option<usize> {
+        let below = path.strip_prefix(self.root)?.strip_prefix("::")?;
+        let has = |room: &str| below.strip_prefix(room).is_some_and(|r| r.is_empty() || r.starts_with("::"));
+        let rooms = self.rooms.iter().enumerate().filter(|(_, room)| has(room));
+        rooms.max_by_key(|(_, room)| room.len()).map(|(index, _)| index)
+    }
+
+    /// Rooms that a text of a module names.
+    fn used(&self, module: &str, text: &str) -> BTreeSet<usize> {
+        paths(module, text).iter().filter_map(|path| self.room(path)).collect()
+    }
+
+    /// Checks that every arrow between two rooms goes from left to right; returns the number of arrows.
+    fn check(&self) -> usize {
+        let mut arrows = 0;
+        let mut seen = BTreeSet::new();
+        for (module, text) in self.modules() {
+            let Some(here) = self.room(&module) else { continue };
+            seen.insert(here);
+            for there in self.used(&module, &text) {
+                let (from, to) = (self.rooms[here], self.rooms[there]);
+                assert!(there >= here, "{module}: {from} uses {to}, a room to its left");
+                arrows += usize::from(there > here);
+            }
+        }
+        assert_eq!(seen.len(), self.rooms.len(), "{}: a room is empty: {seen:?}", self.folder);
+        arrows
+    }
 }
 
-/// Modules that a text names after `crate::`, in a path or in a list.
-fn used(text: &str) -> BTreeSet<usize> {
-    let known = |name: &str| ROOMS.iter().position(|room| *room == name);
-    let word = |text: &str| {
-        text.split(|c: char| !(c.is_alphanumeric() || c == '_')).next().unwrap_or("").to_string()
-    };
-    let mut found = BTreeSet::new();
-    for after in text.split("crate::").skip(1) {
-        match after.strip_prefix('{') {
-            Some(list) => {
-                let end = list.find(';').unwrap_or(list.len());
-                found.extend(list[..end].split([',', '{', '}']).filter_map(|item| known(&word(item.trim()))));
+/// Whole paths that a text of a module names after `crate::` or `super::`, alone or in a list; unit tests
+/// are left out.
+fn paths(module: &str, text: &str) -> Vec<String> {
+    let code = text.split("#[cfg(test)]").next().unwrap();
+    let code: Vec<&str> = code.lines().filter(|line| !line.trim_start().starts_with("//")).collect();
+    let code = code.join("\n");
+    let mut found = Vec::new();
+    let mut rest = code.as_str();
+    while let Some(at) = ["crate::", "super::"].iter().filter_map(|start| rest.find(start)).min() {
+        let mut base = "crate";
+        let mut tree = &rest[at..];
+        if let Some(below) = tree.strip_prefix("crate::") {
+            tree = below;
+        } else {
+            base = module;
+            while let Some(below) = tree.strip_prefix("super::") {
+                (base, tree) = (base.rsplit_once("::").map_or("", |(above, _)| above), below);
             }
-            None => found.extend(known(&word(after))),
         }
+        rest = branch(tree, base, &mut found);
     }
     found
 }
 
-#[test]
-fn arrows_go_one_way() {
-    let mut arrows = 0;
-    for (path, text) in files(&source()) {
-        let Some(here) = room(&path) else { continue };
-        for there in used(&text) {
-            let (path, from, to) = (path.display(), ROOMS[here], ROOMS[there]);
-            assert!(there >= here, "{path}: {from} uses {to}, a room to its left");
-            arrows += usize::from(there > here);
+/// Reads a path, or a list of paths, below `base`; returns the text behind it.
+fn branch<'t>(text: &'t str, base: &str, found: &mut Vec<String>) -> &'t str {
+    let text = text.trim_start();
+    if let Some(mut rest) = text.strip_prefix('{') {
+        loop {
+            rest = branch(rest, base, found);
+            // Behind a name there may be `as` with another.
+            let Some(end) = rest.find([',', '}']) else { return "" };
+            let closes = rest[end..].starts_with('}');
+            rest = rest[end + 1..].trim_start();
+            if closes {
+                return rest;
+            }
+            if let Some(behind) = rest.strip_prefix('}') {
+                return behind;
+            }
         }
     }
+    let end = text.find(|c: char| !(c.is_alphanumeric() || c == '_')).unwrap_or(text.len());
+    let (word, rest) = text.split_at(end);
+    let path = format!("{base}::{word}");
+    match rest.strip_prefix("::") {
+        Some(below) => branch(below, &path, found),
+        None => {
+            found.push(path);
+            rest
+        }
+    }
+}
+
+#[test]
+fn arrows_go_one_way() {
+    let arrows = HARNESS.check();
     assert!(arrows > 100, "{arrows}: the arrows were not read");
-    let rooms: BTreeSet<usize> = files(&source()).iter().filter_map(|(path, _)| room(path)).collect();
-    assert_eq!(rooms.len(), ROOMS.len(), "a room is empty: {rooms:?}");
+    let arrows = SCENE.check();
+    assert!(arrows > 100, "{arrows}: the arrows were not read");
+}
+
+/// Names that `scene/mod.rs` exports would be a way around the order.
+#[test]
+fn every_file_of_scenes_is_in_a_room_and_names_rooms() {
+    for (module, text) in SCENE.modules().iter().filter(|(module, _)| module != SCENE.root) {
+        assert!(SCENE.room(module).is_some(), "{module} is in no room");
+        for path in paths(module, text).iter().filter(|path| path.starts_with(SCENE.root)) {
+            assert!(SCENE.room(path).is_some(), "{module} names {path}, which is in no room");
+        }
+    }
 }
 
 #[test]
 fn an_arrow_back_would_be_seen() {
-    assert_eq!(used("use crate::run::Group;"), BTreeSet::from([2]));
-    assert_eq!(used("use crate::{Failure, cli::args, outcome::{Meters, Plan}};"), BTreeSet::from([0, 9]));
-    assert_eq!(used("let x = crate::study::check(1);"), BTreeSet::from([1]));
+    let used = |text: &str| HARNESS.used("crate::run::group", text);
+    assert_eq!(used("use crate::study::Plan;"), BTreeSet::from([1]));
+    assert_eq!(
+        used("use crate::{Failure, cli::args, outcome::{Meters as M, Plan}};"),
+        BTreeSet::from([0, 9])
+    );
+    assert_eq!(used("let x = crate::study::check(super::super::measure::y);"), BTreeSet::from([1, 3]));
+    assert_eq!(
+        used("// crate::study\nuse super::{self, plan};\nuse super::super::cli;"),
+        BTreeSet::from([0, 2])
+    );
+    let used = |text: &str| SCENE.used("crate::scene::method::fem", text);
+    assert_eq!(used("use super::{Method, common::{Size, Mass}};"), [12, 21].into());
+    assert_eq!(
+        used("use crate::exact::Exact; use crate::scene::{tool::Tool, words::words};"),
+        [22, 41].into()
+    );
 }
 
 /// Number of lines of the longest function in a text formatted by rustfmt: from `fn` to the closing brace at
@@ -108,7 +261,7 @@ fn longest_function(text: &str) -> usize {
 
 #[test]
 fn files_and_functions_stay_small() {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap().to_path_buf();
+    let root = repository();
     let mut count = 0;
     for folder in ["harness", "reports", "cases", "solvers", "xtask", "tests", "docs"] {
         for (path, text) in files(&root.join(folder)) {
@@ -123,7 +276,7 @@ fn files_and_functions_stay_small() {
 
 #[test]
 fn no_meaning_is_read_out_of_names() {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap().to_path_buf();
+    let root = repository();
     let mut scenes = Vec::new();
     let mut folders = vec![root.join("cases/scenes")];
     while let Some(folder) = folders.pop() {
@@ -161,7 +314,7 @@ fn no_meaning_is_read_out_of_names() {
 /// input. Text is printed in one place only, which handles control characters of terminals.
 #[test]
 fn files_are_opened_and_text_is_printed_in_one_place_each() {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap().to_path_buf();
+    let root = repository();
     let opens = [
         "fs::read(",
         "fs::read_to_string(",

@@ -4,8 +4,9 @@ use catalogue::Problem;
 
 use super::error::{ErrorKind, SceneError};
 use super::method::{Dilation, Family};
-use super::model::Scene;
 use super::procedure::{Procedure, ProcedureKind};
+use super::scene::Scene;
+use super::tool::Tool;
 
 impl Scene {
     /// Every part of the scene that no solver here supports yet; empty if all parts can run.
@@ -26,7 +27,7 @@ impl Scene {
             let help = "leave it out: above 0 stiff contact gains energy";
             add("procedure.spectral_radius", "a spectral radius above 0 with tools".into(), help);
         }
-        let ramp = |tool: &super::tool::Tool| tool.over.or(self.procedure.duration());
+        let ramp = |tool: &Tool| tool.over.or(self.procedure.duration());
         for (i, tool) in self.tools.iter().enumerate().filter(|_| implicit) {
             if ramp(tool) != ramp(&self.tools[0]) {
                 let help = "give all tools the same, or take kind = \"explicit\"";

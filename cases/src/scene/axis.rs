@@ -21,11 +21,12 @@ use serde::Deserialize;
 use toml::Value;
 
 use super::document::Document;
-use super::error::SceneError;
+use super::error::{ErrorKind, SceneError};
 use super::expression::Expression;
-use super::model::Scene;
+use super::load::resolved;
 use super::report::Report;
-use super::{resolved, shared};
+use super::scene::Scene;
+use super::shared;
 
 /// An axis along which a scene is varied, and the criterion for a correct result.
 #[derive(Clone, Debug)]
@@ -72,27 +73,21 @@ pub(crate) struct AxisKeys {
     unset: Vec<String>,
 }
 
-/// Reads the axis at `key`.
-pub(crate) fn axis(keys: AxisKeys, key: &str, report: &mut Report) -> Option<Axis> {
-    let at = |name: &str| format!("{key}.{name}");
-    let judge = match metric::named(&keys.judge) {
-        Ok(judge) => judge,
-        Err(problem) => {
-            report.add(&at("judge"), problem);
-            return None;
-        }
-    };
-    let is_error = matches!(judge.kind, metric::Kind::Error | metric::Kind::Tool);
-    report.require(is_error, &at("judge"), "is no error", "take \"l2\" or \"relative-rms\"");
-    report.require(!keys.values.is_empty(), &at("values"), "are none", "give two or more");
-    report.require(!keys.set.is_empty(), &at("set"), "drives nothing", "name a key of the scene");
-    let base = keys.base.or(keys.values.first().copied()).unwrap_or(0.0);
-    let known = keys.values.contains(&base);
-    report.require(known, &at("base"), "is none of the values", "name one of them");
-    let wrong = keys.wrong.unwrap_or(0.25);
-    report.require(wrong > 0.0, &at("wrong"), "is no error", "give a number above 0");
-    let AxisKeys { name, unit, values, set, unset, .. } = keys;
-    Some(Axis { name, unit, values, base, judge, wrong, set, unset })
+impl AxisKeys {
+    pub fn read(self, report: &Report) -> Option<Axis> {
+        let judge = metric::named(&self.judge).map_err(|bad| report.add("judge", bad)).ok()?;
+        let is_error = matches!(judge.kind, metric::Kind::Error | metric::Kind::Tool);
+        report.require(is_error, "judge", "is no error", "take \"l2\" or \"relative-rms\"");
+        report.require(!self.values.is_empty(), "values", "are none", "give two or more");
+        report.require(!self.set.is_empty(), "set", "drives nothing", "name a key of the scene");
+        let base = self.base.or(self.values.first().copied()).unwrap_or(0.0);
+        let known = self.values.contains(&base);
+        report.require(known, "base", "is none of the values", "name one of them");
+        let wrong = self.wrong.unwrap_or(0.25);
+        report.require(wrong > 0.0, "wrong", "is no error", "give a number above 0");
+        let AxisKeys { name, unit, values, set, unset, .. } = self;
+        Some(Axis { name, unit, values, base, judge, wrong, set, unset })
+    }
 }
 
 impl Axis {
@@ -105,7 +100,7 @@ impl Axis {
     pub fn at(&self, scene: &Scene, methods: &[String], value: f64) -> Result<Scene, Vec<SceneError>> {
         let refuse = |key: &str, problem: Problem| {
             vec![scene.error(
-                super::ErrorKind::Invalid,
+                ErrorKind::Invalid,
                 key,
                 &format!("can't be driven: {}", problem.problem),
                 problem.help.as_deref(),

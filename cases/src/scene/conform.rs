@@ -7,13 +7,10 @@ use serde_json::{Map, Value};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use catalogue::{nearest, suggest};
+use catalogue::{Dimension, Problem, clip, nearest, suggest};
 
-use super::document::written;
 use super::expression::Expression;
 use super::region::Region;
-use catalogue::Dimension;
-use catalogue::Problem;
 
 /// Renamed keys, old name and new name; keys once spelled with hyphens, such as `on-stall`, need no entry.
 const RENAMED: [(&str, &str); 3] =
@@ -401,5 +398,17 @@ fn keys(
             let problem = Problem::new("is missing").help(format!("add {}", describe_all(&forms)));
             findings.push(Finding { key: join(path, name), span: span.clone(), problem });
         }
+    }
+}
+
+/// A scalar as written in the file, without quotes.
+pub(crate) fn written(value: &DeValue<'_>) -> Option<String> {
+    match value {
+        DeValue::String(text) => Some(clip(text)),
+        DeValue::Integer(number) => Some(number.to_string()),
+        DeValue::Float(number) => Some(number.as_str().to_string()),
+        DeValue::Boolean(value) => Some(value.to_string()),
+        DeValue::Datetime(value) => Some(value.to_string()),
+        DeValue::Array(_) | DeValue::Table(_) => None,
     }
 }

@@ -7,7 +7,6 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::report::Report;
-use super::study::Run;
 
 /// A scene that the study leaves out on purpose
 #[derive(Deserialize, JsonSchema)]
@@ -21,7 +20,7 @@ pub(crate) struct LeftOutKeys {
 
 /// Reports every scene in the folder `all_of` and below it that is neither in a run nor left out with a
 /// reason.
-pub(crate) fn check(all_of: Option<&str>, left_out: &[LeftOutKeys], runs: &[Run], report: &mut Report) {
+pub(crate) fn check(all_of: Option<&str>, left_out: &[LeftOutKeys], runs: &[&Path], report: &Report) {
     let Some(folder) = all_of else {
         let help = "name the folder of scenes that the study is of: all_of = \"../scenes\"";
         report.require(left_out.is_empty(), "left_out", "goes with all_of only", help);
@@ -42,7 +41,7 @@ pub(crate) fn check(all_of: Option<&str>, left_out: &[LeftOutKeys], runs: &[Run]
         return;
     }
     scenes.sort();
-    let run: Vec<PathBuf> = runs.iter().map(|run| whole(&run.scene)).collect();
+    let run: Vec<PathBuf> = runs.iter().map(|scene| whole(scene)).collect();
     let mut excused = Vec::new();
     for (i, keys) in left_out.iter().enumerate() {
         let key = format!("left_out[{i}]");

@@ -10,10 +10,11 @@ use serde_json::Value;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue, Deserializer};
 
-use super::{conform, limits};
 use catalogue::{Problem, clip};
 
+use super::conform::{self, written};
 use super::error::{ErrorKind, SceneError};
+use super::limits;
 use super::sources::{Files, Place, Sources};
 
 /// Places of the keys of a file by line and column, for messages long after reading.
@@ -226,14 +227,17 @@ fn note(value: &DeValue<'_>, path: &str, sources: &Sources<'_>, places: &mut Pla
     }
 }
 
-/// A scalar as written in the file, without quotes.
-pub(crate) fn written(value: &DeValue<'_>) -> Option<String> {
+/// The value with all spans shifted by `base`.
+pub(crate) fn moved<'t>(value: &DeValue<'t>, base: usize) -> DeValue<'t> {
+    let span = |span: Range<usize>| span.start + base..span.end + base;
+    let item = |value: &Spanned<DeValue<'t>>| Spanned::new(span(value.span()), moved(value.get_ref(), base));
     match value {
-        DeValue::String(text) => Some(clip(text)),
-        DeValue::Integer(number) => Some(number.to_string()),
-        DeValue::Float(number) => Some(number.as_str().to_string()),
-        DeValue::Boolean(value) => Some(value.to_string()),
-        DeValue::Datetime(value) => Some(value.to_string()),
-        DeValue::Array(_) | DeValue::Table(_) => None,
+        DeValue::Table(table) => DeValue::Table(
+            (table.iter())
+                .map(|(key, value)| (Spanned::new(span(key.span()), key.get_ref().clone()), item(value)))
+                .collect(),
+        ),
+        DeValue::Array(items) => DeValue::Array(items.iter().map(item).collect()),
+        scalar => scalar.clone(),
     }
 }

@@ -1,6 +1,11 @@
 //! Prescribed values over space: a constant, an expression, or the values of the exact solution.
 
+use schemars::JsonSchema;
+use serde::Deserialize;
+
 use super::expression::{Expression, NotFinite};
+use super::units::{Dim, Q, Unit};
+use super::words::words;
 
 /// A scalar over space, in SI.
 #[derive(Clone, Debug)]
@@ -29,6 +34,11 @@ impl ScalarField {
             }
         }
     }
+
+    /// Whether the field varies in space.
+    pub(crate) fn varies(&self) -> bool {
+        matches!(self, ScalarField::Expression { .. })
+    }
 }
 
 /// A vector over space, in SI.
@@ -40,11 +50,75 @@ pub enum VectorField {
     Exact,
 }
 
-/// Prescribed displacement of a support along one axis, in metres.
-#[derive(Clone, Debug)]
-pub enum Prescribed {
-    /// A given displacement.
-    Field(ScalarField),
-    /// The displacement of the exact solution in `[reference]`.
-    Exact,
+impl VectorField {
+    /// Whether the field varies in space.
+    pub(crate) fn varies(&self) -> bool {
+        match self {
+            VectorField::Components(components) => components.iter().any(ScalarField::varies),
+            VectorField::Exact => true,
+        }
+    }
+}
+
+words! {
+    /// A field that is given by its name.
+    pub(crate) enum ExactWord {
+        /// The values of the exact solution that `[reference]` names.
+        Exact = "exact",
+    }
+}
+
+/// A quantity, or an expression in x, y and z (metres) with the unit of its value
+#[derive(Deserialize, JsonSchema)]
+#[serde(untagged)]
+#[serde(bound = "")]
+pub(crate) enum FieldKeys<D: Dim> {
+    Constant(Q<D>),
+    Expression(FieldOf<D>),
+}
+
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, bound = "")]
+pub(crate) struct FieldOf<D: Dim> {
+    unit: Unit<D>,
+    of: Expression,
+}
+
+/// Three components, "exact", or three expressions with one unit
+#[derive(Deserialize, JsonSchema)]
+#[serde(untagged)]
+#[serde(bound = "")]
+pub(crate) enum VectorKeys<D: Dim> {
+    Exact(ExactWord),
+    Components([FieldKeys<D>; 3]),
+    Expressions(VectorOf<D>),
+}
+
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, bound = "")]
+pub(crate) struct VectorOf<D: Dim> {
+    unit: Unit<D>,
+    of: [Expression; 3],
+}
+
+impl<D: Dim> From<FieldKeys<D>> for ScalarField {
+    fn from(keys: FieldKeys<D>) -> ScalarField {
+        match keys {
+            FieldKeys::Constant(q) => ScalarField::Constant(q.0),
+            FieldKeys::Expression(f) => ScalarField::Expression { of: f.of, factor: f.unit.0 },
+        }
+    }
+}
+
+impl<D: Dim> From<VectorKeys<D>> for VectorField {
+    fn from(keys: VectorKeys<D>) -> VectorField {
+        match keys {
+            VectorKeys::Exact(_) => VectorField::Exact,
+            VectorKeys::Components(c) => VectorField::Components(c.map(ScalarField::from)),
+            VectorKeys::Expressions(v) => {
+                let factor = v.unit.0;
+                VectorField::Components(v.of.map(|of| ScalarField::Expression { of, factor }))
+            }
+        }
+    }
 }

@@ -1,9 +1,67 @@
-//! Materials of a scene.
+//! Materials of a scene: a law with its constants, density and relaxation, and the parts of the body with their
+//! own material.
+
+use std::borrow::Cow;
 
 use catalogue::{Problem, Value, Values};
 use material::{Law, LawEntry, Material as _};
+use schemars::{JsonSchema, Schema, SchemaGenerator};
+use serde::Deserialize;
 
+use super::procedure::{Procedure, ProcedureKind};
+use super::region::Region;
+use super::report::Report;
+use super::selection::{Names, Place};
+use super::units::{Density, Q, Time};
+use super::vocabulary::{Given, Laws, Word, build, settings, tagged};
 use crate::exact::{Elastic, ExactError, Hyperelastic, Medium};
+
+/// A material law and its constants
+#[derive(Deserialize)]
+pub(crate) struct MaterialKeys {
+    law: Word<Laws>,
+    #[serde(flatten)]
+    beside: BesideLaw,
+    #[serde(flatten)]
+    settings: Given<Laws>,
+}
+
+/// Keys that every material has, whatever its law
+#[derive(Deserialize, JsonSchema)]
+struct BesideLaw {
+    density: Option<Q<Density>>,
+    #[serde(default)]
+    prony: Vec<PronyKeys>,
+}
+
+impl JsonSchema for MaterialKeys {
+    fn schema_name() -> Cow<'static, str> {
+        "material".into()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        tagged::<Laws, BesideLaw>("law", "A material law and its constants", generator)
+    }
+}
+
+/// A share of the shear response that relaxes, with its relaxation time
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+struct PronyKeys {
+    g: f64,
+    tau: Q<Time>,
+}
+
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct RegionKeys {
+    name: String,
+    /// A volume named in the mesh file
+    on: Option<Names>,
+    #[serde(rename = "where")]
+    place: Option<Region>,
+    material: MaterialKeys,
+}
 
 /// A law with the constants given by the scene, and its density and relaxation.
 #[derive(Clone, Debug, PartialEq)]
@@ -17,18 +75,66 @@ pub struct Material {
     pub prony: Vec<Relaxation>,
 }
 
-impl Material {
-    /// A material; `law` is the result of `entry` for `values`.
-    pub(crate) fn new(
-        entry: &'static LawEntry,
-        values: Values,
-        law: Law,
-        density: Option<f64>,
-        prony: Vec<Relaxation>,
-    ) -> Material {
-        Material { entry, values, law, density, prony }
-    }
+/// A term of a Prony series: a share of the shear response that relaxes exponentially.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Relaxation {
+    /// Share `g` of the shear response, between 0 and 1.
+    pub g: f64,
+    /// Relaxation time in seconds, positive.
+    pub tau: f64,
+}
 
+/// A part of the body with its own material.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MaterialRegion {
+    /// Name in tables.
+    pub name: String,
+    /// Selection of its cells; names refer to volumes in the mesh file.
+    pub place: Place,
+    /// Material of the region.
+    pub material: Material,
+}
+
+impl MaterialKeys {
+    pub fn read(self, report: &Report) -> Option<Material> {
+        let density = self.beside.density.map(|d| report.positive("density", d.0));
+        let prony = prony(self.beside.prony, report);
+        let entry = self.law.0;
+        let values = settings(&self.law, self.settings, report)?;
+        let law = build(entry, &values, "law", report)?;
+        Some(Material { entry, values, law, density, prony })
+    }
+}
+
+fn prony(terms: Vec<PronyKeys>, report: &Report) -> Vec<Relaxation> {
+    let terms = report.each("prony", terms, |term, report| {
+        Some(Relaxation { g: report.positive("g", term.g), tau: report.positive("tau", term.tau.0) })
+    });
+    let sum: f64 = terms.iter().map(|term| term.g).sum();
+    let help = "the shares must leave something that does not relax: their sum is below 1";
+    report.require(sum < 1.0, "prony", "relaxes everything", help);
+    terms
+}
+
+impl RegionKeys {
+    pub fn read(self, report: &Report) -> Option<MaterialRegion> {
+        let place = Place::required(self.on, self.place, report);
+        let material = self.material.read(&report.at("material"));
+        Some(MaterialRegion { name: self.name, place, material: material? })
+    }
+}
+
+/// Reports names of regions that are not unique.
+pub(crate) fn unique(regions: &[MaterialRegion], report: &Report) {
+    for (i, region) in regions.iter().enumerate() {
+        if regions[..i].iter().any(|other| other.name == region.name) {
+            let problem = Problem::new("is the name of another region").help("names are unique");
+            report.add(&format!("region[{i}].name"), problem);
+        }
+    }
+}
+
+impl Material {
     /// The law.
     pub fn law(&self) -> &Law {
         &self.law
@@ -52,6 +158,27 @@ impl Material {
         }
         (self.entry.build)(&values)
     }
+    /// Reports contradictions with the procedure.
+    pub(crate) fn demands(&self, procedure: &Procedure, report: &Report) {
+        let (kind, name) = (procedure.kind(), self.name());
+        if matches!(kind, ProcedureKind::Linear | ProcedureKind::Modes) && !self.law.is_small_strain() {
+            let problem = Problem::new("is a law of large strain, but the procedure is linear").found(name);
+            let help = "add [procedure] kind = \"static\" and steps = 10, or take law = \"linear\"";
+            report.add("law", problem.help(help));
+        }
+        if !self.prony.is_empty() && procedure.ramp().is_none() {
+            let problem = format!("relaxes over time, which a {} procedure has not", kind.name());
+            let help = "leave it out: young and poisson are then the moduli of the load's own duration";
+            report.add("prony", Problem::new(problem).help(help));
+        }
+        if procedure.has_inertia() && self.density.is_none() {
+            let help = match kind {
+                ProcedureKind::Modes => "vibrations need a mass: density = \"1000 kg/m^3\"".into(),
+                _ => format!("the {name} law needs its mass in dynamics: density = \"1000 kg/m^3\""),
+            };
+            report.missing("density", &help);
+        }
+    }
 }
 
 /// The medium of the exact solutions for a law, with its moduli at small strain. The energies of
@@ -73,13 +200,4 @@ pub fn medium(law: &Law, young: f64, poisson: f64) -> Result<Medium, ExactError>
         _ => None,
     };
     Ok(Medium { elastic, law })
-}
-
-/// A term of a Prony series: a share of the shear response that relaxes exponentially.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Relaxation {
-    /// Share `g` of the shear response, between 0 and 1.
-    pub g: f64,
-    /// Relaxation time in seconds, positive.
-    pub tau: f64,
 }

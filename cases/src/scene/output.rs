@@ -1,12 +1,117 @@
-//! Output, reference and checks of a scene.
+//! Output of a scene: probes, means, transfers, and frames of a repeated loading.
 
-use std::path::PathBuf;
+use catalogue::{Problem, Values};
+use schemars::JsonSchema;
+use serde::Deserialize;
 
-use super::method::{MeshFile, Size};
-use super::model::Place;
-use crate::exact::SolutionEntry;
-use catalogue::Values;
-use catalogue::metric::Metric;
+use super::mesh_file::MeshFile;
+use super::procedure::ProcedureKind;
+use super::reference::Reference;
+use super::region::Region;
+use super::report::Report;
+use super::selection::{Names, Place};
+use super::units::{Length, Q, Time, Unit};
+use super::vocabulary::{Given, Schemes, Word, build, settings};
+use super::words::words;
+
+#[derive(Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct OutputKeys {
+    /// Points at which results are reported
+    probes: Option<Vec<[Q<Length>; 3]>>,
+    /// Faces whose area mean of the displacement is reported: [{ on = "z-max" }, { where = "z == 20 mm and x
+    /// >= 3 mm" }]
+    means: Option<Vec<MeanKeys>>,
+    transfer: Option<TransfersKeys>,
+    /// Secondary reference: a method of this scene that every run is also compared with at the targets. For a
+    /// published method whose own error is part of a published difference
+    beside: Option<String>,
+    /// Repetition of the loading after the first solution, as in a simulator, with each frame timed
+    repeated: Option<RepeatedKeys>,
+}
+
+/// A part of the surface
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+struct MeanKeys {
+    /// Names given by the shape or the mesh file
+    on: Option<Names>,
+    /// Comparisons joined by 'and'
+    #[serde(rename = "where")]
+    place: Option<Region>,
+}
+
+/// A simulator's loop: prepared once, the loading goes up and down frame by frame
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+struct RepeatedKeys {
+    /// Total number of frames; percentiles above 99 need 1000
+    frames: u32,
+    /// Frames of one cycle up and down; 120 unless given, 4 s at 30 Hz
+    cycle: Option<u32>,
+    /// Time after which no further frame starts; 10 s unless given
+    within: Option<Q<Time>>,
+    /// Relative residual of a frame solved by Newton's method; the procedure's tolerance unless given
+    tolerance: Option<f64>,
+}
+
+/// One transfer or several
+#[derive(Deserialize, JsonSchema)]
+#[serde(untagged)]
+enum TransfersKeys {
+    One(TransferKeys),
+    Several(Vec<TransferKeys>),
+}
+
+/// A transfer of nodal displacements to other points
+#[derive(Deserialize, JsonSchema)]
+struct TransferKeys {
+    to: TargetKeys,
+    scheme: SchemeKeys,
+    #[serde(flatten)]
+    settings: Given<Schemes>,
+}
+
+/// A transfer scheme, or "own": the method's own shape functions
+#[derive(Deserialize, JsonSchema)]
+#[serde(untagged)]
+enum SchemeKeys {
+    Scheme(Word<Schemes>),
+    Own(OwnWord),
+}
+
+words! {
+    /// A transfer without a scheme.
+    enum OwnWord {
+        /// The method's own shape functions.
+        Own = "own",
+    }
+}
+
+/// "reference-nodes", "probes", or the nodes of a mesh file
+#[derive(Deserialize, JsonSchema)]
+#[serde(untagged)]
+enum TargetKeys {
+    Name(TargetName),
+    File(FileKeys),
+}
+
+words! {
+    /// Target points of a transfer.
+    enum TargetName {
+        /// The nodes of the reference method.
+        ReferenceNodes = "reference-nodes",
+        /// The probes of the output.
+        Probes = "probes",
+    }
+}
+
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+struct FileKeys {
+    file: String,
+    unit: Option<Unit<Length>>,
+}
 
 /// Output of a scene.
 #[derive(Clone, Debug, PartialEq)]
@@ -56,58 +161,100 @@ pub enum Target {
     File(MeshFile),
 }
 
-/// Reference that results are compared with.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Reference {
-    /// An exact solution.
-    Exact {
-        /// Entry of the solution.
-        entry: &'static SolutionEntry,
-        /// Parameters of the solution.
-        values: Values,
-    },
-    /// A method of this scene.
-    Method {
-        /// Id of the method.
-        id: String,
-        /// Size of the reference run, if it differs from the method's own size.
-        size: Option<Size>,
-    },
-    /// A stored record.
-    Record(PathBuf),
+impl OutputKeys {
+    pub fn read(self, report: &Report) -> Output {
+        if let Some(probes) = &self.probes {
+            let help = "name a point, or leave the key out";
+            report.require(!probes.is_empty(), "probes", "is empty", help);
+        }
+        if let Some(means) = &self.means {
+            let help = "name a face, such as { on = \"z-max\" }, or leave the key out";
+            report.require(!means.is_empty(), "means", "is empty", help);
+        }
+        let mean = |of: MeanKeys, report: &Report| Some(Place::required(of.on, of.place, report));
+        Output {
+            probes: self.probes.unwrap_or_default().into_iter().map(|x| x.map(|q| q.0)).collect(),
+            means: report.each("means", self.means.unwrap_or_default(), mean),
+            transfers: match self.transfer {
+                None => Vec::new(),
+                Some(TransfersKeys::One(one)) => one.read(&report.at("transfer")).into_iter().collect(),
+                Some(TransfersKeys::Several(several)) => report.each("transfer", several, TransferKeys::read),
+            },
+            beside: self.beside,
+            repeated: self.repeated.map(|keys| keys.read(&report.at("repeated"))),
+        }
+    }
 }
 
-/// A bound on the results.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Check {
-    /// The metric.
-    pub metric: &'static Metric,
-    /// Ids of the methods that the check applies to; empty for all.
-    pub methods: Vec<String>,
-    /// The bound, in the SI unit of the metric.
-    pub bound: Bound,
-    /// Location in the file, `file:line`.
-    pub at: String,
+/// Largest number of frames: nine hours at 30 Hz, with the time of each frame stored.
+const MOST_FRAMES: usize = 1_000_000;
+
+impl RepeatedKeys {
+    fn read(self, report: &Report) -> Repeated {
+        let (frames, cycle) = (self.frames as usize, self.cycle.unwrap_or(120) as usize);
+        let sound = (1..=MOST_FRAMES).contains(&frames);
+        let help = "give 1 to 1000000; a percentile of 99.9 needs 1000";
+        report.require(sound, "frames", "is no number of frames", help);
+        let help = "give an even number of frames, half of them for the way up";
+        report.require(cycle >= 2 && cycle % 2 == 0, "cycle", "is no way up and down", help);
+        let within = self.within.map_or(10.0, |q| report.positive("within", q.0));
+        let tolerance = self.tolerance.map(|tolerance| report.positive("tolerance", tolerance));
+        Repeated { frames, cycle, within, tolerance }
+    }
 }
 
-/// Bound of a metric.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Bound {
-    /// A range: passes if no value is outside.
-    Within {
-        /// Smallest allowed value.
-        at_least: Option<f64>,
-        /// Largest allowed value.
-        at_most: Option<f64>,
-    },
-    /// A known defect: the value is reported as not passing, and the check holds only while the value is in
-    /// the band.
-    KnownBand {
-        /// Low end.
-        low: f64,
-        /// High end.
-        high: f64,
-        /// Reason why the method can't do better.
-        reason: String,
-    },
+impl TransferKeys {
+    fn read(self, report: &Report) -> Option<Transfer> {
+        let to = match self.to {
+            TargetKeys::Name(TargetName::ReferenceNodes) => Target::ReferenceNodes,
+            TargetKeys::Name(TargetName::Probes) => Target::Probes,
+            TargetKeys::File(f) => Target::File(MeshFile::read(&f.file, f.unit, "to.file", report)),
+        };
+        let scheme = match self.scheme {
+            SchemeKeys::Own(OwnWord::Own) => None,
+            SchemeKeys::Scheme(word) => {
+                let values = settings(&word, self.settings, report)?;
+                Some((build(word.0, &values, "scheme", report)?, values))
+            }
+        };
+        Some(Transfer { to, scheme })
+    }
+}
+
+impl Output {
+    /// Reports contradictions with the procedure and the reference.
+    pub(crate) fn demands(&self, kind: ProcedureKind, reference: Option<&Reference>, report: &Report) {
+        if let Some((problem, help)) = kind.lacks_displacements() {
+            for (key, given) in [
+                ("probes", !self.probes.is_empty()),
+                ("means", !self.means.is_empty()),
+                ("transfer", !self.transfers.is_empty()),
+                ("beside", self.beside.is_some()),
+                ("repeated", self.repeated.is_some() && kind == ProcedureKind::Prepare),
+            ] {
+                report.require(!given, key, problem, help);
+            }
+        }
+        let at_rest = matches!(kind, ProcedureKind::Prepare | ProcedureKind::Linear | ProcedureKind::Static);
+        let help = "take [procedure] kind = \"linear\" or \"static\", or leave it out";
+        let sound = at_rest || self.repeated.is_none();
+        report.require(sound, "repeated", "is of solutions at rest, not of motion", help);
+        let compared = !self.transfers.is_empty() || matches!(reference, Some(Reference::Method { .. }));
+        let help = "add output.transfer = { to = { file = \"...\" }, ... }";
+        let sound = compared || self.beside.is_none();
+        report.require(sound, "beside", "has no points to be compared at", help);
+        for (i, transfer) in self.transfers.iter().enumerate() {
+            let (problem, help) = match transfer.to {
+                Target::ReferenceNodes if !reference.is_some_and(Reference::is_solved) => (
+                    "has no nodes to go to",
+                    "add [reference] method = \"...\" or record = \"...\", or transfer to { file = \"...\" }",
+                ),
+                Target::Probes if self.probes.is_empty() => ("has no probes to go to", "add output.probes"),
+                _ => continue,
+            };
+            let listed = format!("transfer[{i}]");
+            let key = if report.is_given(&listed) { listed } else { "transfer".into() };
+            report.add(&format!("{key}.to"), Problem::new(problem).help(help));
+        }
+    }
 }

@@ -5,7 +5,6 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::report::Report;
-use super::resolve::positive;
 use super::units::{Length, Q, Rate, Time};
 use super::words::words;
 
@@ -27,6 +26,26 @@ pub enum ProcedureKind {
 }
 
 impl ProcedureKind {
+    /// Whether there is one solution only, or none: no load steps and no time axis.
+    pub(crate) fn has_no_steps(self) -> bool {
+        matches!(self, ProcedureKind::Prepare | ProcedureKind::Linear | ProcedureKind::Modes)
+    }
+
+    /// The problem with a request for displacements, and help; `None` if the procedure solves for them.
+    pub(crate) fn lacks_displacements(self) -> Option<(&'static str, &'static str)> {
+        match self {
+            ProcedureKind::Prepare => Some((
+                "is of a displacement, and kind = \"prepare\" solves for none",
+                "leave it out, or take [procedure] kind = \"linear\"",
+            )),
+            ProcedureKind::Modes => Some((
+                "has no part in free vibrations",
+                "leave it out: vibrations are compared with an exact solution of them, or with none",
+            )),
+            _ => None,
+        }
+    }
+
     /// The name in files and tables.
     pub fn name(self) -> &'static str {
         match self {
@@ -98,6 +117,15 @@ impl Procedure {
             Procedure::Static(_) => ProcedureKind::Static,
             Procedure::Explicit(_) => ProcedureKind::Explicit,
             Procedure::ImplicitDynamic(_) => ProcedureKind::ImplicitDynamic,
+        }
+    }
+
+    /// Whether masses are accelerated: in vibrations, and in dynamics except with `inertia = false`.
+    pub(crate) fn has_inertia(&self) -> bool {
+        match self {
+            Procedure::Modes { .. } | Procedure::Explicit(_) => true,
+            Procedure::ImplicitDynamic(implicit) => implicit.inertia,
+            Procedure::Prepare | Procedure::Linear { .. } | Procedure::Static(_) => false,
         }
     }
 
@@ -311,42 +339,44 @@ pub(crate) struct ImplicitKeys {
     pub accuracy: Option<Q<Length>>,
 }
 
-/// Without a table it is linear.
-pub(crate) fn procedure(keys: Option<ProcedureKeys>, tools: bool, report: &mut Report) -> Procedure {
-    match keys {
-        None => Procedure::Linear { solver: LinearSolver::Auto },
-        Some(ProcedureKeys::Linear { linear_solver, steps: unused }) => {
-            steps(unused, report);
-            Procedure::Linear { solver: linear_solver.unwrap_or(LinearSolver::Auto) }
-        }
-        Some(ProcedureKeys::Prepare { steps: unused }) => {
-            steps(unused, report);
-            Procedure::Prepare
-        }
-        Some(ProcedureKeys::Modes { modes: count, steps: unused }) => {
-            steps(unused, report);
-            Procedure::Modes { count: modes(count, report) }
-        }
-        Some(ProcedureKeys::Static(keys)) => Procedure::Static(load_steps(&keys, report)),
-        Some(ProcedureKeys::Explicit(keys)) => Procedure::Explicit(explicit(&keys, report)),
-        Some(ProcedureKeys::ImplicitDynamic(keys)) => {
-            Procedure::ImplicitDynamic(implicit(&keys, tools, report))
+impl Procedure {
+    /// Reads a procedure; without keys it is linear.
+    pub(crate) fn read(keys: Option<ProcedureKeys>, tools: bool, report: &Report) -> Procedure {
+        let Some(keys) = keys else { return Procedure::Linear { solver: LinearSolver::Auto } };
+        match keys {
+            ProcedureKeys::Linear { linear_solver, steps: unused } => {
+                steps(unused, report);
+                Procedure::Linear { solver: linear_solver.unwrap_or(LinearSolver::Auto) }
+            }
+            ProcedureKeys::Prepare { steps: unused } => {
+                steps(unused, report);
+                Procedure::Prepare
+            }
+            ProcedureKeys::Modes { modes: count, steps: unused } => {
+                steps(unused, report);
+                Procedure::Modes { count: modes(count, report) }
+            }
+            ProcedureKeys::Static(keys) => Procedure::Static(load_steps(&keys, report)),
+            ProcedureKeys::Explicit(keys) => Procedure::Explicit(explicit(&keys, report)),
+            ProcedureKeys::ImplicitDynamic(keys) => {
+                Procedure::ImplicitDynamic(implicit(&keys, tools, report))
+            }
         }
     }
 }
 
-fn modes(modes: Option<u32>, report: &mut Report) -> usize {
+fn modes(modes: Option<u32>, report: &Report) -> usize {
     let modes = modes.map_or(MODES, |n| n as usize);
     let sound = (1..=1000).contains(&modes);
-    report.require(sound, "procedure.modes", "is no number of modes", "give 1 to 1000; 24 is usual");
+    report.require(sound, "modes", "is no number of modes", "give 1 to 1000; 24 is usual");
     modes
 }
 
-fn load_steps(keys: &StaticKeys, report: &mut Report) -> Static {
+fn load_steps(keys: &StaticKeys, report: &Report) -> Static {
     let limit_within = keys.limit_within;
     let sound = limit_within.is_none_or(|part| (1e-4..=1.0).contains(&part));
     let help = "give 1e-4 to 1; 0.02 is usual";
-    report.require(sound, "procedure.limit_within", "is no part of the load", help);
+    report.require(sound, "limit_within", "is no part of the load", help);
     Static {
         steps: steps(keys.steps, report),
         newton: newton(&keys.newton, report),
@@ -355,67 +385,67 @@ fn load_steps(keys: &StaticKeys, report: &mut Report) -> Static {
     }
 }
 
-fn steps(steps: Option<u32>, report: &mut Report) -> usize {
+fn steps(steps: Option<u32>, report: &Report) -> usize {
     let steps = steps.unwrap_or(1);
-    report.require(steps > 0, "procedure.steps", "is zero", "give 1 or more");
+    report.require(steps > 0, "steps", "is zero", "give 1 or more");
     let help = format!("give {MOST_STEPS} or less");
-    report.require(steps <= MOST_STEPS, "procedure.steps", "are too many", &help);
+    report.require(steps <= MOST_STEPS, "steps", "are too many", &help);
     steps as usize
 }
 
-fn newton(keys: &NewtonKeys, report: &mut Report) -> Newton {
+fn newton(keys: &NewtonKeys, report: &Report) -> Newton {
     let standard = Newton::STANDARD;
     let tolerance = keys.tolerance.unwrap_or(standard.tolerance);
     // Rounding leaves about 1e-13 of the forces of a nearly incompressible body.
     let sound = (1e-12..=1e-2).contains(&tolerance);
-    report.require(sound, "procedure.tolerance", "is no tolerance", "give 1e-12 to 1e-2; 1e-8 is usual");
+    report.require(sound, "tolerance", "is no tolerance", "give 1e-12 to 1e-2; 1e-8 is usual");
     let iterations = keys.iterations.map_or(standard.iterations, |n| n as usize);
-    report.require(iterations > 0, "procedure.iterations", "is zero", "give 1 or more; 25 is usual");
+    report.require(iterations > 0, "iterations", "is zero", "give 1 or more; 25 is usual");
     let augmentations = keys.augmentations.map_or(standard.augmentations, |n| n as usize);
     for (name, count) in [("iterations", iterations), ("augmentations", augmentations)] {
         let help = format!("give {MOST_ITERATIONS} or less");
         let sound = count <= MOST_ITERATIONS;
-        report.require(sound, &format!("procedure.{name}"), "are too many", &help);
+        report.require(sound, &format!("{name}"), "are too many", &help);
     }
     Newton { tolerance, iterations, augmentations }
 }
 
-fn ramp(keys: &RampKeys, report: &mut Report) -> Ramp {
+fn ramp(keys: &RampKeys, report: &Report) -> Ramp {
     let steps = steps(keys.steps, report);
-    let duration = positive(keys.duration.0, "procedure.duration", report);
+    let duration = report.positive("duration", keys.duration.0);
     let over = keys.over.as_ref().map(|q| q.0);
     let sound = over.is_none_or(|t| t >= 0.0);
-    report.require(sound, "procedure.over", "is negative", "give \"0 s\" for at once, or leave it out");
+    report.require(sound, "over", "is negative", "give \"0 s\" for at once, or leave it out");
     let damping = keys.damping.as_ref().map_or(0.0, |q| q.0);
-    report.require(damping >= 0.0, "procedure.damping", "is negative", "give 0 /s or more, or leave it out");
+    report.require(damping >= 0.0, "damping", "is negative", "give 0 /s or more, or leave it out");
     Ramp { duration, over, steps, damping }
 }
 
-fn explicit(keys: &ExplicitKeys, report: &mut Report) -> Explicit {
+fn explicit(keys: &ExplicitKeys, report: &Report) -> Explicit {
     let explicit = Explicit {
         ramp: ramp(&keys.ramp, report),
         safety: keys.safety.unwrap_or(SAFETY),
-        step: keys.step.as_ref().map(|q| positive(q.0, "procedure.step", report)),
-        tool_mass: keys.tool_mass.map_or(TOOL_MASS, |m| positive(m, "procedure.tool_mass", report)),
+        step: keys.step.as_ref().map(|q| report.positive("step", q.0)),
+        tool_mass: keys.tool_mass.map_or(TOOL_MASS, |m| report.positive("tool_mass", m)),
     };
     let sound = explicit.safety > 0.0 && explicit.safety <= 1.0;
-    report.require(sound, "procedure.safety", "is not in (0, 1]", "0.9 is usual");
+    report.require(sound, "safety", "is not in (0, 1]", "0.9 is usual");
     let both = keys.safety.is_some() && explicit.step.is_some();
-    report.require(!both, "procedure.safety", "has no step to shorten", "give step or safety, not both");
+    report.require(!both, "safety", "has no step to shorten", "give step or safety, not both");
     explicit
 }
 
-fn implicit(keys: &ImplicitKeys, tools: bool, report: &mut Report) -> Implicit {
+fn implicit(keys: &ImplicitKeys, tools: bool, report: &Report) -> Implicit {
     let implicit = Implicit {
         ramp: ramp(&keys.ramp, report),
         newton: newton(&keys.newton, report),
         inertia: keys.inertia.unwrap_or(true),
         spectral_radius: keys.spectral_radius.unwrap_or(spectral_radius(tools)),
-        accuracy: keys.accuracy.as_ref().map(|q| positive(q.0, "procedure.accuracy", report)),
+        accuracy: keys.accuracy.as_ref().map(|q| report.positive("accuracy", q.0)),
     };
     let sound = (0.0..=1.0).contains(&implicit.spectral_radius);
     let help = "1 dissipates nothing, 0 kills in one step what a step cannot resolve; 0.8 is usual";
-    report.require(sound, "procedure.spectral_radius", "is not in [0, 1]", help);
+    report.require(sound, "spectral_radius", "is not in [0, 1]", help);
     let moving = [
         ("damping", keys.ramp.damping.is_some()),
         ("spectral_radius", keys.spectral_radius.is_some()),
@@ -423,7 +453,7 @@ fn implicit(keys: &ImplicitKeys, tools: bool, report: &mut Report) -> Implicit {
     ];
     for (name, _) in moving.into_iter().filter(|(_, given)| *given && !implicit.inertia) {
         let problem = Problem::new("is of a motion, and inertia = false has none").help("leave it out");
-        report.add(&format!("procedure.{name}"), problem);
+        report.add(&format!("{name}"), problem);
     }
     implicit
 }

@@ -1,67 +1,104 @@
 //! Findings about one file, each with its key.
 
+use std::cell::RefCell;
 use std::path::{Component, Path, PathBuf};
+use std::rc::Rc;
 
-use catalogue::nearest;
+use catalogue::{Problem, nearest};
 
+use super::conform::join;
 use super::document::{Origin, sorted};
-use catalogue::Problem;
-
 use super::error::{ErrorKind, SceneError};
 
-/// Collects findings about one file.
+/// Collector of findings about one file, at the table that is read. Every key is given relative to this table;
+/// the empty key is the table itself.
 pub(crate) struct Report<'o> {
     origin: &'o Origin,
-    errors: Vec<SceneError>,
-    /// Keys of the errors in the scene; an error in a shared method has the key of its own file instead.
-    keys: Vec<String>,
+    /// Key of the table; empty for the whole file.
+    table: String,
+    /// Errors, each with its key in the scene: an error in a shared method names the key of its own file.
+    found: Rc<RefCell<Vec<(String, SceneError)>>>,
 }
 
 impl<'o> Report<'o> {
     pub fn new(origin: &'o Origin) -> Report<'o> {
-        Report { origin, errors: Vec::new(), keys: Vec::new() }
+        Report { origin, table: String::new(), found: Rc::default() }
     }
 
-    pub fn add(&mut self, key: &str, problem: Problem) {
-        self.errors.push(self.origin.error(ErrorKind::Invalid, key, problem));
-        self.keys.push(key.to_string());
+    /// The collector at a table below this one.
+    pub fn at(&self, key: &str) -> Report<'o> {
+        Report { origin: self.origin, table: self.key(key), found: self.found.clone() }
+    }
+
+    /// Reads every entry of a list by `read`; the entries that could not be read are left out.
+    pub fn each<K, V>(&self, key: &str, list: Vec<K>, read: impl Fn(K, &Report) -> Option<V>) -> Vec<V> {
+        let entry = |(i, keys)| read(keys, &self.at(&format!("{key}[{i}]")));
+        list.into_iter().enumerate().filter_map(entry).collect()
+    }
+
+    /// The whole key in the file.
+    fn key(&self, key: &str) -> String {
+        if key.is_empty() { self.table.clone() } else { join(&self.table, key) }
+    }
+
+    pub fn add(&self, key: &str, problem: Problem) {
+        let key = self.key(key);
+        let error = self.origin.error(ErrorKind::Invalid, &key, problem);
+        self.found.borrow_mut().push((key, error));
+    }
+
+    pub fn missing(&self, key: &str, help: &str) {
+        self.add(key, Problem::new("is missing").help(help));
+    }
+
+    pub fn require(&self, holds: bool, key: &str, problem: &str, help: &str) {
+        if !holds {
+            self.add(key, Problem::new(problem).help(help));
+        }
+    }
+
+    /// Requires a positive value, and returns the value.
+    pub fn positive(&self, key: &str, value: f64) -> f64 {
+        self.require(value > 0.0, key, "is not positive", "give a value above zero");
+        value
     }
 
     /// Whether a finding at `key` is recorded.
     pub fn has(&self, key: &str) -> bool {
-        self.keys.iter().any(|noted| noted == key)
+        let key = self.key(key);
+        self.found.borrow().iter().any(|(noted, _)| *noted == key)
     }
 
-    /// Whether there are no findings.
-    pub fn is_clean(&self) -> bool {
-        self.errors.is_empty()
+    /// Whether the file has `key`.
+    pub fn is_given(&self, key: &str) -> bool {
+        self.origin.has(&self.key(key))
     }
 
-    pub fn finish(self) -> Vec<SceneError> {
-        sorted(self.errors)
-    }
-
-    pub fn origin(&self) -> &Origin {
-        self.origin
+    /// Location of the table in the file, `file:line`.
+    pub fn location(&self) -> String {
+        let place = self.origin.error(ErrorKind::Invalid, &self.table, Problem::new(""));
+        format!("{}:{}", place.file, place.line)
     }
 
     /// Path given as the value of `key`; a relative path is resolved from the folder of the file that
     /// contains the key.
     pub fn path(&self, text: &str, key: &str) -> PathBuf {
-        beside(self.origin.file_of(key), text)
+        beside(self.origin.file_of(&self.key(key)), text)
     }
 
-    pub fn missing(&mut self, key: &str, help: &str) {
-        self.add(key, Problem::new("is missing").help(help));
+    pub fn origin(&self) -> &'o Origin {
+        self.origin
     }
 
-    pub fn require(&mut self, holds: bool, key: &str, problem: &str, help: &str) {
-        if !holds {
-            self.add(key, Problem::new(problem).help(help));
-        }
+    /// Whether there are no findings.
+    pub fn is_clean(&self) -> bool {
+        self.found.borrow().is_empty()
+    }
+
+    pub fn finish(self) -> Vec<SceneError> {
+        sorted(self.found.take().into_iter().map(|(_, error)| error).collect())
     }
 }
-
 /// Joins a path to the folder of a file, without steps back: `studies/../scenes` is `scenes`, unless a link
 /// leads elsewhere.
 pub(crate) fn beside(file: &str, path: &str) -> PathBuf {

@@ -9,9 +9,8 @@ use catalogue::{Problem, nearest};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use super::document::Document;
+use super::document::{Document, moved};
 use super::error::{ErrorKind, SceneError};
-use super::shared::moved;
 
 /// A key of the scene and the value that replaces the one in the file, as given by `KEY=VALUE`.
 #[derive(Clone, Debug, PartialEq, Eq)]

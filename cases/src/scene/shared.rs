@@ -12,7 +12,6 @@
 //! A key next to `use` replaces the key of the shared table. The result is read like a method written out in
 //! the scene. A shared table cannot take another shared method.
 
-use std::ops::Range;
 use std::sync::LazyLock;
 
 use schemars::JsonSchema;
@@ -20,11 +19,12 @@ use serde_json::{Value, json};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use super::document::{Document, Origin, schema, sorted, written};
+use super::conform::written;
+use super::document::{Document, Origin, moved, schema, sorted};
 use super::error::{SceneError, unread};
-use super::keys::{MethodKeys, SceneKeys};
+use super::method::MethodKeys;
 use super::report::{Report, beside, which};
-use super::resolve;
+use super::scene::{SceneKeys, SoundParts};
 use super::set::Override;
 use super::sources::Taken;
 use catalogue::Problem;
@@ -76,9 +76,9 @@ pub(crate) fn read(
 /// Keys of a scene; or all errors in the keys, and in the values of the parts whose keys are valid.
 pub(crate) fn keys(document: Document<'_>) -> Result<(SceneKeys, Origin), Vec<SceneError>> {
     let Err(mut errors) = document.check(&SCENE) else { return document.values() };
-    if let Some((parts, origin)) = document.sound(&errors) {
-        let mut report = Report::new(&origin);
-        resolve::parts(parts, &mut report);
+    if let Some((parts, origin)) = document.sound::<SoundParts>(&errors) {
+        let report = Report::new(&origin);
+        parts.check(&report);
         errors.extend(report.finish());
     }
     Err(sorted(errors))
@@ -226,19 +226,4 @@ fn with<'t>(
         table.insert(key, value);
     }
     table
-}
-
-/// The value with all spans shifted by `base`.
-pub(crate) fn moved<'t>(value: &DeValue<'t>, base: usize) -> DeValue<'t> {
-    let span = |span: Range<usize>| span.start + base..span.end + base;
-    let item = |value: &Spanned<DeValue<'t>>| Spanned::new(span(value.span()), moved(value.get_ref(), base));
-    match value {
-        DeValue::Table(table) => DeValue::Table(
-            (table.iter())
-                .map(|(key, value)| (Spanned::new(span(key.span()), key.get_ref().clone()), item(value)))
-                .collect(),
-        ),
-        DeValue::Array(items) => DeValue::Array(items.iter().map(item).collect()),
-        scalar => scalar.clone(),
-    }
 }

@@ -6,23 +6,23 @@ use std::path::{Path, PathBuf};
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::axis::{Axis, AxisKeys, axis};
-use super::coverage::{self, LeftOutKeys};
-use super::demands::unheld;
+use catalogue::metric::Needs;
 use catalogue::{Problem, Values};
 
+use super::axis::{Axis, AxisKeys};
+use super::check::{Check, CheckKeys};
+use super::coverage::{self, LeftOutKeys};
+use super::demands::{self, known_methods};
+use super::document;
 use super::error::SceneError;
-use super::external::{ADAPTERS, NO_ADAPTER, is_adapter};
-use super::keys::{CheckKeys, EssentialKeys, IntegrationKeys};
-use super::method::{Basis, Cloud, Efg, Essential, Family, Functions, Integration, Method};
-use super::model::Scene;
-use super::output::Check;
+use super::load::{load, text_of};
+use super::method::{
+    ADAPTERS, Efg, Essential, EssentialKeys, Family, Integration, IntegrationKeys, Method, NO_ADAPTER,
+    is_adapter,
+};
 use super::report::Report;
-use super::resolve::{checks, essential, integration};
-use super::validate::{self, known_methods};
+use super::scene::Scene;
 use super::vocabulary::{Kernels, Word};
-use super::{document, load, text_of};
-use catalogue::metric::Needs;
 
 /// A study: runs of scenes, with their variations and checks.
 #[derive(Clone, Debug)]
@@ -156,6 +156,11 @@ pub(crate) struct RunKeys {
     pub check: Vec<CheckKeys>,
 }
 
+/// The JSON schema of study files.
+pub fn study_schema() -> serde_json::Value {
+    document::schema::<StudyKeys>()
+}
+
 /// Reads the study in a file. Messages name the file by `path` as given.
 pub fn load_study(path: &Path) -> Result<Study, Vec<SceneError>> {
     parse_study(&text_of(path)?, &path.display().to_string())
@@ -173,11 +178,11 @@ pub fn parse_study(text: &str, file: &str) -> Result<Study, Vec<SceneError>> {
 
 fn parse(text: &str, file: &str, only: Option<usize>) -> Result<Study, Vec<SceneError>> {
     let (keys, origin) = document::read::<StudyKeys>(text, file)?;
-    let mut report = Report::new(&origin);
+    let report = Report::new(&origin);
     if keys.run.is_empty() {
         report.add("run", Problem::new("is missing").help("add a [[run]] with scene = \"...\""));
     }
-    let runs: Vec<Run> = keys.run.into_iter().enumerate().map(|(i, r)| run(r, i, &mut report)).collect();
+    let runs = report.each("run", keys.run, |keys, report| Some(keys.read(report)));
     let wanted = only.and_then(|run| runs.get(run)).map(|run| run.scene.clone());
     let mut scenes = BTreeMap::new();
     let mut all = (0.0, 0);
@@ -186,79 +191,75 @@ fn parse(text: &str, file: &str, only: Option<usize>) -> Result<Study, Vec<Scene
         // A scene that can't be read is reported by the run that needs it, with better messages.
         let scene = scenes.entry(run.scene.clone()).or_insert_with(|| load(&run.scene).ok());
         if let Some(scene) = scene {
-            all = few_enough(run, scene, all, &format!("run[{i}]"), &mut report);
-            fit(run, scene, &format!("run[{i}]"), &mut report);
+            let report = report.at(&format!("run[{i}]"));
+            all = few_enough(run, scene, all, &report);
+            fit(run, scene, &report);
         }
     }
     let scenes = scenes.into_iter().filter_map(|(path, scene)| Some((path, scene?))).collect();
     if only.is_none() {
-        coverage::check(keys.all_of.as_deref(), &keys.left_out, &runs, &mut report);
+        let run: Vec<&Path> = runs.iter().map(|run| run.scene.as_path()).collect();
+        coverage::check(keys.all_of.as_deref(), &keys.left_out, &run, &report);
     }
     let errors = report.finish();
     if errors.is_empty() { Ok(Study { title: keys.title, scenes, runs }) } else { Err(errors) }
 }
 
-fn run(keys: RunKeys, index: usize, report: &mut Report) -> Run {
-    let key = format!("run[{index}]");
-    let scene = report.path(&keys.scene, &format!("{key}.scene"));
-    if !scene.is_file() {
+impl RunKeys {
+    fn read(self, report: &Report) -> Run {
+        let scene = report.path(&self.scene, "scene");
         let help = format!("no file at {}; scenes are relative to the study's folder", scene.display());
-        report.add(&format!("{key}.scene"), Problem::new("can't be found").help(help));
-    }
-    let at = |name: &str| format!("{key}.{name}");
-    let mut each = |name: &str, sound: Vec<bool>, problem: &str, help: &str| {
-        for (i, _) in sound.iter().enumerate().filter(|(_, sound)| !**sound) {
-            report.add(&format!("{key}.{name}[{i}]"), Problem::new(problem).help(help));
+        report.require(scene.is_file(), "scene", "can't be found", &help);
+        let each = |key: &str, sound: Vec<bool>, problem: &str, help: &str| {
+            for (i, sound) in sound.into_iter().enumerate() {
+                report.require(sound, &format!("{key}[{i}]"), problem, help);
+            }
+        };
+        let sound = self.adapters.iter().map(|name| is_adapter(name)).collect();
+        each("adapters", sound, NO_ADAPTER, ADAPTERS);
+        let sound = self.levels.iter().map(|l| (1..=8).contains(l)).collect();
+        each("levels", sound, "is no level", "levels are 1 to 8");
+        let sound = self.poisson.iter().map(|nu| *nu > -1.0 && *nu < 0.5).collect();
+        let help = "give ratios above -1 and below 0.5, such as 0.4999";
+        each("poisson", sound, "is no Poisson's ratio", help);
+        let sound = self.nodes.iter().map(|n| *n >= 4).collect();
+        each("nodes", sound, "are too few for a cloud", "give 4 nodes or more");
+        let sound = self.support_scales.iter().map(|d| (1.0..=10.0).contains(d)).collect();
+        let help = "1 to 10, as in a method; 1.2 to 3 is usual";
+        each("support_scales", sound, "is no support scale", help);
+        for (key, once) in [
+            ("methods", first_times(&self.methods)),
+            ("adapters", first_times(&self.adapters)),
+            ("levels", first_times(&self.levels)),
+            ("poisson", first_times(&self.poisson)),
+            ("nodes", first_times(&self.nodes)),
+            ("support_scales", first_times(&self.support_scales)),
+        ] {
+            each(key, once, "is there already", "name each once");
         }
-    };
-    let sound = keys.adapters.iter().map(|name| is_adapter(name)).collect();
-    each("adapters", sound, NO_ADAPTER, ADAPTERS);
-    let sound = keys.levels.iter().map(|l| (1..=8).contains(l)).collect();
-    each("levels", sound, "is no level", "levels are 1 to 8");
-    let sound = keys.poisson.iter().map(|nu| *nu > -1.0 && *nu < 0.5).collect();
-    each("poisson", sound, "is no Poisson's ratio", "give ratios above -1 and below 0.5, such as 0.4999");
-    let sound = keys.nodes.iter().map(|n| *n >= 4).collect();
-    each("nodes", sound, "are too few for a cloud", "give 4 nodes or more");
-    let sound = keys.support_scales.iter().map(|d| (1.0..=10.0).contains(d)).collect();
-    each("support_scales", sound, "is no support scale", "1 to 10, as in a method; 1.2 to 3 is usual");
-    for (name, once) in [
-        ("methods", first_times(&keys.methods)),
-        ("adapters", first_times(&keys.adapters)),
-        ("levels", first_times(&keys.levels)),
-        ("poisson", first_times(&keys.poisson)),
-        ("nodes", first_times(&keys.nodes)),
-        ("support_scales", first_times(&keys.support_scales)),
-    ] {
-        each(name, once, "is there already", "name each once");
-    }
-    let sound = keys.seeds != 1 && keys.seeds <= 10_000;
-    report.require(sound, &at("seeds"), "makes no spread", "give 2 to 10000; 50 is usual");
-    let alone = keys.levels.is_empty() || keys.nodes.is_empty();
-    report.require(alone, &at("nodes"), "stands beside levels", "vary levels or node counts, not both");
-    let essentials = keys.essentials.into_iter().enumerate();
-    let essentials =
-        essentials.map(|(i, keys)| essential(keys, &format!("{key}.essentials[{i}]"), report)).collect();
-    Run {
-        scene,
-        methods: keys.methods,
-        adapters: keys.adapters,
-        levels: keys.levels,
-        poisson: keys.poisson,
-        nodes: keys.nodes.iter().map(|&n| n as usize).collect(),
-        kernels: keys
-            .kernels
-            .iter()
-            .filter_map(|word| (word.0.build)(&Values::new(word.0.parameters)).ok())
-            .collect(),
-        support_scales: keys.support_scales,
-        essentials,
-        split: keys.split.map(|keys| integration(keys, &at("split"), report)),
-        seeds: keys.seeds.into(),
-        axis: keys.axis.and_then(|keys| axis(keys, &at("axis"), report)),
-        quick: keys.quick,
-        loops: keys.loops,
-        tags: keys.tags,
-        checks: checks(keys.check, &at("check"), report),
+        let sound = self.seeds != 1 && self.seeds <= 10_000;
+        report.require(sound, "seeds", "makes no spread", "give 2 to 10000; 50 is usual");
+        let alone = self.levels.is_empty() || self.nodes.is_empty();
+        report.require(alone, "nodes", "stands beside levels", "vary levels or node counts, not both");
+        let kernel = |word: &Word<Kernels>| (word.0.build)(&Values::new(word.0.parameters)).ok();
+        Run {
+            scene,
+            methods: self.methods,
+            adapters: self.adapters,
+            levels: self.levels,
+            poisson: self.poisson,
+            nodes: self.nodes.iter().map(|&n| n as usize).collect(),
+            kernels: self.kernels.iter().filter_map(kernel).collect(),
+            support_scales: self.support_scales,
+            essentials: report.each("essentials", self.essentials, |keys, report| Some(keys.read(report))),
+            split: self.split.map(|keys| keys.read(&report.at("split"))),
+            seeds: self.seeds.into(),
+            axis: self.axis.and_then(|keys| keys.read(&report.at("axis"))),
+            quick: self.quick,
+            loops: self.loops,
+            tags: self.tags,
+            checks: report.each("check", self.check, CheckKeys::read),
+        }
     }
 }
 
@@ -267,13 +268,7 @@ const MOST_RUNS: f64 = 50_000.0;
 const MOST_SCENES: usize = 500;
 
 /// Reports the run table at which a study exceeds the limits; returns the numbers of runs and scenes so far.
-fn few_enough(
-    run: &Run,
-    scene: &Scene,
-    (runs, scenes): (f64, usize),
-    key: &str,
-    report: &mut Report,
-) -> (f64, usize) {
+fn few_enough(run: &Run, scene: &Scene, (runs, scenes): (f64, usize), report: &Report) -> (f64, usize) {
     let methods = run.chosen(scene).count() + run.twins(scene).len();
     let values = run.axis.as_ref().map_or(0, |axis| axis.values.len());
     let varied = [run.poisson.len(), run.levels.len().max(run.nodes.len()), run.kernels.len()];
@@ -282,11 +277,11 @@ fn few_enough(
     let now = (runs + methods as f64 * product, scenes + values);
     if now.0 > MOST_RUNS && runs <= MOST_RUNS {
         let problem = Problem::new(format!("makes {:.0} runs with those before", now.0));
-        report.add(key, problem.help(format!("give {MOST_RUNS} or less in all")));
+        report.add("", problem.help(format!("give {MOST_RUNS} or less in all")));
     }
     if now.1 > MOST_SCENES && scenes <= MOST_SCENES {
         let problem = Problem::new(format!("makes {} scenes with those before", now.1));
-        report.add(&format!("{key}.axis.values"), problem.help(format!("give {MOST_SCENES} or less in all")));
+        report.add("axis.values", problem.help(format!("give {MOST_SCENES} or less in all")));
     }
     now
 }
@@ -297,37 +292,37 @@ fn first_times<T: PartialEq>(list: &[T]) -> Vec<bool> {
 }
 
 /// Checks the demands of a run on its scene.
-fn fit(run: &Run, scene: &Scene, key: &str, report: &mut Report) {
-    known_methods(&run.methods, scene, &format!("{key}.methods"), report);
+fn fit(run: &Run, scene: &Scene, report: &Report) {
+    known_methods(&run.methods, scene, "methods", report);
     if let Some(axis) = &run.axis
         && let Err(bad) = axis.at(scene, &run.methods, axis.base)
     {
         let first = bad.first().map_or(String::new(), ToString::to_string);
         let problem = Problem::new("makes no scene of its base").found(axis.name.as_str()).help(first);
-        report.add(&format!("{key}.axis"), problem);
+        report.add("axis", problem);
     }
     let twins = run.twins(scene);
     let help = "it goes with finite elements that have no dilation of their own: name one in methods, or leave it out";
     let solvable = run.adapters.is_empty() || !twins.is_empty();
-    report.require(solvable, &format!("{key}.adapters"), "have no method to solve", help);
+    report.require(solvable, "adapters", "have no method to solve", help);
     let is_run = |id: &String| run.methods.contains(id) || twins.iter().any(|twin| twin.id == *id);
     let all = Scene { methods: [&scene.methods[..], &twins].concat(), ..scene.clone() };
     for (i, check) in run.checks.iter().enumerate() {
-        let key = format!("{key}.check[{i}]");
-        validate::check(check, &all, &key, report);
+        let report = report.at(&format!("check[{i}]"));
+        demands::check(check, &all, &report);
         if check.metric.needs == Needs::Levels && run.levels.len() < 2 {
             let problem = Problem::new("needs several levels").help("give the run levels = [1, 2, 3]");
-            report.add(&format!("{key}.metric"), problem);
+            report.add("metric", problem);
         }
         if check.metric.needs == Needs::Seeds && run.seeds == 0 {
             let problem = Problem::new("needs many clouds").help("give the run seeds = 50");
-            report.add(&format!("{key}.metric"), problem);
+            report.add("metric", problem);
         }
         if !run.methods.is_empty() {
             for id in check.methods.iter().filter(|id| !is_run(id)) {
                 let problem =
                     Problem::new("is not run here").found(id).help("name it in methods, or leave it out");
-                report.add(&format!("{key}.method"), problem);
+                report.add("method", problem);
             }
         }
     }
@@ -343,33 +338,24 @@ fn fit(run: &Run, scene: &Scene, key: &str, report: &mut Report) {
         ("split", run.split.is_some()),
     ] {
         let help = "it goes with element-free Galerkin methods: name one in methods, or leave it out";
-        report.require(!given || clouds, &format!("{key}.{name}"), "has no method to vary", help);
+        report.require(!given || clouds, name, "has no method to vary", help);
     }
     for (i, essential) in run.essentials.iter().enumerate() {
-        let key = format!("{key}.essentials[{i}]");
-        if let Some(problem) = unheld(essential, scene.procedure.kind()) {
+        let key = format!("essentials[{i}]");
+        if let Some(problem) = essential.unsupported(scene.procedure.kind()) {
             report.add(&key, problem);
         }
-        let linear = |efg: &&Efg| {
-            matches!(efg.functions, Functions::MovingLeastSquares { basis: Basis::Linear, .. })
-                && !matches!(efg.cloud, Cloud::Refined { .. })
-        };
         let help = "name methods of a linear basis whose nodes stay where they are";
-        let fits = *essential != Essential::Coupling || efgs.iter().all(linear);
+        let fits = *essential != Essential::Coupling || efgs.iter().all(|efg| efg.can_couple());
         report.require(fits, &key, "does not go with every method", help);
     }
-    let placed = efgs.iter().any(|efg| matches!(efg.cloud, Cloud::Refined { .. }));
+    let placed = efgs.iter().any(|efg| efg.cloud.is_refined());
     let help = "a cloud that follows an error would be another one: name other methods";
-    report.require(run.split.is_none() || !placed, &format!("{key}.split"), "is not of every method", help);
+    report.require(run.split.is_none() || !placed, "split", "is not of every method", help);
     let seeded = run.chosen(scene).all(|m| m.seeded(1).is_some());
     let help = "a cloud that is uniform, graded or jittered has one: name such methods in methods";
-    report.require(run.seeds == 0 || seeded, &format!("{key}.seeds"), "are not of every method", help);
+    report.require(run.seeds == 0 || seeded, "seeds", "are not of every method", help);
     let elastic = scene.material.constant("poisson").is_some();
     let help = format!("the {} law has none", scene.material.name());
-    report.require(
-        run.poisson.is_empty() || elastic,
-        &format!("{key}.poisson"),
-        "has nothing to vary",
-        &help,
-    );
+    report.require(run.poisson.is_empty() || elastic, "poisson", "has nothing to vary", &help);
 }

@@ -114,19 +114,13 @@ fn property(parameter: &Parameter) -> serde_json::Value {
     schema
 }
 
-/// Settings of an entry at `key`. Reports settings that the entry does not have, values out of range, and
-/// missing settings. Returns `None` if anything was reported.
-pub(crate) fn settings<V: Vocabulary>(
-    word: &Word<V>,
-    given: Given<V>,
-    key: &str,
-    report: &mut Report,
-) -> Option<Values> {
+/// Settings of an entry. Reports settings that the entry does not have, values out of range, and missing
+/// settings. Returns `None` if anything was reported.
+pub(crate) fn settings<V: Vocabulary>(word: &Word<V>, given: Given<V>, report: &Report) -> Option<Values> {
     let entry = word.0;
     let mut values = Values::new(entry.parameters);
     let mut sound = true;
     for (name, setting) in given.0 {
-        let at = format!("{key}.{name}");
         let read = match entry.parameter(&name) {
             None => {
                 Err(Problem::new(format!("does not belong to this {}", V::NOUN)).help(of_entry(entry, &name)))
@@ -135,15 +129,15 @@ pub(crate) fn settings<V: Vocabulary>(
         };
         if let Err(problem) = read {
             sound = false;
-            report.add(&at, problem);
+            report.add(&name, problem);
         }
     }
     let lacking = entry.parameters.iter().filter(|p| p.required && !values.has(p.name));
     for parameter in lacking {
-        let at = format!("{key}.{}", parameter.name);
         sound = false;
-        if !report.has(&at) {
-            report.missing(&at, &format!("this {} needs the key: {}", V::NOUN, parameter.meaning));
+        if !report.has(parameter.name) {
+            let help = format!("this {} needs the key: {}", V::NOUN, parameter.meaning);
+            report.missing(parameter.name, &help);
         }
     }
     sound.then_some(values)
@@ -174,19 +168,10 @@ fn read(setting: Setting, dimension: Dimension) -> Result<Value, Problem> {
 /// An entry constructed from its values alone.
 pub(crate) type Makes<T> = Entry<fn(&Values) -> Result<T, Problem>>;
 
-/// Constructs the object of an entry. An error of the constructor is reported at the parameter below `key`
-/// that it names, or else at `at`.
-pub(crate) fn build<T>(
-    entry: &Makes<T>,
-    values: &Values,
-    (key, at): (&str, &str),
-    report: &mut Report,
-) -> Option<T> {
-    let noted = |bad: Problem| match bad.parameter {
-        Some(parameter) => report.add(&format!("{key}.{parameter}"), bad),
-        None => report.add(at, bad),
-    };
-    (entry.build)(values).map_err(noted).ok()
+/// Constructs the object of an entry. An error of the constructor is reported at the parameter that it names,
+/// or else at `key`.
+pub(crate) fn build<T>(entry: &Makes<T>, values: &Values, key: &str, report: &Report) -> Option<T> {
+    (entry.build)(values).map_err(|bad| report.add(bad.parameter.unwrap_or(key), bad)).ok()
 }
 
 /// The schema of a table that names an entry by the key `tag` and has its settings, together with the keys

@@ -5,11 +5,10 @@ use std::collections::BTreeMap;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::keys::{JitterKeys, SizeKeys};
-use super::method::{Dilation, Element, Family, Fem, Method};
-use super::report::Report;
-use super::resolve::{jitter, positive, size};
-use super::units::{Bytes, Q, Time};
+use super::common::{Dilation, JitterKeys, SizeKeys};
+use super::fem::{Element, Fem};
+use crate::scene::report::Report;
+use crate::scene::units::{Bytes, Q, Time};
 
 /// Time limit of a run of an external solver if the file gives none, s.
 const TIME_LIMIT: f64 = 600.0;
@@ -44,66 +43,47 @@ pub enum Setting {
 }
 
 #[derive(Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub(crate) struct ExternalKeys {
-    pub id: String,
-    /// Name of the series, whose methods differ in size only; the id unless given
-    pub series: Option<String>,
     /// Name of the adapter, as `tissuebench adapter list` prints it
-    pub adapter: String,
-    pub element: Element,
-    pub size: SizeKeys,
-    pub jitter: Option<JitterKeys>,
+    adapter: String,
+    element: Element,
+    size: SizeKeys,
+    jitter: Option<JitterKeys>,
     /// Settings for the adapter; its page lists them
     #[serde(default)]
-    pub settings: BTreeMap<String, Setting>,
+    settings: BTreeMap<String, Setting>,
     /// Time limit of a run; 600 s unless given
-    pub time_limit: Option<Q<Time>>,
+    time_limit: Option<Q<Time>>,
     /// Memory limit of all processes of a run together, such as "500 MB"; "4 GB" unless given
-    pub memory_limit: Option<Q<Bytes>>,
+    memory_limit: Option<Q<Bytes>>,
 }
 
-/// The method described by the keys at `key`.
-pub(crate) fn external(keys: ExternalKeys, key: &str, report: &mut Report) -> Option<Method> {
-    let at = |name: &str| format!("{key}.{name}");
-    report.require(is_adapter(&keys.adapter), &at("adapter"), NO_ADAPTER, ADAPTERS);
-    let size = size(keys.size, &at("size"), report);
-    let jitter = jitter(keys.jitter, key, report);
-    let time_limit = keys.time_limit.map_or(TIME_LIMIT, |q| positive(q.0, &at("time_limit"), report));
-    let memory_limit =
-        keys.memory_limit.map_or(MEMORY_LIMIT, |q| positive(q.0, &at("memory_limit"), report) as u64);
-    let (element, dilation) = (keys.element, Dilation::Standard);
-    let elements = Fem { element, dilation, reduced: false, size: size?, jitter };
-    let external =
-        External { adapter: keys.adapter, elements, settings: keys.settings, time_limit, memory_limit };
-    let series = keys.series.unwrap_or_else(|| keys.id.clone());
-    Some(Method { id: keys.id, series, family: Family::External(external), mass: None })
+impl ExternalKeys {
+    pub fn read(self, report: &Report) -> Option<External> {
+        report.require(is_adapter(&self.adapter), "adapter", NO_ADAPTER, ADAPTERS);
+        let size = self.size.read(&report.at("size"));
+        let jitter = self.jitter.map(|jitter| jitter.read(report));
+        let time_limit = self.time_limit.map_or(TIME_LIMIT, |q| report.positive("time_limit", q.0));
+        let memory_limit =
+            self.memory_limit.map_or(MEMORY_LIMIT, |q| report.positive("memory_limit", q.0) as u64);
+        let (element, dilation) = (self.element, Dilation::Standard);
+        let elements = Fem { element, dilation, reduced: false, size: size?, jitter };
+        Some(External { adapter: self.adapter, elements, settings: self.settings, time_limit, memory_limit })
+    }
 }
 
-impl Method {
-    /// The same elements of the same size, solved by another solver; `None` unless they are plain finite
-    /// elements, which other solvers have too.
-    pub fn solved_by(&self, adapter: &str) -> Option<Method> {
-        let Family::Fem(fem) = &self.family else { return None };
-        if fem.dilation != Dilation::Standard || fem.reduced {
-            return None;
-        }
-        let external = External {
+impl External {
+    /// The same elements, solved by an external solver with default limits; `None` unless they are plain
+    /// finite elements, which other solvers have too.
+    pub(super) fn twin(elements: &Fem, adapter: &str) -> Option<External> {
+        let plain = elements.dilation == Dilation::Standard && !elements.reduced;
+        plain.then(|| External {
             adapter: adapter.into(),
-            elements: fem.clone(),
+            elements: elements.clone(),
             settings: BTreeMap::new(),
             time_limit: TIME_LIMIT,
             memory_limit: MEMORY_LIMIT,
-        };
-        let name = |own: &str| format!("{own}-{adapter}");
-        let (id, series) = (name(&self.id), name(&self.series));
-        Some(Method { id, series, family: Family::External(external), mass: None })
-    }
-
-    /// Whether the method is `other`, at any size, solved by another solver.
-    pub fn is_twin_of(&self, other: &Method) -> bool {
-        let Family::External(external) = &self.family else { return false };
-        other.solved_by(&external.adapter).is_some_and(|twin| twin.id == self.id)
+        })
     }
 }
 
@@ -119,6 +99,7 @@ pub(crate) fn is_adapter(name: &str) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::method::Family;
 
     const SCENE: &str = r#"title = "A block"
 body = { shape = "box", size = ["40 mm", "40 mm", "20 mm"] }

@@ -1,0 +1,219 @@
+//! The body of a scene: its shape, and the names of its surfaces.
+
+use catalogue::{Problem, suggest};
+use geometry::files::is_surface;
+use geometry::generate::surfaces;
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+use super::mesh_file::MeshFile;
+use super::report::Report;
+use super::selection::Place;
+use super::units::{Length, Q, Unit};
+
+/// The body in its undeformed state
+#[derive(Deserialize, JsonSchema)]
+#[serde(tag = "shape", rename_all = "kebab-case", deny_unknown_fields)]
+pub(crate) enum BodyKeys {
+    /// An axis-parallel box: give two corners (min, max), or a size with one corner at the origin
+    #[schemars(extend("x-surfaces" = with_all(&surfaces::BOX)))]
+    Box {
+        /// Lower corner; the origin unless given
+        min: Option<[Q<Length>; 3]>,
+        /// Upper corner
+        max: Option<[Q<Length>; 3]>,
+        /// Edge lengths
+        size: Option<[Q<Length>; 3]>,
+    },
+    /// A cylinder about the z axis with its base at z = 0
+    #[schemars(extend("x-surfaces" = with_all(&surfaces::CYLINDER)))]
+    Cylinder {
+        /// Radius
+        radius: Q<Length>,
+        /// Height
+        height: Q<Length>,
+    },
+    /// A ball about the origin
+    #[schemars(extend("x-surfaces" = with_all(&surfaces::BALL)))]
+    Ball {
+        /// Radius
+        radius: Q<Length>,
+    },
+    /// A thick sphere about the origin
+    #[schemars(extend("x-surfaces" = with_all(&surfaces::SHELL)))]
+    SphereShell {
+        /// Inner radius
+        inner: Q<Length>,
+        /// Outer radius
+        outer: Q<Length>,
+        /// Only the octant x, y, z >= 0
+        #[serde(default)]
+        #[schemars(extend("x-surfaces" = surfaces::OCTANT))]
+        octant: bool,
+    },
+    /// The kidney, a bean of 40 x 75 x 30 mm
+    #[schemars(extend("x-surfaces" = with_all(&surfaces::BALL)))]
+    Kidney {
+        /// Only the half z >= 0
+        #[serde(default)]
+        #[schemars(extend("x-surfaces" = surfaces::HALF))]
+        half: bool,
+        /// Weaker grading of the half's meshes under the jaw's edges, for meshes so fine that thin cells fold
+        /// (10,000 nodes)
+        #[serde(default)]
+        mildly_graded: bool,
+    },
+    /// A mesh file (Gmsh .msh, Abaqus or CalculiX .inp, VTK .vtu or .vtk), which names its own surfaces, or a
+    /// closed surface (STL, OBJ, PLY)
+    File {
+        /// The file, relative to the folder of the scene
+        path: String,
+        /// Unit of the numbers in the file
+        unit: Unit<Length>,
+        /// Join pieces whose faces coincide without shared nodes, in all meshes of this body and its methods
+        #[serde(default)]
+        join: bool,
+    },
+}
+
+/// Shape of the body; lengths in metres.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Body {
+    /// An axis-parallel box.
+    Box {
+        /// Lower corner.
+        min: [f64; 3],
+        /// Upper corner.
+        max: [f64; 3],
+    },
+    /// A cylinder about the z axis, with its base at z = 0.
+    Cylinder {
+        /// Radius.
+        radius: f64,
+        /// Height.
+        height: f64,
+    },
+    /// A ball about the origin.
+    Ball {
+        /// Radius.
+        radius: f64,
+    },
+    /// A thick sphere about the origin.
+    SphereShell {
+        /// Inner radius.
+        inner: f64,
+        /// Outer radius.
+        outer: f64,
+        /// Whether only the octant x, y, z >= 0 is present.
+        octant: bool,
+    },
+    /// The kidney, as a map of the ball.
+    Kidney {
+        /// Whether only the half z >= 0 is present, with cells graded towards the z axis.
+        half: bool,
+        /// Whether these cells are graded less.
+        mildly_graded: bool,
+    },
+    /// The mesh of a file.
+    File(MeshFile),
+}
+
+impl BodyKeys {
+    pub fn read(self, report: &Report) -> Option<Body> {
+        Some(match self {
+            BodyKeys::Box { min, max, size } => {
+                let (min, max) = corners([min, max, size].map(|q| q.map(|q| q.map(|q| q.0))), report)?;
+                let holds = (0..3).all(|a| max[a] > min[a]);
+                report.require(holds, "", "has no volume", "every extent must be above zero");
+                Body::Box { min, max }
+            }
+            BodyKeys::Cylinder { radius, height } => Body::Cylinder {
+                radius: report.positive("radius", radius.0),
+                height: report.positive("height", height.0),
+            },
+            BodyKeys::Ball { radius } => Body::Ball { radius: report.positive("radius", radius.0) },
+            BodyKeys::SphereShell { inner, outer, octant } => {
+                let inner = report.positive("inner", inner.0);
+                let outer = report.positive("outer", outer.0);
+                report.require(outer > inner, "outer", "is not above inner", "the wall needs a thickness");
+                Body::SphereShell { inner, outer, octant }
+            }
+            BodyKeys::Kidney { half, mildly_graded } => {
+                let help =
+                    "leave it out, or add half = true: cells of the whole kidney are not drawn together";
+                report.require(half || !mildly_graded, "mildly_graded", "is for the half alone", help);
+                Body::Kidney { half, mildly_graded }
+            }
+            BodyKeys::File { path, unit, join } => {
+                let file = MeshFile::read(&path, Some(unit), "path", report);
+                let help = "leave it out: a closed surface has no nodes to join";
+                report.require(!join || !is_surface(&file.path), "join", "is for meshes", help);
+                Body::File(MeshFile { join, ..file })
+            }
+        })
+    }
+}
+
+/// Two corners of a box from its `min`, `max` and `size`.
+fn corners(keys: [Option<[f64; 3]>; 3], report: &Report) -> Option<([f64; 3], [f64; 3])> {
+    match keys {
+        [Some(min), Some(max), None] => Some((min, max)),
+        [min, None, Some(size)] => {
+            let min = min.unwrap_or([0.0; 3]);
+            Some((min, std::array::from_fn(|a| min[a] + size[a])))
+        }
+        [_, Some(_), Some(_)] => {
+            let help = "give min and max, or size alone (with a corner at the origin, or at min)";
+            report.add("size", Problem::new("stands beside max").help(help));
+            None
+        }
+        [_, _, None] => {
+            report.missing("size", "give size = [\"40 mm\", \"40 mm\", \"20 mm\"], or min and max");
+            None
+        }
+    }
+}
+
+impl Body {
+    /// The name of the shape in files and tables.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Body::Box { .. } => "box",
+            Body::Cylinder { .. } => "cylinder",
+            Body::Ball { .. } => "ball",
+            Body::SphereShell { .. } => "sphere-shell",
+            Body::Kidney { .. } => "kidney",
+            Body::File(_) => "file",
+        }
+    }
+
+    /// Names of the parts of its surface, including "surface" for all of it; `None` if only the mesh file has
+    /// names.
+    pub fn surfaces(&self) -> Option<Vec<&'static str>> {
+        let (parts, further): (&[_], &[_]) = match self {
+            Body::Box { .. } => (&surfaces::BOX, &[]),
+            Body::Cylinder { .. } => (&surfaces::CYLINDER, &[]),
+            Body::Ball { .. } | Body::Kidney { half: false, .. } => (&surfaces::BALL, &[]),
+            Body::Kidney { half: true, .. } => (&surfaces::BALL, &surfaces::HALF),
+            Body::SphereShell { octant: false, .. } => (&surfaces::SHELL, &[]),
+            Body::SphereShell { octant: true, .. } => (&surfaces::SHELL, &surfaces::OCTANT),
+            Body::File(_) => return None,
+        };
+        Some([with_all(parts), further.to_vec()].concat())
+    }
+
+    /// Reports the names in a selection that are not names of surfaces.
+    pub(crate) fn find(&self, place: &Place, report: &Report) {
+        let (Some(known), Place::On(names)) = (self.surfaces(), place) else { return };
+        for name in names.iter().filter(|n| !known.contains(&n.as_str())) {
+            let problem = format!("is not a surface of a {}", self.name());
+            report.add("on", Problem::new(problem).found(name).help(suggest(name, &known)));
+        }
+    }
+}
+
+/// Names of the parts of a surface, followed by "surface" for all of it.
+fn with_all(parts: &[&'static str]) -> Vec<&'static str> {
+    let all = surfaces::BALL[0];
+    parts.iter().copied().filter(|part| *part != all).chain([all]).collect()
+}

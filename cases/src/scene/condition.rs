@@ -1,0 +1,243 @@
+//! Supports and loads of a scene.
+
+use catalogue::Problem;
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+use super::body::Body;
+use super::field::{ExactWord, FieldKeys, ScalarField, VectorField, VectorKeys};
+use super::procedure::{Procedure, ProcedureKind};
+use super::region::Region;
+use super::report::Report;
+use super::selection::{Names, Place};
+use super::units::{BodyForce, Length, Pressure};
+
+/// Prescribed displacement along one axis
+#[derive(Deserialize, JsonSchema)]
+#[serde(untagged)]
+enum AxisKeys {
+    Exact(ExactWord),
+    Field(FieldKeys<Length>),
+}
+
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+struct AxesKeys {
+    x: Option<AxisKeys>,
+    y: Option<AxisKeys>,
+    z: Option<AxisKeys>,
+}
+
+/// Prescribed displacement: some axes, all three as [x, y, z], or "exact"
+#[derive(Deserialize, JsonSchema)]
+#[serde(untagged)]
+enum MoveKeys {
+    Exact(ExactWord),
+    All([AxisKeys; 3]),
+    Axes(AxesKeys),
+}
+
+/// Prescribed displacement of a region
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct SupportKeys {
+    /// Names given by the shape or the mesh file
+    on: Option<Names>,
+    /// Comparisons joined by 'and'
+    #[serde(rename = "where")]
+    place: Option<Region>,
+    /// Axes fixed at zero, such as "xyz"
+    fix: Option<String>,
+    #[serde(rename = "move")]
+    motion: Option<MoveKeys>,
+}
+
+/// A load: exactly one of traction, pressure (along the inner normal) and body force
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct LoadKeys {
+    on: Option<Names>,
+    #[serde(rename = "where")]
+    place: Option<Region>,
+    /// Force per area: for one along the inner normal take pressure = "1 kPa"
+    traction: Option<VectorKeys<Pressure>>,
+    /// Force per area along the inner normal
+    pressure: Option<FieldKeys<Pressure>>,
+    /// Force per volume, everywhere
+    body: Option<VectorKeys<BodyForce>>,
+}
+
+/// Prescribed displacement of a support along one axis, in metres.
+#[derive(Clone, Debug)]
+pub enum Prescribed {
+    /// A given displacement.
+    Field(ScalarField),
+    /// The displacement of the exact solution in `[reference]`.
+    Exact,
+}
+
+/// Prescribed displacement of a part of the body.
+#[derive(Clone, Debug)]
+pub struct Support {
+    /// Constrained part of the body.
+    pub place: Place,
+    /// Prescribed displacements along x, y, z; `None` for a free axis. At least one is prescribed.
+    pub motion: [Option<Prescribed>; 3],
+}
+
+impl Support {
+    /// Whether a prescribed displacement differs from zero.
+    pub(crate) fn moves(&self) -> bool {
+        let still = |p: &Prescribed| matches!(p, Prescribed::Field(ScalarField::Constant(0.0)));
+        !self.motion.iter().flatten().all(still)
+    }
+}
+
+/// A load.
+#[derive(Clone, Debug)]
+pub struct Load {
+    /// Loaded part of the body.
+    pub place: Place,
+    /// Kind and value.
+    pub kind: LoadKind,
+}
+
+/// Kinds of loads.
+#[derive(Clone, Debug)]
+pub enum LoadKind {
+    /// Force per area, in pascals.
+    Traction(VectorField),
+    /// Pressure along the inner normal, in pascals.
+    Pressure(ScalarField),
+    /// Force per volume, in newtons per cubic metre.
+    Body(VectorField),
+}
+
+impl LoadKind {
+    /// Whether the load varies in space.
+    pub fn varies(&self) -> bool {
+        match self {
+            LoadKind::Traction(field) | LoadKind::Body(field) => field.varies(),
+            LoadKind::Pressure(field) => field.varies(),
+        }
+    }
+
+    /// Whether the load is that of the exact solution.
+    pub(crate) fn is_exact(&self) -> bool {
+        matches!(self, LoadKind::Traction(VectorField::Exact) | LoadKind::Body(VectorField::Exact))
+    }
+}
+
+impl SupportKeys {
+    /// Reads a support; checks its names of surfaces if the body is known.
+    pub fn read(self, body: Option<&Body>, report: &Report) -> Support {
+        let place = Place::required(self.on, self.place, report);
+        body.inspect(|body| body.find(&place, report));
+        let mut motion: [Option<Prescribed>; 3] = [None, None, None];
+        if let Some(fix) = &self.fix {
+            let sound = ["x", "y", "z", "xy", "xz", "yz", "xyz"].contains(&fix.as_str());
+            let help = "write the axes held at zero in order: x, y, z, xy, xz, yz or xyz";
+            report.require(sound, "fix", "is not a list of axes", help);
+            let zero = Prescribed::Field(ScalarField::Constant(0.0));
+            motion = ['x', 'y', 'z'].map(|axis| fix.contains(axis).then(|| zero.clone()));
+        }
+        match self.motion {
+            Some(MoveKeys::Exact(_)) => {
+                let help = "write move = { x = \"exact\" } for some axes, and fix for others";
+                report.require(self.fix.is_none(), "move", "moves axes that 'fix' holds", help);
+                motion = std::array::from_fn(|_| Some(Prescribed::Exact));
+            }
+            Some(MoveKeys::Axes(axes)) => {
+                let keys = ["move.x", "move.y", "move.z"];
+                moved(&mut motion, [axes.x, axes.y, axes.z], keys, report);
+            }
+            Some(MoveKeys::All(axes)) => {
+                moved(&mut motion, axes.map(Some), ["move[0]", "move[1]", "move[2]"], report);
+            }
+            None => {}
+        }
+        if motion.iter().all(Option::is_none) && self.fix.is_none() {
+            report.missing("fix", "write fix = \"xyz\", or move = { z = \"-1 mm\" }");
+        }
+        Support { place, motion }
+    }
+}
+
+/// Adds the prescribed displacements along the axes, each at its key.
+fn moved(
+    motion: &mut [Option<Prescribed>; 3],
+    axes: [Option<AxisKeys>; 3],
+    keys: [&str; 3],
+    report: &Report,
+) {
+    for ((motion, given), key) in motion.iter_mut().zip(axes).zip(keys) {
+        let Some(given) = given else { continue };
+        let free = motion.is_none();
+        report.require(free, key, "moves an axis that 'fix' holds", "name each axis once");
+        *motion = Some(match given {
+            AxisKeys::Exact(_) => Prescribed::Exact,
+            AxisKeys::Field(field) => Prescribed::Field(field.into()),
+        });
+    }
+}
+
+impl LoadKeys {
+    /// Reads a load; checks its names of surfaces if the body is known.
+    pub fn read(self, body: Option<&Body>, report: &Report) -> Option<Load> {
+        let kind = match (self.traction, self.pressure, self.body) {
+            (Some(traction), None, None) => LoadKind::Traction(traction.into()),
+            (None, Some(pressure), None) => LoadKind::Pressure(pressure.into()),
+            (None, None, Some(force)) => LoadKind::Body(force.into()),
+            (None, None, None) => {
+                report.missing("", "give one of traction, pressure and body");
+                return None;
+            }
+            _ => {
+                let help = "give one of traction, pressure and body";
+                report.add("", Problem::new("has several kinds of load").help(help));
+                return None;
+            }
+        };
+        if !matches!(kind, LoadKind::Body(_)) {
+            let place = Place::required(self.on, self.place, report);
+            body.inspect(|body| body.find(&place, report));
+            return Some(Load { place, kind });
+        }
+        let place = Place::read(self.on, self.place, report);
+        let (problem, help) = ("limits a body force to a place", "a body force acts everywhere");
+        report.require(!matches!(place, Place::On(_)), "on", problem, help);
+        report.require(!matches!(place, Place::Where(_)), "where", problem, help);
+        body.inspect(|body| body.find(&place, report));
+        Some(Load { place, kind })
+    }
+}
+
+/// Reports contradictions of supports and loads with the procedure, and values of an exact solution in a
+/// scene without one.
+pub(crate) fn demands(
+    (supports, loads): (&[Support], &[Load]),
+    procedure: &Procedure,
+    has_exact: bool,
+    report: &Report,
+) {
+    let vibrates = procedure.kind() == ProcedureKind::Modes;
+    let follows = |support: &Support| support.motion.iter().flatten().any(|m| matches!(m, Prescribed::Exact));
+    let (lacking, add) = ("has no exact solution to follow", "add [reference] exact = \"...\"");
+    for (i, support) in supports.iter().enumerate() {
+        let key = format!("support[{i}].move");
+        report.require(has_exact || !follows(support), &key, lacking, add);
+        let help = "hold it: fix = \"xyz\"";
+        report.require(!vibrates || !support.moves(), &key, "moves what vibrates freely", help);
+    }
+    for (i, load) in loads.iter().enumerate() {
+        report.require(has_exact || !load.kind.is_exact(), &format!("load[{i}]"), lacking, add);
+    }
+    if let (true, Some((problem, help))) = (vibrates, procedure.kind().lacks_displacements()) {
+        report.require(loads.is_empty(), "load[0]", problem, help);
+    }
+    let jumps = procedure.has_inertia() && procedure.ramp().is_some_and(|ramp| ramp.over == Some(0.0));
+    if let (true, Some(i)) = (jumps, supports.iter().position(Support::moves)) {
+        let problem = Problem::new(format!("is no time for support[{i}] to move in"));
+        report.add("procedure.over", problem.help("a mass can't jump: give the time it takes"));
+    }
+}
