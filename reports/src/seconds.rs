@@ -63,7 +63,7 @@ impl Seconds {
         match self {
             Seconds::Wall => "run time, median",
             Seconds::Cpu => "CPU time, median",
-            Seconds::Least => "run time, least repeat",
+            Seconds::Least => "run time, shortest repeat",
         }
     }
 

@@ -33,7 +33,7 @@ pub(super) fn peers(runs: &[Run]) -> Table {
             ("ours [ms]", Number),
             ("theirs [ms]", Number),
             ("theirs / ours", Number),
-            ("processors / ours", Number),
+            ("CPU time / ours", Number),
             ("own phases [ms]", Number),
             ("own phases / ours", Number),
             ("error / ours", Number),

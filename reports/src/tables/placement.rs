@@ -24,13 +24,13 @@ pub(super) fn placement(clouds: &[Clouds]) -> Table {
             ("method", Words),
             ("nodes", Number),
             ("clouds", Number),
-            ("number", Words),
-            ("whole", Number),
-            ("least", Number),
+            ("quantity", Words),
+            ("full load", Number),
+            ("minimum", Number),
             ("lower quartile", Number),
             ("median", Number),
             ("upper quartile", Number),
-            ("most", Number),
+            ("maximum", Number),
         ],
     );
     for case in groups(clouds, |g| (g[0].is.case.clone(), g[0].is.poisson.to_bits())) {

@@ -20,7 +20,7 @@ pub(super) fn stability(set: &RunSet) -> Table {
             ("axis", Words),
             ("method", Words),
             ("base", Number),
-            ("error there", Number),
+            ("error at base", Number),
             ("of", Words),
             ("bends below", Words),
             ("bends above", Words),
