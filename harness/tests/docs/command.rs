@@ -74,11 +74,11 @@ fn one(step: &Step, dir: &Path, not_run: bool, exits: i32) -> Result<(), String>
         ["cargo", "install", "--path", path, ..] => {
             root().join(path).join("Cargo.toml").exists().then_some(()).ok_or("no such package".into())
         }
-        ["cargo", "test" | "bench" | "doc" | "insta", ..] => Ok(()),
+        ["cargo", "test" | "bench" | "doc" | "insta" | "package", ..] => Ok(()),
         ["cargo", "install", "mdbook" | "cargo-insta", ..] | ["mdbook", ..] => Ok(()),
         // Python is tested by its own tests, `cargo xtask python`.
         ["pip" | "python", ..] => Ok(()),
-        ["git", "clone", ..] | ["cd", ..] => Ok(()),
+        ["git", "clone" | "tag", ..] | ["cd", ..] => Ok(()),
         _ => Err("the test does not know how to check this command".into()),
     }
 }

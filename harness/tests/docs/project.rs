@@ -16,12 +16,16 @@ fn of_the_workspace(key: &str) -> String {
 }
 
 #[test]
-fn the_citation_and_the_changelog_have_the_version_of_the_manifest() {
+fn one_version_is_in_all_files() {
     let version = of_the_workspace("version");
-    let cited = format!("version: {version}");
-    assert!(text("CITATION.cff").lines().any(|line| line == cited), "CITATION.cff: no line '{cited}'");
-    let head = format!("## {version}");
-    assert!(text("CHANGELOG.md").lines().any(|line| line.starts_with(&head)), "CHANGELOG.md: no '{head}'");
+    for (file, start) in [
+        ("CITATION.cff", format!("version: {version}")),
+        ("CHANGELOG.md", format!("## {version}")),
+        ("python/Cargo.toml", format!("version = \"{version}\"")),
+    ] {
+        let stated = text(file).lines().any(|line| line.starts_with(&start));
+        assert!(stated, "{file}: no line begins with '{start}'");
+    }
 }
 
 #[test]
