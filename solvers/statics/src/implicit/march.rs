@@ -1,16 +1,16 @@
 //! Time stepping with cut-back and regrowth of steps, each solved by Newton's method.
 
-use contact::ContactCounts;
 use contact::Drive;
 use shape::Vector3;
 
 use super::problem::{Motion, TimeParams, TimePath, TimeProblem, TimeStep};
 use super::scheme::{Scheme, Update};
 use super::{Energy, TimeError};
+use crate::Step;
 use crate::nonlinear::{
-    Descent, Ended, InertiaTerms, Memory, Newton, Scales, State, TimeTerms, shortest_travel,
+    Attempt, Descent, Ended, InertiaTerms, Memory, Newton, Scales, State, Stepper, TimeTerms, near,
+    shortest_travel,
 };
-use crate::{StaticWork, Step};
 
 /// Solves a problem of implicit dynamics. `observe` is called after every converged step with the step, the
 /// motion and the pressures.
@@ -26,69 +26,42 @@ pub fn solve_in_time(
     let mass = problem.inertia.map(|i| i.mass.table());
     let newton = Newton::with_mass(problem.body, &params.newton, mass)?;
     let (mut march, first) = March::start(problem, params, newton)?;
-    let mut path = TimePath {
-        steps: Vec::new(),
-        motion: Motion { u: Vec::new(), v: Vec::new(), a: Vec::new(), reaction: Vec::new() },
-        pressure: Vec::new(),
-        cut_back: 0,
-        counts: ContactCounts::default(),
-        work: StaticWork::default(),
-        failure: None,
-    };
+    let (mut steps, mut failure) = (Vec::new(), None);
     if let Some(done) = first {
         observe(&done, &march.motion, &march.state.pressure);
-        path.steps.push(done);
+        steps.push(done);
     }
-    let count = params.steps.max(1);
-    let longest = params.end / count as f64;
+    let mut stepper = Stepper::new(params.end, params.steps, params.smallest);
     // The peak speed of a smooth ramp is less than twice that of a linear ramp.
     let shortest = shortest_travel(problem.body) * problem.ramps.tools.over().unwrap_or(params.end);
-    let (mut next, mut step) = (1, longest);
-    while next <= count {
-        let target = next as f64 * longest;
-        let left = target - march.state.time;
-        // Avoids a last step shorter than a tenth of the current step.
-        let reaches = step > 0.9 * left;
-        let time = if reaches { target } else { march.state.time + step };
-        let length = time - march.state.time;
-        let reported = reaches.then_some(next == count);
-        match march.step(time, reported) {
+    while let Some(attempt) = stepper.attempt() {
+        match march.step(attempt) {
             Ok(mut done) => {
-                done.step.wanted = reaches;
-                let quick = done.step.iterations.len() <= 6;
+                done.step.wanted = attempt.output.is_some();
                 let growth = params.accuracy.map_or(2.0, |allowed| following(allowed, done.error).min(2.0));
+                stepper.accept(attempt, if done.step.is_quick() { growth } else { 1.0 });
                 observe(&done, &march.motion, &march.state.pressure);
-                path.steps.push(done);
-                if reaches {
-                    next += 1;
-                }
-                step = if quick { (growth * step).min(longest) } else { step };
+                steps.push(done);
             }
             Err(cause) => {
-                path.cut_back += 1;
-                step = length
-                    * match cause {
-                        TimeError::Inaccurate { error, allowed } => following(allowed, error).clamp(0.2, 0.8),
-                        _ => 0.5,
-                    };
-                let smallest = params.smallest * longest;
-                let finest = match &cause {
-                    TimeError::Static(cause) => cause.finest(smallest, shortest),
-                    _ => smallest,
+                let (part, finest) = match &cause {
+                    TimeError::Inaccurate { error, allowed } => {
+                        (following(*allowed, *error).clamp(0.2, 0.8), stepper.smallest)
+                    }
+                    TimeError::Static(cause) => (0.5, cause.finest(stepper.smallest, shortest)),
+                    _ => (0.5, stepper.smallest),
                 };
-                if step < finest {
-                    let (time, cause) = (march.state.time, Box::new(cause));
-                    path.failure = Some(TimeError::Stalled { time, step: length, cause });
+                if !stepper.cut(attempt, part, finest) {
+                    let (time, step) = (stepper.time, attempt.length);
+                    failure = Some(TimeError::Stalled { time, step, cause: Box::new(cause) });
                     break;
                 }
             }
         }
     }
-    path.counts = march.newton.counts();
-    path.work = march.newton.work();
-    path.motion = march.motion;
-    path.pressure = march.state.pressure;
-    Ok(path)
+    let (counts, work, cut_back) = (march.newton.counts(), march.newton.work(), stepper.cut_back);
+    let March { motion, state: State { pressure, .. }, .. } = march;
+    Ok(TimePath { steps, motion, pressure, cut_back, counts, work, failure })
 }
 
 /// Ratio of the next step to the last step for the given local error, which grows as the third power of the
@@ -139,8 +112,9 @@ impl<'a> March<'a> {
             return Ok((march, None));
         }
         let Scales { loads, supports, tools } = march.scales(0.0);
-        let first =
-            if loads > 0.0 || supports > 0.0 || tools > 0.0 { Some(march.step(0.0, None)?) } else { None };
+        let loaded = loads > 0.0 || supports > 0.0 || tools > 0.0;
+        let at_once = Attempt { time: 0.0, length: 0.0, output: None };
+        let first = if loaded { Some(march.step(at_once)?) } else { None };
         march.before = None;
         Ok((march, first))
     }
@@ -200,20 +174,17 @@ impl<'a> March<'a> {
         }
     }
 
-    /// Advances to `time`; a failure leaves the state unchanged. `reported` is set for a state to be reported
-    /// and says whether it is the last.
-    fn step(&mut self, time: f64, reported: Option<bool>) -> Result<TimeStep, TimeError> {
-        let dt = time - self.state.time;
+    /// Takes a step; a failure leaves the state unchanged.
+    fn step(&mut self, Attempt { time, length: dt, output }: Attempt) -> Result<TimeStep, TimeError> {
         let relaxing = self.memory.as_ref().map(|m| m.relaxing(dt));
         let inertia = self.problem.inertia.map(|i| self.inertia(time, self.scheme.over(dt), i.damping));
         self.newton.set_terms(TimeTerms { scales: self.scales(time), inertia, relaxing });
         let (before, augmentations) = (self.before.as_ref(), self.params.augmentations);
         let mut to = |descent| self.newton.step(&self.state, before, time, augmentations, descent);
-        let (state, step) = to(Descent::Nearest)
-            .or_else(|error| if self.state.pressure.is_empty() { Err(error) } else { to(Descent::Guarded) })
+        let (state, step) = near(!self.state.pressure.is_empty(), &mut to)
             .or_else(|_| to(Descent::Down))
             .and_then(|reached| self.newton.checked(&self.state, reached))?;
-        if let Some(ends) = reported {
+        if let Some(ends) = output {
             self.newton.check_overlap(&state, &step, ends)?;
         }
         let mut motion = self.motion_at(time, dt, &state.u);

@@ -13,13 +13,15 @@ mod solid;
 mod sorted;
 mod split;
 mod statics;
+mod stepper;
 mod system;
 #[cfg(test)]
 mod tests;
 
 pub(crate) use in_time::{Ended, InertiaTerms, Scales, TimeTerms};
-pub(crate) use newton::{Descent, Newton, State, shortest_travel};
+pub(crate) use newton::{Descent, Newton, State, near, shortest_travel};
 pub(crate) use relaxing::Memory;
+pub(crate) use stepper::{Attempt, Stepper};
 pub(crate) use system::SurfaceTable;
 
 pub use error::{Inverted, StaticError, Worst};

@@ -7,6 +7,7 @@ use shape::{FixedDof, Point3, Vector3};
 use super::error::StaticError;
 use super::newton::{Descent, Iteration, Newton, NewtonParams, State, near, shortest_travel};
 use super::solid::Solid;
+use super::stepper::Stepper;
 use crate::Load;
 
 /// A surface constrained by a penalty, for bases whose parameters are not displacements.
@@ -87,6 +88,13 @@ pub struct Step {
     pub smallest: f64,
 }
 
+impl Step {
+    /// Whether the step took so few iterations that the next step may be longer.
+    pub(crate) fn is_quick(&self) -> bool {
+        self.iterations.len() <= 6
+    }
+}
+
 /// Counters of a static solution, including failed steps and discarded trials.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct StaticWork {
@@ -154,40 +162,25 @@ pub fn solve_static(
     params: &StaticParams,
     mut observe: impl FnMut(&Step, Rest),
 ) -> Result<StaticPath, StaticError> {
-    let count = params.steps.max(1);
-    let longest = 1.0 / count as f64;
     let mut newton = Newton::new(problem, &params.newton)?;
     let mut state = State::start(problem);
     if problem.tools.is_empty() {
         newton.check_rigid(&state)?;
     }
     let mut before: Option<State> = None;
-    let mut path = StaticPath {
-        steps: Vec::new(),
-        u: Vec::new(),
-        pressure: Vec::new(),
-        history: Vec::new(),
-        cut_back: 0,
-        counts: ContactCounts::default(),
-        work: StaticWork::default(),
-        failure: None,
-    };
-    let (mut next, mut step) = (1, longest);
+    let (mut steps, mut failure) = (Vec::new(), None);
+    let mut stepper = Stepper::new(1.0, params.steps, params.smallest);
+    let shortest = shortest_travel(problem);
     // At least a step that can still be halved once: a step that cannot be halved has to accept any
     // equilibrium.
-    let finest = 2.0 * params.smallest * longest;
-    let shortest = shortest_travel(problem);
+    let finest = 2.0 * stepper.smallest;
     let (mut within, mut near_limit) = (params.limit_within.map(|within| within.max(finest)), false);
-    while next <= count {
-        let target = next as f64 * longest;
-        let left = target - state.time;
-        // Avoids a last step shorter than a tenth of the current step.
-        let reaches = step > 0.9 * left;
-        let time = if reaches { target } else { state.time + step };
+    while let Some(attempt) = stepper.attempt() {
         // The displacement so far gives the best guess. Without a converged step, or if the guess inverts a
         // point, the last state is the guess.
-        let mut to = |descent| newton.find(&state, before.as_ref(), time, params.augmentations, descent);
-        let reached = if within.is_some_and(|within| time - state.time > within) {
+        let (guess, rounds) = (before.as_ref(), params.augmentations);
+        let mut to = |descent| newton.find(&state, guess, attempt.time, rounds, descent);
+        let reached = if within.is_some_and(|within| attempt.length > within) {
             to(Descent::Smooth)
         } else {
             match near(!state.pressure.is_empty(), &mut to) {
@@ -198,47 +191,37 @@ pub fn solve_static(
                 nearest => nearest.or_else(|_| to(Descent::Down)),
             }
         };
-        let reached = reached.and_then(|(reached, done)| match reaches {
-            true => newton.check_overlap(&reached, &done, next == count).map(|()| (reached, done)),
-            false => Ok((reached, done)),
+        let reached = reached.and_then(|(reached, done)| match attempt.output {
+            Some(ends) => newton.check_overlap(&reached, &done, ends).map(|()| (reached, done)),
+            None => Ok((reached, done)),
         });
         match reached {
             Ok((reached, mut done)) => {
-                done.wanted = reaches;
+                done.wanted = attempt.output.is_some();
                 if done.gave_way {
                     within = None;
                 }
-                let quick = done.iterations.len() <= 6;
+                let grows = done.is_quick() && !std::mem::take(&mut near_limit);
                 let State { u, pressure, .. } = &reached;
                 observe(&done, Rest { u, pressure, reaction: newton.reaction() });
-                path.steps.push(done);
+                steps.push(done);
                 before = Some(std::mem::replace(&mut state, reached));
-                if reaches {
-                    next += 1;
-                }
-                let grows = quick && !std::mem::take(&mut near_limit);
-                step = if grows { (2.0 * step).min(longest) } else { step };
+                stepper.accept(attempt, if grows { 2.0 } else { 1.0 });
             }
             Err(cause) => {
-                path.cut_back += 1;
                 near_limit = within.is_some();
-                let failed = time - state.time;
-                step = 0.5 * failed;
-                if step < cause.finest(params.smallest * longest, shortest) {
-                    path.failure =
-                        Some(StaticError::Stalled { time: state.time, step: failed, cause: Box::new(cause) });
+                if !stepper.cut(attempt, 0.5, cause.finest(stepper.smallest, shortest)) {
+                    let (time, step) = (stepper.time, attempt.length);
+                    failure = Some(StaticError::Stalled { time, step, cause: Box::new(cause) });
                     break;
                 }
             }
         }
     }
-    path.counts = newton.counts();
-    path.work = newton.work();
-    if path.failure.is_none() && !problem.tools.is_empty() {
+    let (counts, work, cut_back) = (newton.counts(), newton.work(), stepper.cut_back);
+    if failure.is_none() && !problem.tools.is_empty() {
         newton.check_rigid(&state)?;
     }
-    path.u = state.u;
-    path.pressure = state.pressure;
-    path.history = state.history;
-    Ok(path)
+    let State { u, pressure, history, .. } = state;
+    Ok(StaticPath { steps, u, pressure, history, cut_back, counts, work, failure })
 }

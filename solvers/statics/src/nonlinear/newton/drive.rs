@@ -1,10 +1,9 @@
-//! Force-driven tools, whose displacements are unknowns.
+//! The approach of force-driven tools under displacement control.
 
-use algebra::Border;
 use contact::Drive;
 use shape::Vector3;
 
-use super::{Balance, Descent, Newton, State};
+use super::{Descent, Newton, State};
 use crate::SolveError;
 use crate::nonlinear::{StaticError, Step};
 
@@ -46,74 +45,6 @@ impl Newton<'_> {
             })
     }
 
-    /// Returns the missing force of each force-driven tool, N; 0 for a displacement-driven tool. The missing
-    /// force enters the work of the line search. Without this term, a tool out of balance alone would give a
-    /// slope of zero, and every step would be cut.
-    pub(super) fn lacking(&self, balance: &Balance, time: f64) -> Vec<f64> {
-        (self.problem.tools.iter().zip(&balance.contacts).enumerate())
-            .map(|(k, (driven, contacts))| {
-                self.force(k, time).map_or(0.0, |force| {
-                    force + contacts.as_ref().map_or(0.0, |c| c.force().dot(&driven.tool.along()))
-                })
-            })
-            .collect()
-    }
-
-    /// Returns the force that drives a tool at `time`, N; `None` for a tool driven by displacement or under
-    /// displacement control.
-    pub(super) fn force(&self, tool: usize, time: f64) -> Option<f64> {
-        match self.problem.tools[tool].drive {
-            Drive::Force(full) if !self.displacement_driven[tool] => Some(full * self.scales(time).tools),
-            Drive::Force(_) | Drive::Closure(_) => None,
-        }
-    }
-
-    /// Returns the force-driven tools in contact, each with its row and column of the tangent.
-    ///
-    /// With `a = sum w N S along` (S = -dt/dx) and `a'` the same with S transposed, a displacement increment
-    /// `dd` of the tool gives `K du - a dd = r`. The tool is balanced by `D dd - a' . du = F - Q` with
-    /// `D = sum w along . S along`.
-    pub(super) fn borders(&self, balance: &Balance) -> Vec<(usize, Border)> {
-        let Some(surface) = self.problem.contact else { return Vec::new() };
-        let rows = surface.rows();
-        let none = vec![0.0; balance.pressure.len()];
-        let mut borders = Vec::new();
-        for (k, (driven, contacts)) in self.problem.tools.iter().zip(&balance.contacts).enumerate() {
-            let (Some(_), Some(contacts)) = (self.force(k, 1.0), contacts) else { continue };
-            let along = driven.tool.along();
-            let mut sides = [
-                vec![Vector3::zeros(); self.problem.nodes.len()],
-                vec![Vector3::zeros(); self.problem.nodes.len()],
-            ];
-            let mut corner = 0.0;
-            for (&q, dt) in contacts.points().iter().zip(contacts.stiffness()) {
-                let w = rows.weights()[q as usize];
-                let (right, left) = (dt * along * w, dt.tr_mul(&along) * w);
-                corner -= right.dot(&along);
-                let (at, values) = rows.rows().row(q as usize);
-                for (&node, value) in at.iter().zip(values) {
-                    sides[0][node as usize] += right * *value;
-                    sides[1][node as usize] += left * *value;
-                }
-            }
-            if corner > 0.0 {
-                let [column, row] = sides.map(|side| self.system.gather(&side, &none));
-                borders.push((k, Border { column, row, corner }));
-            }
-        }
-        borders
-    }
-
-    /// Returns the displacement, m, that brings a tool into contact, with the penetration at which a
-    /// hundredth of the surface carries `force`.
-    pub(super) fn approach(&self, tool: usize, state: &State, force: f64) -> f64 {
-        let Some(surface) = self.problem.contact else { return 0.0 };
-        let driven = self.problem.tools[tool].tool;
-        let gap = surface.gap(driven, state.closures[tool], &state.u);
-        let area: f64 = surface.rows().weights().iter().sum();
-        gap.max(0.0) + force.abs() / (driven.law().penalty() * 0.01 * area)
-    }
-
     /// Finds the equilibrium at `time` from `start` with force-driven tools that do not touch yet. These
     /// tools are under displacement control until each reaches its force, and are driven by this force
     /// afterwards. The result is `None` if all tools touch, or if no equilibrium is found in this way either.
@@ -128,14 +59,14 @@ impl Newton<'_> {
         augmentations: usize,
         descent: Descent,
     ) -> Option<(State, Step)> {
-        let forced = |k: usize| matches!(self.problem.tools[k].drive, Drive::Force(_));
-        let tools = 0..self.problem.tools.len();
-        if !tools.clone().any(|k| forced(k) && self.approach(k, start, 0.0) > 0.0) {
+        let forced = |k: usize| matches!(self.equations.problem.tools[k].drive, Drive::Force(_));
+        let tools = 0..self.equations.problem.tools.len();
+        if !tools.clone().any(|k| forced(k) && self.equations.approach(k, start, 0.0) > 0.0) {
             return None;
         }
-        self.displacement_driven = tools.map(forced).collect();
+        self.equations.displacement_driven = tools.map(forced).collect();
         let reached = self.follow(start, time, augmentations, descent);
-        self.displacement_driven.fill(false);
+        self.equations.displacement_driven.fill(false);
         reached
     }
 
@@ -146,25 +77,26 @@ impl Newton<'_> {
         augmentations: usize,
         descent: Descent,
     ) -> Option<(State, Step)> {
-        let tools = self.problem.tools;
+        let tools = self.equations.problem.tools;
         let forces: Vec<f64> = (tools.iter())
             .map(|t| match t.drive {
-                Drive::Force(full) => full * self.scales(time).tools,
+                Drive::Force(full) => full * self.equations.scales(time).tools,
                 Drive::Closure(_) => 0.0,
             })
             .collect();
-        let gaps: Vec<f64> = (0..tools.len()).map(|k| self.approach(k, start, 0.0)).collect();
-        let unit: Vec<f64> = (0..tools.len()).map(|k| self.approach(k, start, forces[k]) - gaps[k]).collect();
+        let gaps: Vec<f64> = (0..tools.len()).map(|k| self.equations.approach(k, start, 0.0)).collect();
+        let unit: Vec<f64> =
+            (0..tools.len()).map(|k| self.equations.approach(k, start, forces[k]) - gaps[k]).collect();
         let mut state = start.clone();
         // Displacement of the nodes per unit stride, once the tools touch: the guess for the next stride.
         let mut per_stride: Option<Vec<Vector3>> = None;
         let mut before = vec![0.0; tools.len()];
         let (mut stride, mut touches, mut iterations) = (1.0, false, Vec::new());
         for _ in 0..STRIDES {
-            let forced = !self.displacement_driven.contains(&true);
+            let forced = !self.equations.displacement_driven.contains(&true);
             let mut guess = state.clone();
             for (k, closure) in
-                guess.closures.iter_mut().enumerate().filter(|(k, _)| self.displacement_driven[*k])
+                guess.closures.iter_mut().enumerate().filter(|(k, _)| self.equations.displacement_driven[*k])
             {
                 *closure += stride * unit[k] + if touches { 0.0 } else { gaps[k] };
             }
@@ -187,7 +119,7 @@ impl Newton<'_> {
                     // A tool beyond its force would move back, and friction would reverse. The stride is cut
                     // instead.
                     let part = (0..tools.len())
-                        .filter(|&k| self.displacement_driven[k] && pressed[k] > 1.1 * forces[k])
+                        .filter(|&k| self.equations.displacement_driven[k] && pressed[k] > 1.1 * forces[k])
                         .map(|k| (forces[k] - before[k]) / (pressed[k] - before[k]))
                         .fold(1.0, f64::min);
                     if touches && part < 1.0 && stride > SHORTEST {
@@ -198,7 +130,7 @@ impl Newton<'_> {
                         reached.u.iter().zip(&state.u).map(|(now, then)| (now - then) / stride).collect()
                     });
                     (0..tools.len())
-                        .for_each(|k| self.displacement_driven[k] &= pressed[k] < 0.95 * forces[k]);
+                        .for_each(|k| self.equations.displacement_driven[k] &= pressed[k] < 0.95 * forces[k]);
                     stride *= if step.iterations.len() <= QUICK { 2.0 } else { 1.0 };
                     (state, before, touches) = (reached, pressed, true);
                 }

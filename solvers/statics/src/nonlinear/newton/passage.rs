@@ -40,8 +40,8 @@ impl Newton<'_> {
         &self,
         check: impl Fn(&ContactSurface, usize, &Tool) -> Result<(), ContactError>,
     ) -> Result<(), StaticError> {
-        let Some(surface) = self.problem.contact else { return Ok(()) };
-        for (tool, driven) in self.problem.tools.iter().enumerate() {
+        let Some(surface) = self.equations.problem.contact else { return Ok(()) };
+        for (tool, driven) in self.equations.problem.tools.iter().enumerate() {
             check(surface, tool, driven.tool).map_err(|cause| StaticError::Contact { tool, cause })?;
         }
         Ok(())

@@ -10,15 +10,15 @@ impl Newton<'_> {
     /// Refuses a state in which a rigid motion meets no support and no tool. Tools without friction prevent
     /// only motions against their surface; tools with friction prevent every motion of the points they touch.
     pub fn check_rigid(&mut self, state: &State) -> Result<(), StaticError> {
-        let problem = self.problem;
+        let problem = self.equations.problem;
         let touching = match problem.tools {
             [] => Vec::new(),
-            _ => self.balance(state, state.time)?.contacts,
+            _ => self.equations.balance(state, state.time)?.contacts,
         };
         let rows = problem.solid.volume.at().rows();
         let points = Connectivity { offsets: rows.offsets(), nodes: rows.nodes(), seen_by: &[] };
         check_rows(problem.nodes, points, &[], |add| {
-            add_prescribed(&self.prescribed, add);
+            add_prescribed(&self.equations.prescribed, add);
             for penalty in problem.penalties {
                 add_surface(penalty.surface.rows(), penalty.axes, add);
             }

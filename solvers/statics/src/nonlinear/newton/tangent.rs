@@ -1,9 +1,11 @@
 //! The tangent of an iteration: assembly, factorisation, and the resulting step.
 
-use algebra::{AlgebraError, Border, Factorization, Unsymmetric};
+use algebra::{AlgebraError, Border, Factorization, Symmetric, Unsymmetric};
 use shape::{Matrix3, Vector3};
 
-use super::{Balance, Descent, Newton, State};
+use super::equations::{Balance, Equations};
+use super::factors::Skew;
+use super::{Descent, Newton, State};
 use crate::SolveError;
 use crate::nonlinear::StaticError;
 
@@ -44,7 +46,7 @@ impl Factored {
     }
 
     /// Solves in place and returns the number of iterations.
-    fn solve(&self, b: &mut [f64], goal: f64) -> Result<usize, AlgebraError> {
+    pub fn solve(&self, b: &mut [f64], goal: f64) -> Result<usize, AlgebraError> {
         match self {
             Factored::Symmetric(f) => f.solve(b).map(|_| 0),
             Factored::Unsymmetric(f) => f.solve(b, goal),
@@ -52,7 +54,7 @@ impl Factored {
     }
 }
 
-impl Newton<'_> {
+impl Equations<'_> {
     /// Returns the stiffness of every surface point, N/m, by surface: `-w dt/dx` with the weight `w`, the
     /// traction `t` and the position `x`. Surfaces constrained by penalty come first, then the contact
     /// surface, then the points of the mass table with the tangent of the inertia.
@@ -80,14 +82,14 @@ impl Newton<'_> {
         blocks
     }
 
-    /// Computes the Newton step: free unknowns, and displacements of the force-driven tools.
-    pub(super) fn direction(
+    /// Returns the tangent in a state, its unsymmetric part, and the right-hand side for the unknowns.
+    /// `prescribed_move` is the move of constrained degrees of freedom in the same iteration.
+    fn linearise(
         &mut self,
         state: &State,
         balance: &Balance,
-        time: f64,
         prescribed_move: Option<&[Vector3]>,
-    ) -> Result<Direction, StaticError> {
+    ) -> Result<(Symmetric, Skew, Vec<f64>), StaticError> {
         let pairs = self.system.pairs.as_ref();
         let mut hessian = self.problem.solid.hessian(pairs, &state.u, &state.pressure)?;
         if let Some(relaxing) = self.terms.as_ref().and_then(|t| t.relaxing.as_ref()) {
@@ -96,7 +98,6 @@ impl Newton<'_> {
         }
         let blocks = self.surface_blocks(balance);
         let matrix = self.system.assemble(&hessian, &blocks);
-        self.work.assemblies += 1;
         let skew = self.system.skew(&blocks);
         let mut right = balance.out.clone();
         let mut right_pressure = balance.pressure.clone();
@@ -112,30 +113,40 @@ impl Newton<'_> {
             }
             self.system.subtract_held_pressure(&hessian, moves, &mut right_pressure);
         }
-        let right = self.system.gather(&right, &right_pressure);
-        let (tools, borders): (Vec<usize>, Vec<Border>) = self.borders(balance).into_iter().unzip();
-        let (matrix, skew) = match self.with_kept(matrix, skew, &right, borders.is_empty())? {
-            Ok((factored, step)) => {
-                let last = Direction {
-                    step: Vec::new(),
-                    closures: Vec::new(),
-                    definite: !self.doubtful,
-                    proven: false,
-                    factored,
-                    tools,
-                };
-                return Ok(self.finish(last, step, state, time));
+        Ok((matrix, skew, self.system.gather(&right, &right_pressure)))
+    }
+}
+
+impl Newton<'_> {
+    /// Computes the Newton step: free unknowns, and displacements of the force-driven tools.
+    pub(super) fn direction(
+        &mut self,
+        state: &State,
+        balance: &Balance,
+        time: f64,
+        prescribed_move: Option<&[Vector3]>,
+    ) -> Result<Direction, StaticError> {
+        let (matrix, skew, right) = self.equations.linearise(state, balance, prescribed_move)?;
+        let (policy, factors) = (&self.policy, &mut self.factors);
+        factors.work.assemblies += 1;
+        let (tools, borders): (Vec<usize>, Vec<Border>) = self.equations.borders(balance).into_iter().unzip();
+        let (step, closures) = (Vec::new(), Vec::new());
+        let (matrix, skew) = match factors.with_kept(policy, matrix, skew, &right, borders.is_empty())? {
+            Ok((factored, solution)) => {
+                let definite = !factors.doubtful;
+                let last = Direction { step, closures, definite, proven: false, factored, tools };
+                return Ok(self.finish(last, solution, state, time));
             }
             Err(parts) => parts,
         };
-        let factored = self.factor(matrix, skew, borders)?;
-        let definite = !self.indefinite && factored.stable();
-        if self.descent == Descent::Smooth && !definite {
+        let factored = factors.factor(policy, matrix, skew, borders)?;
+        let definite = !factors.indefinite && factored.stable();
+        if policy.descent == Descent::Smooth && !definite {
             return Err(SolveError::NotPositiveDefinite.into());
         }
-        let lifted = self.descent == Descent::Down && !definite;
-        let proven = self.exact || lifted || factored.is_clear();
-        let last = Direction { step: Vec::new(), closures: Vec::new(), definite, proven, factored, tools };
+        let lifted = policy.descent == Descent::Down && !definite;
+        let proven = factors.exact || lifted || factored.is_clear();
+        let last = Direction { step, closures, definite, proven, factored, tools };
         self.take(last, right, state, balance, time)
     }
 
@@ -147,7 +158,7 @@ impl Newton<'_> {
         balance: &Balance,
         time: f64,
     ) -> Result<Direction, StaticError> {
-        let right = self.system.gather(&balance.out, &balance.pressure);
+        let right = self.equations.system.gather(&balance.out, &balance.pressure);
         self.take(last, right, state, balance, time)
     }
 
@@ -159,34 +170,24 @@ impl Newton<'_> {
         balance: &Balance,
         time: f64,
     ) -> Result<Direction, StaticError> {
-        let lacking = self.lacking(balance, time);
+        let lacking = self.equations.lacking(balance, time);
         step.extend(last.tools.iter().map(|&k| lacking[k]));
-        self.solve(&last.factored, &mut step)?;
+        self.factors.solve(&last.factored, &self.equations.system, &mut step)?;
         Ok(self.finish(last, step, state, time))
     }
 
     /// Builds the direction of a solution: free unknowns, then the displacements of the tools that have a
     /// border.
     fn finish(&self, last: Direction, mut step: Vec<f64>, state: &State, time: f64) -> Direction {
-        let moves = step.split_off(self.system.dim());
-        let mut closures = vec![0.0; self.problem.tools.len()];
+        let moves = step.split_off(self.equations.system.dim());
+        let mut closures = vec![0.0; self.equations.problem.tools.len()];
         for (k, closure) in closures.iter_mut().enumerate() {
-            let Some(force) = self.force(k, time) else { continue };
+            let Some(force) = self.equations.force(k, time) else { continue };
             *closure = match last.tools.iter().position(|&t| t == k) {
                 Some(at) => moves[at],
-                None => self.approach(k, state, force),
+                None => self.equations.approach(k, state, force),
             };
         }
         Direction { step, closures, ..last }
-    }
-
-    /// Solves with the assembled matrix, whose pressures are scaled.
-    pub(super) fn solve(&mut self, factored: &Factored, b: &mut [f64]) -> Result<(), SolveError> {
-        self.work.solves += 1;
-        let (scale, pressures) = (self.system.pressure_scale, self.system.free..self.system.dim());
-        b[pressures.clone()].iter_mut().for_each(|p| *p *= scale);
-        self.work.inner += factored.solve(b, self.forcing)? as u64;
-        b[pressures].iter_mut().for_each(|p| *p *= scale);
-        Ok(())
     }
 }

@@ -7,7 +7,8 @@ use material::Law;
 use material::SaintVenantKirchhoff;
 use shape::{FixedDof, Point3, Vector3};
 
-use super::{Descent, Iteration, Newton, NewtonParams, State, patience};
+use super::policy::patience;
+use super::{Descent, Iteration, Newton, NewtonParams, State};
 use crate::nonlinear::solid::{Dilation, Solid};
 use crate::nonlinear::statics::StaticProblem;
 

@@ -1,15 +1,18 @@
-//! Factors of the tangent: new factors, and kept factors that serve as preconditioners.
+//! Factors of the tangents: new factors, and kept factors that serve as preconditioners.
 
 use std::sync::Arc;
 
 use algebra::{
-    AlgebraError, Border, DENSE_LIMIT, Factor, FactorError, Factorization, Kind, Symmetric, Unsymmetric,
+    AlgebraError, Border, Curvature, DENSE_LIMIT, Factor, FactorError, Factorization, Kind, Symbolic,
+    Symmetric, Unsymmetric,
 };
 
+use super::policy::{Descent, NewtonParams, Policy};
 use super::tangent::{Direction, Factored};
-use super::{Descent, Newton, NewtonParams};
 use crate::SolveError;
 use crate::nonlinear::StaticError;
+use crate::nonlinear::statics::StaticWork;
+use crate::nonlinear::system::System;
 
 /// Ratio of the multiplications of a factorisation to those of a solution that pays for one iteration with a
 /// kept factor. A factorisation runs in the caches and does nine multiplications in the time in which a
@@ -20,7 +23,7 @@ const MOST: usize = 12;
 const LEAST: usize = 4;
 
 /// Entries of the unsymmetric part.
-type Skew = Vec<(usize, usize, f64)>;
+pub(super) type Skew = Vec<(usize, usize, f64)>;
 
 /// A tangent with a kept factor and the resulting step, or the unchanged tangent if the kept factor does not
 /// suffice.
@@ -29,7 +32,42 @@ type Kept = Result<(Factored, Vec<f64>), (Symmetric, Skew)>;
 /// Relative shifts of the diagonal that are tried during descent.
 const SHIFTS: [f64; 7] = [0.0, 1e-5, 1e-4, 1e-3, 1e-2, 0.1, 1.0];
 
-impl Newton<'_> {
+/// Memory of the last tangents: their structure, the last factor, and whether they were definite.
+pub(super) struct Factors {
+    symbolic: Option<Option<Arc<Symbolic>>>,
+    /// The last factor, if it is large enough to be kept.
+    factor: Option<Arc<Factor>>,
+    /// Last direction of negative curvature of a tangent.
+    curvature: Curvature,
+    /// The last direction of a simulator's loop, with which the next frame starts.
+    pub kept: Option<Direction>,
+    /// Whether the last tangent was not definite.
+    pub indefinite: bool,
+    /// Whether the last factored tangent was not definite; the next tangent is then rarely definite.
+    pub doubtful: bool,
+    /// Whether factors are computed in double precision.
+    pub exact: bool,
+    /// Relative residual to which unsymmetric systems are solved.
+    pub forcing: f64,
+    /// Counters, without those of the forces.
+    pub work: StaticWork,
+}
+
+impl Factors {
+    pub fn new() -> Factors {
+        Factors {
+            symbolic: None,
+            factor: None,
+            curvature: Curvature::default(),
+            kept: None,
+            indefinite: false,
+            doubtful: false,
+            exact: true,
+            forcing: 1e-7,
+            work: StaticWork::default(),
+        }
+    }
+
     /// Returns the ratio of the multiplications of a factorisation to those of a solution; 0 for a dense,
     /// hence small, factor.
     fn solutions(&self) -> f64 {
@@ -41,25 +79,24 @@ impl Newton<'_> {
         self.solutions() > NewtonParams::KEEPS
     }
 
-    /// Whether factors are large enough to be kept and to be computed in single precision. Pressure fields
-    /// are excluded because their regularisation would be lost in rounding; a simulator's loop keeps factors
-    /// in another way.
-    pub(super) fn keeps(&self) -> bool {
-        self.solutions() > self.params.keeps && !self.repeats && self.problem.solid.pressure_count() == 0
+    /// Whether factors are large enough to be kept and to be computed in single precision.
+    pub fn keeps(&self, policy: &Policy) -> bool {
+        policy.keeps(self.solutions())
     }
 
     /// Computes the step with the last factor as preconditioner if this is expected to be faster than a new
     /// factorisation. This is allowed only on the way to the nearest equilibrium, whose steps do not require
     /// a definite tangent.
-    pub(super) fn with_kept(
+    pub fn with_kept(
         &mut self,
+        policy: &Policy,
         matrix: Symmetric,
         skew: Skew,
         right: &[f64],
         borderless: bool,
     ) -> Result<Kept, StaticError> {
         let Some(factor) = self.factor.clone() else { return Ok(Err((matrix, skew))) };
-        if !(self.keeps() && self.descent == Descent::Nearest && borderless) {
+        if !(self.keeps(policy) && policy.descent == Descent::Nearest && borderless) {
             return Ok(Err((matrix, skew)));
         }
         let most = ((self.solutions() / ITERATION) as usize).clamp(LEAST, MOST);
@@ -78,7 +115,7 @@ impl Newton<'_> {
     /// Tests by a factor of its own whether the tangent of a step with a kept or rounded factor is definite.
     /// This factor is kept next. The test uses single precision, and double precision if rounding leaves the
     /// result open.
-    pub(super) fn prove(&mut self, last: &mut Direction) -> Result<(), StaticError> {
+    pub fn prove(&mut self, last: &mut Direction) -> Result<(), StaticError> {
         let Factored::Unsymmetric(near) = &last.factored else { return Ok(()) };
         let matrix = near.matrix();
         last.proven = true;
@@ -123,8 +160,9 @@ impl Newton<'_> {
     /// Past a limit point the tangent is not definite, and its step leads to the nearest equilibrium, stable
     /// or not. With [`Descent::Down`] the diagonal is raised until the tangent is definite, and the step
     /// reduces the energy.
-    pub(super) fn factor(
+    pub fn factor(
         &mut self,
+        policy: &Policy,
         mut matrix: Symmetric,
         skew: Skew,
         borders: Vec<Border>,
@@ -132,13 +170,13 @@ impl Newton<'_> {
         if self.symbolic.is_none() {
             self.symbolic = Some(algebra::analyse(&matrix, DENSE_LIMIT)?);
         }
-        self.exact = !self.keeps() || !borders.is_empty() || self.descent == Descent::Smooth;
-        let (factor, kind) = match self.descent {
-            Descent::Down => self.lifted(&mut matrix)?,
-            Descent::Smooth | Descent::Nearest | Descent::Guarded => self.as_it_is(&matrix)?,
+        self.exact = !self.keeps(policy) || !borders.is_empty() || policy.descent == Descent::Smooth;
+        let (factor, kind) = match policy.descent {
+            Descent::Down => self.lifted(policy, &mut matrix)?,
+            Descent::Smooth | Descent::Nearest | Descent::Guarded => self.as_it_is(policy, &matrix)?,
         };
         self.doubtful = self.indefinite;
-        if self.keeps() {
+        if self.keeps(policy) {
             self.factor = Some(factor.clone());
         }
         let whole = Factorization { matrix, factor, kind };
@@ -150,10 +188,10 @@ impl Newton<'_> {
 
     /// Factors the unshifted matrix. A tangent that follows an indefinite tangent is rarely definite, so
     /// `L D L^T` is then used at once.
-    fn as_it_is(&mut self, matrix: &Symmetric) -> Result<(Arc<Factor>, Kind), StaticError> {
+    fn as_it_is(&mut self, policy: &Policy, matrix: &Symmetric) -> Result<(Arc<Factor>, Kind), StaticError> {
         let (kind, pressures) = (matrix.kind(), matrix.dim() - matrix.multipliers);
         let at_once =
-            kind == Kind::Definite && self.doubtful && self.dear() && self.descent != Descent::Smooth;
+            kind == Kind::Definite && self.doubtful && self.dear() && policy.descent != Descent::Smooth;
         if !at_once {
             match self.numbers(matrix, kind) {
                 Ok(factor) => {
@@ -165,7 +203,7 @@ impl Newton<'_> {
                 Err(FactorError::Other(error)) => return Err(error.into()),
             }
         }
-        if kind != Kind::Definite || self.descent == Descent::Smooth {
+        if kind != Kind::Definite || policy.descent == Descent::Smooth {
             return Err(SolveError::NotPositiveDefinite.into());
         }
         match self.numbers(matrix, Kind::Indefinite) {
@@ -181,10 +219,14 @@ impl Newton<'_> {
     /// Factors the matrix with the smallest of the shifts that makes it definite. Directions of negative
     /// curvature, found with the last factor, show that most shifts are too small. This saves a factorisation
     /// for each of these shifts.
-    fn lifted(&mut self, matrix: &mut Symmetric) -> Result<(Arc<Factor>, Kind), StaticError> {
+    fn lifted(
+        &mut self,
+        policy: &Policy,
+        matrix: &mut Symmetric,
+    ) -> Result<(Arc<Factor>, Kind), StaticError> {
         let (kind, pressures) = (matrix.kind(), matrix.dim() - matrix.multipliers);
         let diagonal: Vec<f64> = (0..matrix.dim()).map(|j| matrix.diagonal(j)).collect();
-        let searches = kind == Kind::Definite && self.keeps();
+        let searches = kind == Kind::Definite && self.keeps(policy);
         let mut known = -1.0;
         if let (true, true, Some(factor)) = (searches, self.doubtful, self.factor.clone()) {
             known = self.curvature.shift(matrix, &diagonal, &factor, false)?;
@@ -225,5 +267,15 @@ impl Newton<'_> {
         }
         self.doubtful = true;
         Err(SolveError::NotPositiveDefinite.into())
+    }
+
+    /// Solves with the assembled matrix, whose pressures are scaled.
+    pub fn solve(&mut self, factored: &Factored, system: &System, b: &mut [f64]) -> Result<(), SolveError> {
+        self.work.solves += 1;
+        let (scale, pressures) = (system.pressure_scale, system.free..system.dim());
+        b[pressures.clone()].iter_mut().for_each(|p| *p *= scale);
+        self.work.inner += factored.solve(b, self.forcing)? as u64;
+        b[pressures].iter_mut().for_each(|p| *p *= scale);
+        Ok(())
     }
 }

@@ -1,19 +1,26 @@
-//! Forces in a state, their residual, and the remaining error of prescribed degrees of freedom.
+//! The equations of Newton's method: forces in a state, their residual, and the remaining error of prescribed
+//! degrees of freedom.
 
-use contact::Contacts;
+use contact::{ContactCounts, Contacts};
 use material::Material as _;
 use shape::Vector3;
 
-use super::{Newton, State};
+use super::tangent::Direction;
+use super::{State, work};
+use crate::body::check_len;
+use crate::load::nodal_forces;
 use crate::nonlinear::error::{StaticError, Worst};
-use crate::nonlinear::in_time::{Ended, Scales};
+use crate::nonlinear::in_time::{Ended, Scales, TimeTerms};
 use crate::nonlinear::solid::{Internal, Solid};
+use crate::nonlinear::statics::StaticProblem;
+use crate::nonlinear::system::{SurfaceTable, System};
+use crate::support::prescribed;
 
 /// Rounding error of a nodal force, relative to the force due to the node's own displacement.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
 /// Returns `sum of w (lambda + 2 mu) |grad N|^2` for each node, N/m.
-pub(super) fn stiffness(solid: &Solid) -> Vec<f64> {
+fn stiffness(solid: &Solid) -> Vec<f64> {
     let mut sums = vec![0.0; solid.node_count()];
     for (q, w) in solid.volume.weights().iter().enumerate() {
         let law = solid.law(q);
@@ -26,22 +33,83 @@ pub(super) fn stiffness(solid: &Solid) -> Vec<f64> {
 
 /// Forces in a trial state.
 pub(super) struct Balance {
-    pub(super) internal: Internal,
+    pub internal: Internal,
     /// External minus internal nodal forces, N, including constrained degrees of freedom.
-    pub(super) out: Vec<Vector3>,
+    pub out: Vec<Vector3>,
     /// Negative derivative of the energy with respect to the pressures, m^3.
-    pub(super) pressure: Vec<f64>,
-    pub(super) contacts: Vec<Option<Contacts>>,
+    pub pressure: Vec<f64>,
+    pub contacts: Vec<Option<Contacts>>,
     /// Separate forces and deviators, for implicit dynamics.
-    pub(super) ended: Option<Ended>,
+    pub ended: Option<Ended>,
     /// Norm of the internal or external forces, whichever is larger, N.
-    pub(super) scale: f64,
+    pub scale: f64,
 }
 
-impl Newton<'_> {
+/// The balance of forces of a problem, and the terms that the current step adds to it.
+pub(super) struct Equations<'a> {
+    pub problem: &'a StaticProblem<'a>,
+    pub system: System<'a>,
+    /// Prescribed value of each degree of freedom at the end of the ramp.
+    pub prescribed: Vec<Option<f64>>,
+    /// Terms of implicit dynamics in the current step.
+    pub terms: Option<TimeTerms>,
+    /// Force-driven tools that are temporarily under displacement control.
+    pub displacement_driven: Vec<bool>,
+    /// Largest forces so far in implicit dynamics and in loops, N: an oscillation passes through states
+    /// without forces.
+    pub peak: f64,
+    /// Counters of the contact search.
+    pub counts: ContactCounts,
+    /// Number of evaluated states.
+    pub evaluations: u64,
+    /// Full nodal loads, N.
+    load: Vec<Vector3>,
+    /// Volume of the body, m^3.
+    volume: f64,
+    /// Stiffness of each node of the undeformed body against its own displacement, N/m.
+    stiffness: Vec<f64>,
+}
+
+impl<'a> Equations<'a> {
+    /// Prepares a problem, with a mass table for implicit dynamics with inertia.
+    pub fn new(
+        problem: &'a StaticProblem<'a>,
+        mass: Option<&SurfaceTable>,
+    ) -> Result<Equations<'a>, StaticError> {
+        let nodes = problem.nodes.len();
+        let prescribed = prescribed(nodes, problem.fixed)?;
+        let load = nodal_forces(problem.solid.volume, problem.loads)?;
+        check_len("nodes of the volume rows", problem.solid.node_count(), nodes)?;
+        let mut surfaces: Vec<SurfaceTable> =
+            problem.penalties.iter().map(|h| SurfaceTable::new(h.surface)).collect();
+        if let (Some(contact), false) = (problem.contact, problem.tools.is_empty()) {
+            surfaces.push(SurfaceTable::new(contact.rows()));
+        }
+        surfaces.extend(mass.cloned());
+        let constrained: Vec<bool> = prescribed.iter().map(Option::is_some).collect();
+        Ok(Equations {
+            problem,
+            system: System::new(problem.solid, &constrained, surfaces),
+            prescribed,
+            terms: None,
+            displacement_driven: vec![false; problem.tools.len()],
+            peak: 0.0,
+            counts: ContactCounts::default(),
+            evaluations: 0,
+            load,
+            volume: problem.solid.volume.weights().iter().sum(),
+            stiffness: stiffness(&problem.solid),
+        })
+    }
+
+    /// Returns the fractions of loads, supports and drives at `time`.
+    pub fn scales(&self, time: f64) -> Scales {
+        self.terms.as_ref().map_or(Scales::all(time), |t| t.scales)
+    }
+
     /// Returns the increments that bring constrained degrees of freedom to their prescribed values at `time`,
     /// m; `None` if all are reached.
-    pub(super) fn prescribed_move(&self, state: &State, time: f64) -> Option<Vec<Vector3>> {
+    pub fn prescribed_move(&self, state: &State, time: f64) -> Option<Vec<Vector3>> {
         let scale = self.scales(time).supports;
         let mut lacking = false;
         let moves: Vec<Vector3> = (state.u.iter().enumerate())
@@ -59,7 +127,7 @@ impl Newton<'_> {
     }
 
     /// Sets constrained degrees of freedom to their values at `time`.
-    pub(super) fn prescribe(&self, u: &mut [Vector3], time: f64) {
+    pub fn prescribe(&self, u: &mut [Vector3], time: f64) {
         let scale = self.scales(time).supports;
         for (dof, value) in self.prescribed.iter().enumerate() {
             if let Some(value) = value {
@@ -73,13 +141,13 @@ impl Newton<'_> {
     ///
     /// The scale of forces is at least the rounding error of the displacement's forces over the tolerance,
     /// because a body that moves as a whole has no other forces.
-    pub(super) fn residual(&self, balance: &Balance, u: &[Vector3], time: f64) -> f64 {
+    pub fn residual(&self, balance: &Balance, u: &[Vector3], time: f64, tolerance: f64) -> f64 {
         let unknowns = self.system.gather(&balance.out, &balance.pressure);
         let (forces, volumes) = unknowns.split_at(self.system.free);
         let norm = |x: &[f64]| x.iter().map(|v| v * v).sum::<f64>().sqrt();
         let squares = self.stiffness.iter().zip(u).map(|(k, u)| k * k * u.norm_squared());
         let rounding = ROUNDING * squares.sum::<f64>().sqrt();
-        let scale = balance.scale.max(rounding / self.params.tolerance);
+        let scale = balance.scale.max(rounding / tolerance);
         let scale = if scale > 0.0 { scale } else { 1.0 };
         let mut residual = norm(forces) / scale;
         residual = residual.max(norm(volumes) / self.volume);
@@ -91,13 +159,25 @@ impl Newton<'_> {
         residual
     }
 
+    /// Returns the work, J, of the unbalanced forces along a step.
+    pub fn work_along(&self, direction: &Direction, balance: &Balance, time: f64) -> f64 {
+        let unknowns = self.system.gather(&balance.out, &balance.pressure);
+        work(&direction.step, &unknowns) + work(&direction.closures, &self.lacking(balance, time))
+    }
+
     /// Returns the forces that balance `out` in constrained degrees of freedom, N.
-    pub(super) fn held_back(&self, out: &[Vector3]) -> Vec<Vector3> {
+    pub fn held_back(&self, out: &[Vector3]) -> Vec<Vector3> {
         let held = |i: usize, a: usize| self.prescribed[3 * i + a].is_some();
         (0..out.len()).map(|i| Vector3::from_fn(|a, _| if held(i, a) { -out[i][a] } else { 0.0 })).collect()
     }
 
-    pub(super) fn not_converged(&self, balance: &Balance, residual: f64, iterations: usize) -> StaticError {
+    pub fn not_converged(
+        &self,
+        balance: &Balance,
+        residual: f64,
+        tolerance: f64,
+        iterations: usize,
+    ) -> StaticError {
         let force = |i: usize| {
             (0..3)
                 .filter(|a| self.prescribed[3 * i + a].is_none())
@@ -108,13 +188,12 @@ impl Newton<'_> {
         let node = (0..balance.out.len()).max_by(|&i, &j| force(i).total_cmp(&force(j))).unwrap_or(0);
         let (smallest_at, smallest) = balance.internal.smallest;
         let worst = Worst { node, at: self.problem.nodes[node], force: force(node) };
-        let tolerance = self.params.tolerance;
         StaticError::NotConverged { iterations, residual, tolerance, worst, smallest, smallest_at }
     }
 
     /// Computes the forces in a state.
-    pub(super) fn balance(&mut self, state: &State, time: f64) -> Result<Balance, StaticError> {
-        self.work.forces += 1;
+    pub fn balance(&mut self, state: &State, time: f64) -> Result<Balance, StaticError> {
+        self.evaluations += 1;
         let Scales { loads, supports, .. } = self.scales(time);
         let pairs = self.system.pairs.as_ref();
         let mut internal = self.problem.solid.internal(pairs, &state.u, &state.pressure)?;

@@ -1,0 +1,66 @@
+//! Lengths of steps: equal output intervals, shorter steps after failures, and longer ones after quick steps.
+
+/// State of the stepping from 0 to an end.
+pub(crate) struct Stepper {
+    intervals: usize,
+    /// Output interval, which is the longest step.
+    longest: f64,
+    /// Shortest step.
+    pub smallest: f64,
+    /// Number of the next output.
+    next: usize,
+    /// Length of the next step.
+    step: f64,
+    /// End of the last accepted step.
+    pub time: f64,
+    /// Number of steps that failed and were cut back.
+    pub cut_back: usize,
+}
+
+/// A step to try.
+#[derive(Clone, Copy)]
+pub(crate) struct Attempt {
+    /// End of the step.
+    pub time: f64,
+    /// Length of the step.
+    pub length: f64,
+    /// Set if the step ends at an output; whether this output is the last.
+    pub output: Option<bool>,
+}
+
+impl Stepper {
+    /// Starts at 0. The end is divided into `intervals`, of which steps are at least the part `smallest`.
+    pub fn new(end: f64, intervals: usize, smallest: f64) -> Stepper {
+        let intervals = intervals.max(1);
+        let longest = end / intervals as f64;
+        let smallest = smallest * longest;
+        Stepper { intervals, longest, smallest, next: 1, step: longest, time: 0.0, cut_back: 0 }
+    }
+
+    /// Returns the next step to try; `None` at the end.
+    pub fn attempt(&self) -> Option<Attempt> {
+        if self.next > self.intervals {
+            return None;
+        }
+        let target = self.next as f64 * self.longest;
+        // Avoids a last step shorter than a tenth of the current step.
+        let reaches = self.step > 0.9 * (target - self.time);
+        let time = if reaches { target } else { self.time + self.step };
+        let output = reaches.then_some(self.next == self.intervals);
+        Some(Attempt { time, length: time - self.time, output })
+    }
+
+    /// Accepts a step. The next step is longer by the factor `growth`, up to the output interval.
+    pub fn accept(&mut self, done: Attempt, growth: f64) {
+        self.time = done.time;
+        self.next += usize::from(done.output.is_some());
+        self.step = (growth * self.step).min(self.longest);
+    }
+
+    /// Cuts a failed step to the part `part`. Returns whether the cut step is at least `finest`.
+    pub fn cut(&mut self, failed: Attempt, part: f64, finest: f64) -> bool {
+        self.cut_back += 1;
+        self.step = part * failed.length;
+        self.step >= finest
+    }
+}
