@@ -55,11 +55,11 @@ fn a_baseline_that_is_not_there_is_bad_input() {
     let dir = tempfile::tempdir().unwrap();
     let (scene, out) = (write(&dir, "block.toml", BLOCK), inside(&dir, "out"));
     assert_eq!(tissuebench(&["run", &scene, "--out", &out]).code, 0);
-    let file = inside(&dir, "accepted.toml");
-    let done = tissuebench(&["baseline", &out, "--file", &file, "--check"]);
-    assert_fails(&done, 2, "accepted.toml does not exist; `--accept` creates it");
-    assert_eq!(tissuebench(&["baseline", &out, "--file", &file, "--accept"]).code, 0);
-    assert_eq!(tissuebench(&["baseline", &out, "--file", &file, "--check"]).code, 0);
+    let folder = inside(&dir, "accepted");
+    let done = tissuebench(&["baseline", &out, "--accepted", &folder, "--check"]);
+    assert_fails(&done, 2, "accepted does not exist; `--accept` creates it");
+    assert_eq!(tissuebench(&["baseline", &out, "--accepted", &folder, "--accept"]).code, 0);
+    assert_eq!(tissuebench(&["baseline", &out, "--accepted", &folder, "--check"]).code, 0);
 }
 
 /// Two tetrahedra with a common face, in millimetres, without a named surface.

@@ -211,8 +211,7 @@ fn results_of_a_killed_study_are_incomplete() {
     assert!(said.contains(&format!("{out} is in use by process {};", killed.id())), "{said}");
     killed.kill().unwrap();
     killed.wait().unwrap();
-    for args in [vec!["report", &out], vec!["baseline", &out, "--file", &inside(&dir, "b.toml"), "--accept"]]
-    {
+    for args in [vec!["report", &out], vec!["baseline", &out, "--accepted", &inside(&dir, "b"), "--accept"]] {
         let done = tissuebench(&args);
         assert_fails(&done, 5, &format!("{out} is incomplete: some results of study.toml are missing"));
     }

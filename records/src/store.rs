@@ -265,7 +265,8 @@ pub fn remove_files(dir: &Path, endings: &[&str], kept: &[PathBuf]) -> Result<()
     Ok(())
 }
 
-fn files_ending(dir: &Path, endings: &[&str]) -> Result<Vec<PathBuf>, RecordError> {
+/// Returns the files of a folder with these suffixes, in order.
+pub fn files_ending(dir: &Path, endings: &[&str]) -> Result<Vec<PathBuf>, RecordError> {
     let io = |source| RecordError::Io { path: dir.into(), source };
     let mut paths = Vec::new();
     for entry in fs::read_dir(dir).map_err(io)? {

@@ -2,6 +2,7 @@
 //!
 //! Exit codes: those of `tissuebench` (0 all held, 1 a check failed, 2 bad usage, 3 could not run).
 
+mod gallery;
 mod instructions;
 mod mutants;
 mod newcomer;
@@ -126,7 +127,7 @@ fn run(task: Task) -> Result<u8> {
         Task::Report => tissuebench("report", &["results".into()]),
         Task::Gallery => {
             let code = verify(true, &[])?.max(stress(true)?);
-            if code == 0 { keep_gallery().map(|()| 0) } else { Ok(code) }
+            if code == 0 { gallery::keep(&root()).map(|()| 0) } else { Ok(code) }
         }
         Task::Book => book(),
         Task::Mutants { names } => mutants::mutants(&root(), &names),
@@ -245,7 +246,7 @@ fn noise(runs: u16) -> Result<u8> {
 }
 
 fn compare_stress(args: &[String]) -> Result<u8> {
-    let own = ["results-stress", "--file", "tests/baseline/stress.toml"].map(String::from);
+    let own = ["results-stress", "--accepted", "tests/baseline/stress"].map(String::from);
     tissuebench("baseline", &[&own, args].concat())
 }
 
@@ -313,28 +314,4 @@ fn code_of(status: std::process::ExitStatus) -> u8 {
 
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("xtask lies in the workspace").to_path_buf()
-}
-
-/// Copies the figures and tables of the book from the last results: all of the verification, and the maps of
-/// the stress study.
-fn keep_gallery() -> Result<()> {
-    let to = root().join("reports/gallery");
-    std::fs::create_dir_all(&to)?;
-    for old in std::fs::read_dir(&to)? {
-        std::fs::remove_file(old?.path())?;
-    }
-    for (results, only) in [("results", ""), ("results-stress", "stability")] {
-        for folder in ["figures", "tables"] {
-            let from = root().join(results).join("report").join(folder);
-            for entry in std::fs::read_dir(from).with_context(|| format!("no {folder} in {results}"))? {
-                let path = entry?.path();
-                let kept = path.extension().is_some_and(|e| e == "svg" || e == "md");
-                let name = path.file_name().context("a file has a name")?;
-                if kept && name.to_string_lossy().starts_with(only) {
-                    std::fs::copy(&path, to.join(name))?;
-                }
-            }
-        }
-    }
-    Ok(())
 }

@@ -187,11 +187,17 @@ fn run(root: &Path, test: &str, mutant: &str) -> Result<Output> {
     tissuebench(root, &verify).env(SWITCH, mutant).output()?;
     // This build rounds differently from that of the accepted numbers, so these are treated as numbers of
     // another processor.
-    let accepted = std::fs::read_to_string(root.join("tests/baseline/quick.toml"))?;
-    let file = root.join("target/mutants/baseline.toml");
-    std::fs::write(&file, accepted.replace("\nprocessor = \"", "\nprocessor = \"another: "))?;
-    let file = file.to_str().context("the workspace's path is not UTF-8")?;
-    Ok(tissuebench(root, &["baseline", out, "--file", file, "--part", "--check"]).output()?)
+    let folder = root.join("target/mutants/baseline");
+    std::fs::create_dir_all(&folder)?;
+    for entry in std::fs::read_dir(root.join("tests/baseline/quick"))? {
+        let file = entry?.path();
+        let accepted = std::fs::read_to_string(&file)?;
+        let name = file.file_name().context("a file has a name")?;
+        let another = accepted.replace("\nprocessor = \"", "\nprocessor = \"another: ");
+        std::fs::write(folder.join(name), another)?;
+    }
+    let folder = folder.to_str().context("the workspace's path is not UTF-8")?;
+    Ok(tissuebench(root, &["baseline", out, "--accepted", folder, "--part", "--check"]).output()?)
 }
 
 fn cargo(root: &Path, args: &str) -> Command {

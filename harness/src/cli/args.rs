@@ -267,9 +267,9 @@ pub struct ExportArgs {
 pub struct BaselineArgs {
     /// Folder written by `verify` or `run --out`
     pub results: PathBuf,
-    /// File of accepted results
-    #[arg(long, value_name = "FILE", default_value = "tests/baseline/quick.toml")]
-    pub file: PathBuf,
+    /// Folder of accepted results, with a file for each case
+    #[arg(long, value_name = "DIR", default_value = "tests/baseline/quick")]
+    pub accepted: PathBuf,
     /// Accept differences whose text contains TEXT, or all differences; by default a terminal asks for each
     #[arg(long, value_name = "TEXT", num_args = 0..=1, default_missing_value = "")]
     pub accept: Option<String>,

@@ -15,18 +15,18 @@ const SHOWN: usize = 40;
 /// left, 1 otherwise, 2 without accepted results.
 pub fn baseline(args: &BaselineArgs) -> Result<u8, ReportError> {
     let now = Baseline::of(&records::read_numbers(&args.results, "compare")?.records, &processor());
-    if !args.file.exists() {
+    if !args.accepted.exists() {
         return first(args, &now);
     }
-    let mut accepted = Baseline::load(&args.file)?;
+    let mut accepted = Baseline::load(&args.accepted)?;
     let found = accepted.compare(&now, !args.part)?;
     if found.compared == 0 && found.changes.is_empty() {
-        eprintln!("tissuebench: {}: nothing was compared", args.file.display());
+        eprintln!("tissuebench: {}: nothing was compared", args.accepted.display());
         return Ok(2);
     }
     println!(
         "{}: {} numbers compared, {}; {} differences",
-        args.file.display(),
+        args.accepted.display(),
         found.compared,
         if found.bitwise { "bit by bit" } else { "within 1e-6, because the kind of processor differs" },
         found.changes.len()
@@ -37,26 +37,26 @@ pub fn baseline(args: &BaselineArgs) -> Result<u8, ReportError> {
         if !found.bitwise && (left > 0 || args.part) {
             eprintln!(
                 "tissuebench: {} comes from another kind of processor ({}): accept all differences or none",
-                args.file.display(),
+                args.accepted.display(),
                 accepted.processor
             );
             return Ok(1);
         }
         chosen.iter().for_each(|change| accepted.accept(change, &now));
-        if found.bitwise { &accepted } else { &now }.save(&args.file)?;
+        if found.bitwise { &accepted } else { &now }.save(&args.accepted)?;
         println!("accepted {}, not accepted {left}", chosen.len());
     }
     Ok(u8::from(left > 0))
 }
 
-/// Writes the file of accepted results if all of them are accepted.
+/// Writes the folder of accepted results if all of them are accepted.
 fn first(args: &BaselineArgs, now: &Baseline) -> Result<u8, ReportError> {
     if args.accept.as_deref() != Some("") {
-        eprintln!("tissuebench: {} does not exist; `--accept` creates it", args.file.display());
+        eprintln!("tissuebench: {} does not exist; `--accept` creates it", args.accepted.display());
         return Ok(2);
     }
-    now.save(&args.file)?;
-    println!("{}: {} numbers of {} runs", args.file.display(), now.count(), now.runs.len());
+    now.save(&args.accepted)?;
+    println!("{}: {} numbers of {} runs", args.accepted.display(), now.count(), now.runs.len());
     Ok(0)
 }
 

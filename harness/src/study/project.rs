@@ -60,7 +60,7 @@ fn every_scene_of_the_project_has_a_check_of_what_it_is_for() {
 
 #[test]
 fn the_quick_tier_has_the_cases_of_the_baseline_and_no_others() {
-    let path = root().join("tests/baseline/quick.toml");
+    let path = root().join("tests/baseline/quick");
     let baseline = reports::baseline::Baseline::load(&path).expect("a baseline");
     // A run's name begins with its case and method. Stored references belong to both tiers.
     let names = baseline.runs.keys().filter_map(|run| run.split_once(' '));

@@ -116,7 +116,7 @@ fn a_pipe_that_nobody_reads_takes_no_output() {
         "history show --figure pipe",
         "init --file organ.obj --yes --force --out pipe",
         "run block.toml --out pipe",
-        "baseline results --file pipe --accept",
+        "baseline results --accepted pipe --accept",
     ] {
         let done = world.tissuebench(&args.split(' ').collect::<Vec<_>>());
         assert!(done.code != 0 && !done.stderr.is_empty(), "{args}: {}", done.code);

@@ -49,7 +49,7 @@ fn places(world: &World) -> Vec<(String, Vec<&'static str>, Then)> {
         place("problem/nodes.npy", "solve problem answer", Refused),
         place("adapters/mine/adapter.toml", "adapter list", Refused),
         place("claims.toml", "claims results --file claims.toml", Refused),
-        place("baseline.toml", "baseline results --file baseline.toml --check", Refused),
+        place("baseline/block.toml", "baseline results --accepted baseline --check", Refused),
         (history, vec!["history", "show"], Refused),
         place("results/provenance.json", "report results", Refused),
         place("results/records.csv", "report results", Refused),

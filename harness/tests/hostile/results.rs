@@ -62,8 +62,8 @@ fn nothing_is_no_success() {
     for args in [
         "report nothing --out r",
         "compare nothing nothing",
-        "baseline nothing --file baseline.toml --part --check",
-        "baseline nothing --file new.toml --accept",
+        "baseline nothing --accepted baseline --part --check",
+        "baseline nothing --accepted new --accept",
         "history add nothing --to history",
     ] {
         let done = world.runs(&args.split(' ').collect::<Vec<_>>(), 2);

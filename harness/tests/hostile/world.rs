@@ -67,7 +67,7 @@ impl World {
         world.write("recorded.toml", &format!("{boxed}{own}reference = {{ record = \"record.json\" }}\n"));
         world.runs(&["run", "block.toml", "--once", "--out", "results"], 0);
         world.runs(&["verify", "study.toml", "-q", "--out", "kept"], 0);
-        world.runs(&["baseline", "results", "--file", "baseline.toml", "--accept"], 0);
+        world.runs(&["baseline", "results", "--accepted", "baseline", "--accept"], 0);
         world.runs(&["history", "add", "results", "--to", "history"], 0);
         world.write("claims.toml", "");
         world

@@ -132,12 +132,10 @@ mod tests {
     #[test]
     fn any_name_is_read_as_it_was_written() {
         let name = "a \"b\" \\ \u{feff}\u{7f}\n\u{1}\u{200b} \u{e4}";
-        let file = std::env::temp_dir().join(format!("tissuebench-names-{}.toml", std::process::id()));
+        let folder = tempfile::tempdir().unwrap();
         let written = one(name, name, &[1.5, -0.0], name);
-        written.save(&file).unwrap();
-        let read = Baseline::load(&file);
-        std::fs::remove_file(&file).unwrap();
-        assert_eq!(read.unwrap(), written);
+        written.save(folder.path()).unwrap();
+        assert_eq!(Baseline::load(folder.path()).unwrap(), written);
     }
 
     #[test]
