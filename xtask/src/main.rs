@@ -34,7 +34,7 @@ enum Task {
         #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
         args: Vec<String>,
     },
-    /// Drive every method to its limits by the quick part of the stress study; its results go to
+    /// Run the quick part of the stress study, which drives every method to its limits; results go to
     /// results-stress/
     Stress {
         /// Run the whole study: about 5 minutes
@@ -54,8 +54,8 @@ enum Task {
         #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
         args: Vec<String>,
     },
-    /// Count the instructions of each kernel, if valgrind is installed: more than 2 % above the accepted
-    /// count is a failure
+    /// Count the instructions of each kernel, if valgrind is installed; fails if a count is more than 2 %
+    /// above the accepted count
     Instructions {
         /// Accept the counts
         #[arg(long)]
@@ -68,19 +68,19 @@ enum Task {
         #[arg(long, default_value_t = 20)]
         runs: u16,
     },
-    /// Render tables, figures and the report again from results/, without running anything
+    /// Render tables, figures and the report from results/ again, without executing runs
     Report,
     /// Verify and stress in full, then refresh the figures and tables kept in reports/gallery for the book
     Gallery,
-    /// Write the book's reference pages again, and build the book if mdbook is installed
+    /// Regenerate the reference pages of the book, and build the book if mdbook is installed
     Book,
-    /// Switch on the faults of tests/mutants.toml one at a time: a test must find each
+    /// Switch on the faults of tests/mutants.toml one at a time: a test must find each fault
     Mutants {
         /// Names of the faults to switch on (default: all)
         names: Vec<String>,
     },
-    /// Kill one of two processes that work on a study a hundred times at random, with and without --isolate:
-    /// no result may be lost, repeated or changed
+    /// Kill one of two processes of a study at random times, a hundred times, with and without --isolate: no
+    /// result may be lost, repeated or changed
     Survive,
     /// Run the checks that take hours: every fault of `mutants`, `survive`, a build of every package, `cargo
     /// deny check`, and minutes of each fuzz target; if cargo-deny, cargo-fuzz and a nightly compiler are
@@ -90,8 +90,8 @@ enum Task {
         #[arg(long, default_value_t = 10, value_parser = clap::value_parser!(u32).range(1..=1440))]
         minutes: u32,
     },
-    /// Follow the guide's first page in a fresh clone of the last commit, from installation to the picture of
-    /// an organ: more than ten minutes is a failure
+    /// Follow the first page of the guide in a fresh clone of the last commit, from installation to the
+    /// picture of an organ; fails after more than ten minutes
     Newcomer,
     /// Build the wheel of the Python module and test it in a fresh virtual environment, if maturin, numpy and
     /// pytest are installed
