@@ -80,6 +80,6 @@ fn an_axis_that_drives_nothing_is_refused_with_its_key() {
         assert!(done.stderr.contains("study.toml:5: key 'run[0].axis'"), "{}", done.stderr);
     };
     refused("{ \"materiel.poisson\" = \"{x}\" }", "'materiel'");
-    refused("{ \"body.max[3]\" = \"{x} mm\" }", "[3] is none of 3");
+    refused("{ \"body.max[3]\" = \"{x} mm\" }", "[3] is out of range; the list has 3");
     refused("{ \"material.young\" = \"{20 * } kPa\" }", "material.young");
 }

@@ -99,8 +99,8 @@ fn bad_usage_is_2() {
         (vec!["plan", "no-such-scene.toml"], "no-such-scene.toml: can't be read"),
         (vec!["verify", "no-such-study.toml"], "no-such-study.toml: can't be read"),
         (vec!["report", "no-such-results"], "no-such-results"),
-        (vec!["run", &block, "--method", "nope"], "no method 'nope'; it has tet4"),
-        (vec!["plan", &block, "--method", "nope"], "no method 'nope'; it has tet4"),
+        (vec!["run", &block, "--method", "nope"], "no method 'nope'; known methods are tet4"),
+        (vec!["plan", &block, "--method", "nope"], "no method 'nope'; known methods are tet4"),
     ] {
         assert_fails(&tissuebench(&args), 2, says);
     }

@@ -100,5 +100,9 @@ fn what_disagrees_is_refused_with_numbers() {
     refused(r#"cloud = { file = "nodes.csv" }"#, &sound, "unit");
     refused(r#"cloud = { file = "none.csv", unit = "mm" }"#, &sound, "can't be found");
     refused(&format!("{file}, seed = 3"), &sound, "nodes that are given need none");
-    refused(&format!("{file}, neighbourhood = \"ellipsoid\""), &sound, "the nodes of this cloud have none");
+    refused(
+        &format!("{file}, neighbourhood = \"ellipsoid\""),
+        &sound,
+        "the nodes of this cloud have no cells",
+    );
 }

@@ -45,8 +45,8 @@ fn a_wrong_override_is_named_as_it_was_given() {
     for (set, says) in [
         ("material.young=40", "--set material.young=40: key 'material.young': '40' has no unit"),
         ("materal.young=40 kPa", "--set materal.young=40 kPa: key 'materal'"),
-        ("method[hex9].size.level=1", "[hex9] is none of 1"),
-        ("title.x=1", "is no table"),
+        ("method[hex9].size.level=1", "[hex9] is out of range; the list has 1"),
+        ("title.x=1", "is not a table"),
         ("material.poisson", "is not KEY=VALUE"),
     ] {
         for verb in ["run", "plan"] {
@@ -67,7 +67,11 @@ fn methods_are_chosen_by_patterns() {
     };
     assert_eq!(ids("tet*"), ["tet4", "tet10"]);
     assert_eq!(ids("hex8"), ["hex8"]);
-    assert_fails(&tissuebench(&["run", &scene, "--method", "quad*"]), 2, "no method 'quad*'; it has tet4");
+    assert_fails(
+        &tissuebench(&["run", &scene, "--method", "quad*"]),
+        2,
+        "no method 'quad*'; known methods are tet4",
+    );
 }
 
 #[cfg(unix)]

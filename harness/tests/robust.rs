@@ -153,5 +153,5 @@ fn hard_clouds_keep_the_affine_field_or_say_that_they_may_not() {
     assert_fails(&done, 2, "key 'method[0].jitter.fraction': '0.45' gives a mesh in which element");
     let lost = patch(r#"support_scale = 0.6, size = { cells = [5, 5, 5] }"#);
     let done = tissuebench(&["run", &write(&dir, "patch.toml", &lost)]);
-    assert_fails(&done, 2, "'0.6' is no support scale; 1.2 to 3 is usual");
+    assert_fails(&done, 2, "'0.6' is not a valid support scale; 1.2 to 3 is usual");
 }

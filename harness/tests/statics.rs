@@ -282,7 +282,7 @@ fn bad_static_scenes_name_file_line_and_key() {
             "essential = \"multipliers\"",
             2,
             15,
-            "'method[4].essential': 'multipliers' serves linear procedures and modes, not kind = \"static\"",
+            "'method[4].essential': 'multipliers' is available for linear procedures and modes, not for kind = \"static\"",
         ),
         (
             "nitsche",
@@ -290,7 +290,7 @@ fn bad_static_scenes_name_file_line_and_key() {
             "essential = \"nitsche\"",
             2,
             15,
-            "'method[4].essential': 'nitsche' serves linear procedures and modes",
+            "'method[4].essential': 'nitsche' is available for linear procedures and modes",
         ),
     ] {
         let text = PRESSED.replacen(from, to, 1);

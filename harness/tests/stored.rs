@@ -178,7 +178,7 @@ fn parts_made_one_by_one_join_to_the_same_reference() {
     write(&dir, "part.json", &alone.replace("\"points\":[[0.005,", "\"points\":[[0.006,"));
     fails("hex20-mixed", " nodes has other points");
     write(&dir, "part.json", "{}");
-    fails("hex20-mixed", "part.json: is no reference");
+    fails("hex20-mixed", "part.json: is not a reference");
 }
 
 #[test]

@@ -140,8 +140,8 @@ impl BodyKeys {
             }
             BodyKeys::Kidney { half, mildly_graded } => {
                 let help =
-                    "leave it out, or add half = true: cells of the whole kidney are not drawn together";
-                report.require(half || !mildly_graded, "mildly_graded", "is for the half alone", help);
+                    "leave it out, or add half = true: the cells of the whole kidney are never mildly graded";
+                report.require(half || !mildly_graded, "mildly_graded", "applies to the half only", help);
                 Body::Kidney { half, mildly_graded }
             }
             BodyKeys::File { path, unit, join } => {
@@ -164,7 +164,7 @@ fn corners(keys: [Option<[f64; 3]>; 3], report: &Report) -> Option<([f64; 3], [f
         }
         [_, Some(_), Some(_)] => {
             let help = "give min and max, or size alone (with a corner at the origin, or at min)";
-            report.add("size", Problem::new("stands beside max").help(help));
+            report.add("size", Problem::new("can't be combined with max").help(help));
             None
         }
         [_, _, None] => {

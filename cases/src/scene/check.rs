@@ -78,7 +78,7 @@ impl CheckKeys {
             }
             (None, None, Some([low, high])) => {
                 let (low, high) = (number(low, "known_band")?, number(high, "known_band")?);
-                report.require(low < high, "known_band", "is no band", "give the low end first");
+                report.require(low < high, "known_band", "is not a valid band", "give the low end first");
                 let Some(reason) = self.reason else {
                     report.missing("reason", "say why the method can't do better");
                     return None;
@@ -87,14 +87,14 @@ impl CheckKeys {
             }
             (_, _, Some(_)) => {
                 let help = "give a band or bounds, not both";
-                report.add("known_band", Problem::new("stands beside a bound").help(help));
+                report.add("known_band", Problem::new("can't be combined with a bound").help(help));
                 return None;
             }
             (low, high, None) => {
                 let at_least = low.map(|low| number(low, "at_least"));
                 let at_most = high.map(|high| number(high, "at_most"));
                 let stray = self.reason.is_some();
-                report.require(!stray, "reason", "goes with known_band only", "leave it out");
+                report.require(!stray, "reason", "applies to known_band only", "leave it out");
                 // A bound that could not be read is already reported; the check is dropped.
                 let (at_least, at_most) = (
                     at_least.map_or(Some(None), |b| b.map(Some))?,

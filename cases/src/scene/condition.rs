@@ -136,7 +136,7 @@ impl SupportKeys {
         let mut motion: [Option<Prescribed>; 3] = [None, None, None];
         if let Some(fix) = &self.fix {
             let sound = ["x", "y", "z", "xy", "xz", "yz", "xyz"].contains(&fix.as_str());
-            let help = "write the axes held at zero in order: x, y, z, xy, xz, yz or xyz";
+            let help = "write the axes fixed at zero in order: x, y, z, xy, xz, yz or xyz";
             report.require(sound, "fix", "is not a list of axes", help);
             let zero = Prescribed::Field(ScalarField::Constant(0.0));
             motion = ['x', 'y', 'z'].map(|axis| fix.contains(axis).then(|| zero.clone()));
@@ -144,7 +144,7 @@ impl SupportKeys {
         match self.motion {
             Some(MoveKeys::Exact(_)) => {
                 let help = "write move = { x = \"exact\" } for some axes, and fix for others";
-                report.require(self.fix.is_none(), "move", "moves axes that 'fix' holds", help);
+                report.require(self.fix.is_none(), "move", "moves axes that 'fix' constrains", help);
                 motion = std::array::from_fn(|_| Some(Prescribed::Exact));
             }
             Some(MoveKeys::Axes(axes)) => {
@@ -173,7 +173,7 @@ fn moved(
     for ((motion, given), key) in motion.iter_mut().zip(axes).zip(keys) {
         let Some(given) = given else { continue };
         let free = motion.is_none();
-        report.require(free, key, "moves an axis that 'fix' holds", "name each axis once");
+        report.require(free, key, "moves an axis that 'fix' constrains", "name each axis once");
         *motion = Some(match given {
             AxisKeys::Exact(_) => Prescribed::Exact,
             AxisKeys::Field(field) => Prescribed::Field(field.into()),
@@ -204,7 +204,7 @@ impl LoadKeys {
             return Some(Load { place, kind });
         }
         let place = Place::read(self.on, self.place, report);
-        let (problem, help) = ("limits a body force to a place", "a body force acts everywhere");
+        let (problem, help) = ("limits a body force to a region", "a body force acts everywhere");
         report.require(!matches!(place, Place::On(_)), "on", problem, help);
         report.require(!matches!(place, Place::Where(_)), "where", problem, help);
         body.inspect(|body| body.find(&place, report));
@@ -222,12 +222,17 @@ pub(crate) fn demands(
 ) {
     let vibrates = procedure.kind() == ProcedureKind::Modes;
     let follows = |support: &Support| support.motion.iter().flatten().any(|m| matches!(m, Prescribed::Exact));
-    let (lacking, add) = ("has no exact solution to follow", "add [reference] exact = \"...\"");
+    let (lacking, add) = ("needs an exact solution", "add [reference] exact = \"...\"");
     for (i, support) in supports.iter().enumerate() {
         let key = format!("support[{i}].move");
         report.require(has_exact || !follows(support), &key, lacking, add);
-        let help = "hold it: fix = \"xyz\"";
-        report.require(!vibrates || !support.moves(), &key, "moves what vibrates freely", help);
+        let help = "give fix = \"xyz\"";
+        report.require(
+            !vibrates || !support.moves(),
+            &key,
+            "prescribes a motion, but the body vibrates freely",
+            help,
+        );
     }
     for (i, load) in loads.iter().enumerate() {
         report.require(has_exact || !load.kind.is_exact(), &format!("load[{i}]"), lacking, add);
@@ -237,7 +242,7 @@ pub(crate) fn demands(
     }
     let jumps = procedure.has_inertia() && procedure.ramp().is_some_and(|ramp| ramp.over == Some(0.0));
     if let (true, Some(i)) = (jumps, supports.iter().position(Support::moves)) {
-        let problem = Problem::new(format!("is no time for support[{i}] to move in"));
-        report.add("procedure.over", problem.help("a mass can't jump: give the time it takes"));
+        let problem = Problem::new(format!("leaves no time for the motion of support[{i}]"));
+        report.add("procedure.over", problem.help("a mass can't jump: give the duration of the motion"));
     }
 }

@@ -22,8 +22,8 @@ pub(crate) struct LeftOutKeys {
 /// reason.
 pub(crate) fn check(all_of: Option<&str>, left_out: &[LeftOutKeys], runs: &[&Path], report: &Report) {
     let Some(folder) = all_of else {
-        let help = "name the folder of scenes that the study is of: all_of = \"../scenes\"";
-        report.require(left_out.is_empty(), "left_out", "goes with all_of only", help);
+        let help = "name the folder of the study's scenes: all_of = \"../scenes\"";
+        report.require(left_out.is_empty(), "left_out", "applies to all_of only", help);
         return;
     };
     let folder = report.path(folder, "all_of");
@@ -56,14 +56,20 @@ pub(crate) fn check(all_of: Option<&str>, left_out: &[LeftOutKeys], runs: &[&Pat
             "leave one of them out",
         );
         let sound = !keys.reason.trim().is_empty();
-        report.require(sound, &format!("{key}.reason"), "says nothing", "say why no run has the scene");
+        report.require(
+            sound,
+            &format!("{key}.reason"),
+            "is empty",
+            "give the reason why no run has the scene",
+        );
         excused.push(scene);
     }
     for scene in scenes {
         let known = whole(&scene);
         if !run.contains(&known) && !excused.contains(&known) {
-            let problem = Problem::new("has a scene that no run has").found(scene.display().to_string());
-            let help = "add a [[run]] with it, or a [[left_out]] with scene = \"...\" and reason = \"...\"";
+            let problem = Problem::new("contains a scene without a run").found(scene.display().to_string());
+            let help =
+                "add a [[run]] with the scene, or a [[left_out]] with scene = \"...\" and reason = \"...\"";
             report.add("all_of", problem.help(help));
         }
     }

@@ -40,8 +40,8 @@ pub(crate) fn scene(scene: &Scene, report: &Report) {
         let report = report.at(&format!("check[{i}]"));
         self::check(check, scene, &report);
         let (problem, help) = match check.metric.needs {
-            Needs::Levels => ("needs several levels", "checks of orders belong into a study"),
-            Needs::Seeds => ("needs many clouds", "checks of shares belong into a study with seeds"),
+            Needs::Levels => ("needs several levels", "checks of orders belong in a study"),
+            Needs::Seeds => ("needs many clouds", "checks of fractions belong in a study with seeds"),
             _ => continue,
         };
         report.add("metric", Problem::new(problem).help(help));
@@ -81,20 +81,20 @@ fn exact_fits(scene: &Scene, name: &str, exact: &dyn Exact, report: &Report) {
     if kind == ProcedureKind::Modes {
         if exact.vibrations().is_none() {
             let help = "take \"lame-cube\" or \"roller-box\", or leave the reference out";
-            add("knows no vibrations".into(), help);
+            add("is not available for vibrations".into(), help);
         }
     } else if exact.at(0.0).is_some() && scene.procedure.ramp().is_none() {
         let help = "take kind = \"explicit\" or \"implicit-dynamic\", or a solution at rest";
-        add(format!("moves in time, which a {} procedure has not", kind.name()), help);
+        add(format!("depends on time, but a {} procedure has no time", kind.name()), help);
     }
     if exact.contact().is_some() && scene.tools.len() != 1 {
-        add("is of one tool that presses".into(), "add a [[tool]], the only one");
+        add("needs exactly one tool".into(), "add a [[tool]], the only one");
     }
     let large = scene.materials().map(|(_, material)| material).find(|m| !m.law().is_small_strain());
     let Some(large) = large.filter(|_| !exact.is_large_strain()) else { return };
     for (i, _) in scene.loads.iter().enumerate().filter(|(_, load)| load.kind.is_exact()) {
         let large = large.name();
-        let problem = format!("takes the load of {name}, a solution at small strain, for the {large} law");
+        let problem = format!("takes the load of {name}, a solution of small strain, but the law is {large}");
         report.add(&format!("load[{i}]"), Problem::new(problem).help("take law = \"linear\""));
     }
 }
@@ -116,7 +116,7 @@ pub(crate) fn check(check: &Check, scene: &Scene, report: &Report) {
     let probed = !scene.output.probes.is_empty();
     let (holds, needs) = match check.metric.needs {
         Needs::Run | Needs::Seeds => return,
-        Needs::Axis => (false, "is counted along a [run.axis] of a study, and checked there"),
+        Needs::Axis => (false, "is a metric of a [run.axis] of a study; check the metric there"),
         Needs::Reference | Needs::Levels => (compared, "needs a [reference] in the scene"),
         Needs::Probes => (compared && probed, "needs a [reference] and output.probes in the scene"),
         Needs::Steps => (

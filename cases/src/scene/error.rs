@@ -17,9 +17,9 @@ pub enum ErrorKind {
 pub(crate) fn unread(bad: &std::io::Error) -> String {
     match bad.kind() {
         std::io::ErrorKind::NotFound => "there is no such file".into(),
-        std::io::ErrorKind::IsADirectory => "it is a folder".into(),
+        std::io::ErrorKind::IsADirectory => "the path is a folder".into(),
         std::io::ErrorKind::PermissionDenied => "permission denied".into(),
-        std::io::ErrorKind::InvalidData => "it is no text".into(),
+        std::io::ErrorKind::InvalidData => "the file is not text".into(),
         _ => bad.to_string(),
     }
 }

@@ -111,7 +111,7 @@ fn prony(terms: Vec<PronyKeys>, report: &Report) -> Vec<Relaxation> {
         Some(Relaxation { g: report.positive("g", term.g), tau: report.positive("tau", term.tau.0) })
     });
     let sum: f64 = terms.iter().map(|term| term.g).sum();
-    let help = "the shares must leave something that does not relax: their sum is below 1";
+    let help = "a part must not relax: the sum of the shares has to be below 1";
     report.require(sum < 1.0, "prony", "relaxes everything", help);
     terms
 }
@@ -167,8 +167,8 @@ impl Material {
             report.add("law", problem.help(help));
         }
         if !self.prony.is_empty() && procedure.ramp().is_none() {
-            let problem = format!("relaxes over time, which a {} procedure has not", kind.name());
-            let help = "leave it out: young and poisson are then the moduli of the load's own duration";
+            let problem = format!("relaxes over time, but a {} procedure has no time", kind.name());
+            let help = "leave it out: young and poisson are then the moduli for the duration of the load";
             report.add("prony", Problem::new(problem).help(help));
         }
         if procedure.has_inertia() && self.density.is_none() {

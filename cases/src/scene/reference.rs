@@ -53,7 +53,7 @@ impl ReferenceKeys {
     pub fn read(self, report: &Report) -> Option<Reference> {
         let given = self.size.is_some();
         let size = self.size.and_then(|size| size.read(&report.at("size")));
-        report.require(!given || self.method.is_some(), "size", "goes with method only", "leave it out");
+        report.require(!given || self.method.is_some(), "size", "applies to method only", "leave it out");
         for name in self.settings.names().filter(|_| self.exact.is_none()) {
             let help = suggest(name, &["exact", "method", "record", "size"]);
             report.add(name, Problem::new("is not a known key").help(help));

@@ -146,7 +146,7 @@ impl SceneKeys {
     /// Reads a scene; returns `None` only if there are findings.
     pub fn read(self, report: &Report) -> Option<Scene> {
         let sound = !self.title.trim().is_empty();
-        report.require(sound, "title", "is empty", "say in one line what the scene is");
+        report.require(sound, "title", "is empty", "describe the scene in one line");
         let body = self.body.read(&report.at("body"));
         let material = self.material.read(&report.at("material"));
         let count = self.region.len();

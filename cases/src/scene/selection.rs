@@ -41,8 +41,8 @@ impl Place {
         match (on.map(Vec::from), region) {
             (on, Some(region)) => {
                 if on.is_some() {
-                    let help = "say where with 'on' or with 'where', not both";
-                    report.add("where", Problem::new("stands beside 'on'").help(help));
+                    let help = "give a region with 'on' or with 'where', not both";
+                    report.add("where", Problem::new("can't be combined with 'on'").help(help));
                 }
                 Place::Where(region)
             }
@@ -58,7 +58,7 @@ impl Place {
     pub(crate) fn required(on: Option<Names>, region: Option<Region>, report: &Report) -> Place {
         let place = Place::read(on, region, report);
         if place == Place::Everywhere {
-            report.missing("where", "say where: on = \"z-min\", or where = \"z == 0 mm\"");
+            report.missing("where", "give a region: on = \"z-min\", or where = \"z == 0 mm\"");
         }
         place
     }

@@ -113,23 +113,25 @@ fn below<'t>(slot: &mut Value<'t>, rest: &str, value: Option<&Value<'t>>) -> Res
     if let Some(key) = rest.strip_prefix('.') {
         return match slot.get_mut() {
             DeValue::Table(table) => set(table, key, value),
-            _ => Err(Problem::new("is no table").found(key)),
+            _ => Err(Problem::new("is not a table").found(key)),
         };
     }
     let Some(inside) = rest.strip_prefix('[') else {
-        *slot = value.ok_or_else(|| Problem::new("is one of a list, which can't be left out"))?.clone();
+        *slot = value.ok_or_else(|| Problem::new("is an entry of a list and can't be left out"))?.clone();
         return Ok(());
     };
     let (index, behind) =
         inside.split_once(']').ok_or_else(|| Problem::new("a '[' is never closed").found(rest))?;
-    let DeValue::Array(list) = slot.get_mut() else { return Err(Problem::new("is no list").found(rest)) };
+    let DeValue::Array(list) = slot.get_mut() else { return Err(Problem::new("is not a list").found(rest)) };
     if index.is_empty() {
         return list.iter_mut().try_for_each(|item| below(item, behind, value));
     }
     let at = index.parse().ok().or_else(|| list.iter().position(|item| is_named(item, index)));
     let length = list.len();
     let item = at.and_then(|at: usize| list.get_mut(at));
-    let item = item.ok_or_else(|| Problem::new(format!("[{index}] is none of {length}")).found(rest))?;
+    let item = item.ok_or_else(|| {
+        Problem::new(format!("[{index}] is out of range; the list has {length}")).found(rest)
+    })?;
     below(item, behind, value)
 }
 
@@ -173,11 +175,11 @@ mod tests {
     fn a_key_that_leads_nowhere_is_refused() {
         for (key, value, problem) in [
             ("body.size[0]", None, "can't be left out"),
-            ("body.size[2]", Some("7"), "[2] is none of 2"),
-            ("method[c].cells", Some("7"), "[c] is none of 2"),
+            ("body.size[2]", Some("7"), "[2] is out of range; the list has 2"),
+            ("method[c].cells", Some("7"), "[c] is out of range; the list has 2"),
             ("methd[].id", Some("7"), "not in the scene"),
-            ("body.size.x", Some("7"), "is no table"),
-            ("body[0]", Some("7"), "is no list"),
+            ("body.size.x", Some("7"), "is not a table"),
+            ("body[0]", Some("7"), "is not a list"),
             ("body.size[0", Some("7"), "never closed"),
         ] {
             let found = after(&[(key, value)]).unwrap_err().problem;

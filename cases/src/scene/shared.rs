@@ -56,7 +56,8 @@ pub(crate) fn read(
     let wrong = |problem| vec![document.error(Some(from.span()), "methods_from", problem)];
     let DeValue::String(path) = from.get_ref() else {
         return Err(wrong(
-            Problem::new("is no path of a file").help("give it in quotes: methods_from = \"methods.toml\""),
+            Problem::new("is not the path of a file")
+                .help("give it in quotes: methods_from = \"methods.toml\""),
         ));
     };
     let path = beside(file, path);
@@ -146,7 +147,7 @@ fn unshared(document: &Document<'_>) -> Result<(), Vec<SceneError>> {
     let errors: Vec<SceneError> = (tables(document).iter().enumerate())
         .filter_map(|(i, method)| Some((i, value(method, "use")?)))
         .map(|(i, name)| {
-            let problem = Problem::new("has no file of methods to be taken from");
+            let problem = Problem::new("needs a file of methods");
             let help = "name it at the top of the scene: methods_from = \"methods.toml\"";
             let problem = Problem { found: written(name.get_ref()), ..problem.help(help) };
             document.error(Some(name.span()), &format!("method[{i}].use"), problem)

@@ -218,15 +218,15 @@ impl RunKeys {
         let sound = self.adapters.iter().map(|name| is_adapter(name)).collect();
         each("adapters", sound, NO_ADAPTER, ADAPTERS);
         let sound = self.levels.iter().map(|l| (1..=8).contains(l)).collect();
-        each("levels", sound, "is no level", "levels are 1 to 8");
+        each("levels", sound, "is not a valid level", "levels are 1 to 8");
         let sound = self.poisson.iter().map(|nu| *nu > -1.0 && *nu < 0.5).collect();
         let help = "give ratios above -1 and below 0.5, such as 0.4999";
-        each("poisson", sound, "is no Poisson's ratio", help);
+        each("poisson", sound, "is not a valid Poisson's ratio", help);
         let sound = self.nodes.iter().map(|n| *n >= 4).collect();
         each("nodes", sound, "are too few for a cloud", "give 4 nodes or more");
         let sound = self.support_scales.iter().map(|d| (1.0..=10.0).contains(d)).collect();
         let help = "1 to 10, as in a method; 1.2 to 3 is usual";
-        each("support_scales", sound, "is no support scale", help);
+        each("support_scales", sound, "is not a valid support scale", help);
         for (key, once) in [
             ("methods", first_times(&self.methods)),
             ("adapters", first_times(&self.adapters)),
@@ -235,12 +235,17 @@ impl RunKeys {
             ("nodes", first_times(&self.nodes)),
             ("support_scales", first_times(&self.support_scales)),
         ] {
-            each(key, once, "is there already", "name each once");
+            each(key, once, "is given already", "name each once");
         }
         let sound = self.seeds != 1 && self.seeds <= 10_000;
-        report.require(sound, "seeds", "makes no spread", "give 2 to 10000; 50 is usual");
+        report.require(sound, "seeds", "is out of range", "give 2 to 10000; 50 is usual");
         let alone = self.levels.is_empty() || self.nodes.is_empty();
-        report.require(alone, "nodes", "stands beside levels", "vary levels or node counts, not both");
+        report.require(
+            alone,
+            "nodes",
+            "can't be combined with levels",
+            "vary levels or node counts, not both",
+        );
         let kernel = |word: &Word<Kernels>| (word.0.build)(&Values::new(word.0.parameters)).ok();
         Run {
             scene,
@@ -276,11 +281,11 @@ fn few_enough(run: &Run, scene: &Scene, (runs, scenes): (f64, usize), report: &R
     let product = varied.iter().chain(&more).map(|&n| n.max(1) as f64).product::<f64>();
     let now = (runs + methods as f64 * product, scenes + values);
     if now.0 > MOST_RUNS && runs <= MOST_RUNS {
-        let problem = Problem::new(format!("makes {:.0} runs with those before", now.0));
+        let problem = Problem::new(format!("gives {:.0} runs in total", now.0));
         report.add("", problem.help(format!("give {MOST_RUNS} or less in all")));
     }
     if now.1 > MOST_SCENES && scenes <= MOST_SCENES {
-        let problem = Problem::new(format!("makes {} scenes with those before", now.1));
+        let problem = Problem::new(format!("gives {} scenes in total", now.1));
         report.add("axis.values", problem.help(format!("give {MOST_SCENES} or less in all")));
     }
     now
@@ -298,7 +303,7 @@ fn fit(run: &Run, scene: &Scene, report: &Report) {
         && let Err(bad) = axis.at(scene, &run.methods, axis.base)
     {
         let first = bad.first().map_or(String::new(), ToString::to_string);
-        let problem = Problem::new("makes no scene of its base").found(axis.name.as_str()).help(first);
+        let problem = Problem::new("gives no valid scene at its base").found(axis.name.as_str()).help(first);
         report.add("axis", problem);
     }
     let twins = run.twins(scene);

@@ -23,7 +23,7 @@ fn only_half_a_kidney_is_graded() {
     let text = edited(body, "[body]\nshape = \"kidney\"\nmildly_graded = true\n");
     let errors = parse(&text, "s.toml").expect_err("a whole kidney");
     let graded = errors.iter().find(|e| e.key == "body.mildly_graded").expect("refused");
-    assert_eq!(graded.problem, "is for the half alone");
+    assert_eq!(graded.problem, "applies to the half only");
 }
 
 #[test]

@@ -125,13 +125,13 @@ const KEYS: &[Bad] = &[
         "kernel = \"cubic-spline\"\nneighbours = 15\nfactor = 1.2\nbasis = \"linear\"",
         "kernel = \"cubic-spline\" #<\nbasis = \"maximum-entropy\"",
         "method[2].kernel",
-        &["does not go with basis = \"maximum-entropy\""],
+        &["can't be combined with basis = \"maximum-entropy\""],
     ),
     (
         "kernel = \"cubic-spline\"\nneighbours = 15\nfactor = 1.2\nbasis = \"linear\"",
         "basis = \"maximum-entropy\"\ngamma = 20 #<",
         "method[2].gamma",
-        &["is no locality", "0.8 to 4"],
+        &["is not a valid locality", "0.8 to 4"],
     ),
     (
         "kernel = \"cubic-spline\"",
@@ -161,32 +161,32 @@ const KEYS: &[Bad] = &[
         "essential = \"multipliers\"",
         "essential = { method = \"multipliers\", rows = \"points\" } #<",
         "method[2].essential.rows",
-        &["goes with elimination only", "leave it out"],
+        &["applies to elimination only", "leave it out"],
     ),
     (
         "essential = \"multipliers\"",
         "essential = { method = \"elimination\", factor = 4 } #<",
         "method[2].essential.factor",
-        &["goes with nitsche and penalty only"],
+        &["applies to nitsche and penalty only"],
     ),
     (
         "essential = \"multipliers\"",
         "essential = { method = \"coupling\", factor = 4 } #<",
         "method[2].essential.factor",
-        &["goes with nitsche and penalty only"],
+        &["applies to nitsche and penalty only"],
     ),
     (
         "basis = \"linear\"\nintegration = { rule = \"cell-smoothed\" }\nessential = \"multipliers\"",
         "basis = \"quadratic\" #<\nintegration = { rule = \"cell-smoothed\", order = 2 }\nessential = \"coupling\"",
         "method[2].basis",
-        &["'quadratic' does not go with essential = \"coupling\"", "take basis = \"linear\""],
+        &["'quadratic' can't be combined with essential = \"coupling\"", "take basis = \"linear\""],
     ),
     (
         "kernel = \"cubic-spline\"\nneighbours = 15\nfactor = 1.2\nbasis = \"linear\"\n\
          integration = { rule = \"cell-smoothed\" }\nessential = \"multipliers\"",
         "basis = \"maximum-entropy\" #<\nintegration = { rule = \"cell-smoothed\" }\nessential = \"coupling\"",
         "method[2].basis",
-        &["'maximum-entropy' does not go with essential = \"coupling\""],
+        &["'maximum-entropy' can't be combined with essential = \"coupling\""],
     ),
     (
         "size = { level = 2 }\nkernel = \"cubic-spline\"\nneighbours = 15\nfactor = 1.2\nbasis = \"linear\"\n\
@@ -194,7 +194,7 @@ const KEYS: &[Bad] = &[
         "nodes = 83\ncloud = { refine = { by = \"gradient-error\" } } #<\nkernel = \"cubic-spline\"\nsupport_scale = 1.6\n\
          basis = \"linear\"\nintegration = { rule = \"cell-smoothed\" }\nessential = \"coupling\"",
         "method[2].cloud.refine",
-        &["does not go with essential = \"coupling\"", "\"elimination\""],
+        &["can't be combined with essential = \"coupling\"", "\"elimination\""],
     ),
     (
         "scheme = \"inverse-distance\",",
@@ -233,7 +233,7 @@ const CONDITIONS: &[Bad] = &[
         "fix = \"xyz\"",
         "fix = \"z\"\nmove = [\"0 mm\", \"0 mm\", \"1 mm\"] #<",
         "support[0].move[2]",
-        &["moves an axis that 'fix' holds"],
+        &["moves an axis that 'fix' constrains"],
     ),
     ("\"z == 0 mm\"", "\"z = 0 mm\" #<", "support[0].where", &["'==' compares"]),
     ("\"z == 0 mm\"", "\"z == 0\" #<", "support[0].where", &["'z == 0' has no unit", "\"0 mm\""]),
@@ -255,26 +255,26 @@ const CONDITIONS: &[Bad] = &[
         "where = \"z == 0 mm\"",
         "on = \"z-min\"\nwhere = \"z == 0 mm\" #<",
         "support[0].where",
-        &["stands beside 'on'", "not both"],
+        &["can't be combined with 'on'", "not both"],
     ),
     (
         "[[support]]\nwhere = \"z == 0 mm\"",
         "[[support]] #<",
         "support[0].where",
-        &["is missing", "say where"],
+        &["is missing", "give a region"],
     ),
     ("fix = \"xyz\"", "fix = \"xw\" #<", "support[0].fix", &["'xw' is not a list of axes"]),
     (
         "fix = \"xyz\"",
         "fix = \"xyz\"\nmove = \"exact\" #<",
         "support[0].move",
-        &["moves axes that 'fix' holds"],
+        &["moves axes that 'fix' constrains"],
     ),
     (
         "fix = \"xyz\"",
         "fix = \"xyz\"\nmove.z = \"1 mm\" #<",
         "support[0].move.z",
-        &["moves an axis that 'fix' holds"],
+        &["moves an axis that 'fix' constrains"],
     ),
     (
         "fix = \"xyz\"",
@@ -420,18 +420,18 @@ const OUTPUT: &[Bad] = &[
         "check[0].at_most",
         &["leaves no value"],
     ),
-    ("[1e-4, 1e-2]", "[1e-2, 1e-4] #<", "check[1].known_band", &["is no band"]),
+    ("[1e-4, 1e-2]", "[1e-2, 1e-4] #<", "check[1].known_band", &["is not a valid band"]),
     (
         "known_band = [1e-4, 1e-2]",
         "at_most = 1\nknown_band = [1e-4, 1e-2] #<",
         "check[1].known_band",
-        &["stands beside a bound"],
+        &["can't be combined with a bound"],
     ),
     (
         "at_most = \"0.1 mm\"",
         "at_most = \"0.1 mm\"\nreason = \"why\" #<",
         "check[0].reason",
-        &["goes with known_band only"],
+        &["applies to known_band only"],
     ),
 ];
 

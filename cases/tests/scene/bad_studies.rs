@@ -10,12 +10,12 @@ const CASES: &[(&str, &str, &[&str])] = &[
     (
         "title = \"t\"\n[[run]]\nscene = \"scenes/first.toml\"\nlevels = [1, 2, 1] #<",
         "run[0].levels[2]",
-        &["is there already"],
+        &["is given already"],
     ),
     (
         "title = \"t\"\n[[run]]\nscene = \"scenes/first.toml\"\nlevels = [0] #<",
         "run[0].levels[0]",
-        &["no level"],
+        &["not a valid level"],
     ),
     (
         "title = \"t\"\n[[run]]\nscene = \"scenes/first.toml\"\npoisson = [0.5] #<",
@@ -35,7 +35,7 @@ const CASES: &[(&str, &str, &[&str])] = &[
     (
         "title = \"t\"\n[[run]]\nscene = \"scenes/first.toml\"\nseeds = 1 #<",
         "run[0].seeds",
-        &["no spread", "50 is"],
+        &["is out of range", "50 is"],
     ),
     (
         "title = \"t\"\n[[run]]\nscene = \"scenes/first.toml\"\nseeds = 5 #<",
@@ -45,7 +45,7 @@ const CASES: &[(&str, &str, &[&str])] = &[
     (
         "title = \"t\"\n[[run]]\nscene = \"scenes/first.toml\"\nlevels = [1]\nnodes = [83] #<",
         "run[0].nodes",
-        &["stands beside levels"],
+        &["can't be combined with levels"],
     ),
     (
         "title = \"t\"\n[[run]]\nscene = \"scenes/first.toml\"\nkernels = [\"cubic\"] #<",
@@ -55,7 +55,7 @@ const CASES: &[(&str, &str, &[&str])] = &[
     (
         "title = \"t\"\n[[run]]\nscene = \"scenes/first.toml\"\nsupport_scales = [1.2, 0.5] #<",
         "run[0].support_scales[1]",
-        &["no support scale", "1.2 to 3"],
+        &["not a valid support scale", "1.2 to 3"],
     ),
     (
         "title = \"t\"\n[[run]]\nscene = \"scenes/first.toml\"\nmethods = [\"tet10\"]\nsupport_scales = [1.2] #<",
@@ -70,7 +70,10 @@ const CASES: &[(&str, &str, &[&str])] = &[
     (
         "title = \"t\"\n[[run]]\nscene = \"scenes/kidney/kidney-fair.toml\"\nessentials = [\"penalty\", \"nitsche\"] #<",
         "run[0].essentials[1]",
-        &["serves linear procedures and modes, not kind = \"static\"", "take \"penalty\" or \"coupling\""],
+        &[
+            "is available for linear procedures and modes, not for kind = \"static\"",
+            "take \"penalty\" or \"coupling\"",
+        ],
     ),
     (
         "title = \"t\"\n[[run]]\nscene = \"scenes/beam/pure-bending.toml\"\nessentials = [\"coupling\"] #<",
@@ -125,7 +128,7 @@ const CASES: &[(&str, &str, &[&str])] = &[
     (
         "title = \"t\"\nall_of = \"scenes/beam\" #<\n[[run]]\nscene = \"scenes/first.toml\"",
         "all_of",
-        &["has a scene that no run has", "torsion.toml", "[[left_out]]"],
+        &["contains a scene without a run", "torsion.toml", "[[left_out]]"],
     ),
     (
         "title = \"t\"\nall_of = \"scenes/beams\" #<\n[[run]]\nscene = \"scenes/first.toml\"",
@@ -135,7 +138,7 @@ const CASES: &[(&str, &str, &[&str])] = &[
     (
         "title = \"t\"\n[[left_out]] #<\nscene = \"scenes/first.toml\"\nreason = \"why\"\n[[run]]\nscene = \"scenes/first.toml\"",
         "left_out",
-        &["goes with all_of only"],
+        &["applies to all_of only"],
     ),
     (
         "title = \"t\"\nall_of = \"scenes\"\n[[left_out]]\nscene = \"scenes/first.toml\" #<\nreason = \"why\"\n[[run]]\nscene = \"scenes/first.toml\"",
@@ -150,7 +153,7 @@ const CASES: &[(&str, &str, &[&str])] = &[
     (
         "title = \"t\"\nall_of = \"scenes\"\n[[left_out]]\nscene = \"scenes/cloud-cost.toml\"\nreason = \" \" #<\n[[run]]\nscene = \"scenes/first.toml\"",
         "left_out[0].reason",
-        &["says nothing"],
+        &["is empty"],
     ),
 ];
 

@@ -272,25 +272,25 @@ fn contradictions_of_a_static_scene_name_their_key() {
             "essential = \"penalty\"",
             "essential = \"nitsche\"",
             "method[2].essential",
-            "'nitsche' serves linear procedures and modes, not kind = \"static\"; take \"penalty\" or \"coupling\"",
+            "'nitsche' is available for linear procedures and modes, not for kind = \"static\"; take \"penalty\" or \"coupling\"",
         ],
         [
             "essential = \"penalty\"",
             "essential = \"multipliers\"",
             "method[2].essential",
-            "'multipliers' serves linear procedures",
+            "'multipliers' is available for linear procedures",
         ],
         [
             "essential = { method = \"penalty\", factor = 1e4 }",
             "essential = { method = \"nitsche\", factor = 10 }",
             "method[1].essential.method",
-            "'nitsche' serves linear procedures",
+            "'nitsche' is available for linear procedures",
         ],
         [
             "essential = \"penalty\"",
             "essential = \"elimination\"",
             "method[2].essential",
-            "'elimination' serves linear procedures",
+            "'elimination' is available for linear procedures",
         ],
         ["friction = 0.15", "friction = -1", "tool[0].friction", "is negative"],
         [
@@ -359,7 +359,7 @@ fn contradictions_of_a_material_name_their_key() {
             "poisson = 0.45\n",
             "poisson = 0.45\nprony = [{ g = 0.3, tau = \"1 s\" }]\n",
             "material.prony",
-            "relaxes over time, which a static procedure has not",
+            "relaxes over time, but a static procedure has no time",
         ],
         [
             "poisson = 0.45\n",
@@ -475,13 +475,13 @@ fn what_moves_needs_time() {
     assert_eq!(scene.procedure.ramp().unwrap().over, Some(0.1));
     let at_once = "over = \"0 s\"";
     for (from, to, key, said) in [
-        ("over = \"0.1 s\"", at_once, "procedure.over", "is no time for support[1] to move in"),
+        ("over = \"0.1 s\"", at_once, "procedure.over", "leaves no time for the motion of support[1]"),
         ("over = \"0.1 s\"", "over = \"-1 s\"", "procedure.over", "is negative"),
         (
             "kind = \"explicit\"\nduration = \"1 s\"\nover = \"0.1 s\"",
             "kind = \"static\"",
             "reference.exact",
-            "'bar-wave' moves in time, which a static procedure has not",
+            "'bar-wave' depends on time, but a static procedure has no time",
         ),
         (wave, "", "check[0].metric", "'history-error' needs output.probes and dynamics"),
     ] {

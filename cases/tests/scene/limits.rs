@@ -32,7 +32,7 @@ fn a_study_has_a_number_of_runs_and_of_scenes() {
     let list = |count: u32| (4..4 + count).map(|n| n.to_string()).collect::<Vec<_>>().join(", ");
     assert_eq!(study(&format!("{scene}nodes = [{}]\nseeds = 100", list(500))), "");
     let runs = study(&format!("{scene}nodes = [{}]\nseeds = 100", list(501)));
-    assert!(runs.contains("run[0]") && runs.contains("makes 50100 runs") && runs.contains("50000"), "{runs}");
+    assert!(runs.contains("run[0]") && runs.contains("gives 50100 runs") && runs.contains("50000"), "{runs}");
     let axis = |count: u32| {
         let values = list(count);
         let set = "set = { \"material.poisson\" = \"{x / 10000}\" }";
@@ -41,5 +41,5 @@ fn a_study_has_a_number_of_runs_and_of_scenes() {
     };
     assert_eq!(axis(500), "");
     let scenes = axis(501);
-    assert!(scenes.contains("run[0].axis.values") && scenes.contains("makes 501 scenes"), "{scenes}");
+    assert!(scenes.contains("run[0].axis.values") && scenes.contains("gives 501 scenes"), "{scenes}");
 }

@@ -176,9 +176,9 @@ const IN_SCENE: &[(&str, &str, &str, &[&str])] = &[
         "",
         "[[method]]\nuse = \"tet4\" #<\n",
         "method[0].use",
-        &["'tet4' has no file of methods to be taken from", "methods_from = "],
+        &["'tet4' needs a file of methods", "methods_from = "],
     ),
-    ("methods_from = 3 #<\n", TAKEN, "methods_from", &["is no path"]),
+    ("methods_from = 3 #<\n", TAKEN, "methods_from", &["is not the path of a file"]),
     (
         "methods_from = \"none.toml\" #<\n",
         TAKEN,
@@ -202,7 +202,7 @@ const IN_SCENE: &[(&str, &str, &str, &[&str])] = &[
         FROM,
         "[[method]]\nuse = \"tet4\"\nsize = { level = 9 } #<\n",
         "method[0].size.level",
-        &["'9' is no level"],
+        &["'9' is not a valid level"],
     ),
     (
         FROM,

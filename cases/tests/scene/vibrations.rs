@@ -44,9 +44,14 @@ fn what_has_no_part_in_vibrations_names_its_key() {
             "procedure.modes",
             "does not belong to kind = \"linear\"; leave it out; it goes with modes",
         ),
-        ("\"modes\", modes = 12", "\"linear\"", "method[0].mass", "is of vibrations alone"),
+        ("\"modes\", modes = 12", "\"linear\"", "method[0].mass", "applies to vibrations only"),
         ("\"modes\", modes = 12", "\"linear\"", "check[0].metric", "needs [procedure] kind = \"modes\""),
-        ("fix = \"x\"", "move = { x = \"1 mm\" }", "support[0].move", "moves what vibrates freely"),
+        (
+            "fix = \"x\"",
+            "move = { x = \"1 mm\" }",
+            "support[0].move",
+            "prescribes a motion, but the body vibrates freely",
+        ),
         (
             "method =",
             "load = [{ on = \"x-max\", pressure = \"1 Pa\" }]\nmethod =",
@@ -64,7 +69,7 @@ fn what_has_no_part_in_vibrations_names_its_key() {
             "\"roller-box\", length = \"40 mm\", depth = \"30 mm\", width = \"20 mm\", density = \"1000 kg/m^3\"",
             "\"rigid\"",
             "reference.exact",
-            "'rigid' knows no vibrations; take \"lame-cube\" or \"roller-box\"",
+            "'rigid' is not available for vibrations; take \"lame-cube\" or \"roller-box\"",
         ),
         (
             "depth = \"30 mm\"",

@@ -140,9 +140,9 @@ mod tests {
         let sound = parse(SOUND).unwrap();
         assert_eq!((sound.digits, sound.threads.env, sound.reads.len()), (15, None, 0));
         for (from, to, says) in [
-            ("\"static\"", "\"statics\"", "can names 'statics'"),
-            ("\"tet4\"", "\"tet5\"", "elements names 'tet5'"),
-            ("\"mine\"\ntitle", "\"my own\"\ntitle", "name 'my own' is no name"),
+            ("\"static\"", "\"statics\"", "can: 'statics' is not known"),
+            ("\"tet4\"", "\"tet5\"", "elements: 'tet5' is not known"),
+            ("\"mine\"\ntitle", "\"my own\"\ntitle", "name 'my own' is not valid"),
             ("title = \"Mine\"\n", "", "missing field `title`"),
             ("title", "titel", "line 2"),
             ("run = [\"mine\", \"{problem}\", \"{answer}\"]", "run = []", "run is empty"),

@@ -125,7 +125,7 @@ fn no_name_leads_out_of_its_folder() {
     for id in [".", "..", "...", &"a".repeat(65), "a/b", ""] {
         world.write("named.toml", &sound.replace("id = \"tet4\"", &format!("id = {id:?}")));
         let done = world.runs(&["fields", "named.toml", "--out", "named"], 2);
-        assert!(done.stderr.contains("is no id"), "{id}: {}", done.stderr);
+        assert!(done.stderr.contains("is not a valid id"), "{id}: {}", done.stderr);
     }
     world.write("named.toml", &sound.replace("id = \"tet4\"", &format!("id = {:?}", "a".repeat(64))));
     world.runs(&["fields", "named.toml", "--out", "named"], 0);

@@ -90,12 +90,12 @@ fn regions_are_numbered_by_whole_numbers_of_any_type() {
         }
         for (value, shown) in [("4.25", "4.25"), ("nan", "NaN"), ("1e300", "1000")] {
             let bad = refusal(&vtu(&array(name, "Float64", &format!("3 {value}")))).unwrap();
-            assert!(bad.starts_with(&format!("m:8: cell 1 has {shown}")), "{bad}");
+            assert!(bad.starts_with(&format!("m:8: cell 1 has the value {shown}")), "{bad}");
             assert!(bad.contains(&format!("in the array '{name}', which numbers regions")), "{bad}");
         }
     }
     let bad = refusal(&vtu(&array("surface", "Float64", "1 0.5"))).unwrap();
-    assert!(bad.starts_with("m:8: cell 1 has 0.5 in the array 'surface'"), "{bad}");
+    assert!(bad.starts_with("m:8: cell 1 has the value 0.5 in the array 'surface'"), "{bad}");
     // Arrays with other names are ignored.
     let mesh = read(vtu(&array("stiffness", "Float64", "1.5 2.5")).as_bytes()).unwrap();
     assert_eq!(mesh.region_names(), ["body"]);

@@ -251,7 +251,7 @@ fn what_a_repair_would_have_to_do_is_said() {
     let most = edit(&|soup| (1..all).for_each(|triangle| turn(soup, triangle)));
     assert!(most.contains(&format!("{} of {all} are not (2, 3, 4, 5, ...)", all - 1)), "{most}");
     let inwards = edit(&|soup| (0..all).for_each(|triangle| turn(soup, triangle)));
-    assert!(inwards.contains(&format!("{all} of {all} face inwards")), "{inwards}");
+    assert!(inwards.contains(&format!("{all} of {all} triangles face inwards")), "{inwards}");
     let twice = edit(&|soup| {
         soup.triangles.push(soup.triangles[4]);
         soup.faces.push(all as u32 + 1);

@@ -151,15 +151,20 @@ impl CloudTable {
                 Some(Source::File(MeshFile::read(&file, Some(unit), "file", report)))
             }
             (Some(_), None, None) => {
-                report.missing("unit", "say what the numbers of the file are in: unit = \"mm\"");
+                report.missing("unit", "give the unit of the numbers in the file: unit = \"mm\"");
                 None
             }
             (None, None, Some(RefineKeys { by: Indicator::GradientError, steps, ratio })) => {
                 let (steps, ratio) = (steps.unwrap_or(2), ratio.unwrap_or(3.0));
                 let sound = (1..=10).contains(&steps);
-                report.require(sound, "refine.steps", "is no number of steps", "give 1 to 10; 2 is usual");
+                report.require(
+                    sound,
+                    "refine.steps",
+                    "is not a valid number of steps",
+                    "give 1 to 10; 2 is usual",
+                );
                 let sound = (1.0..=10.0).contains(&ratio);
-                report.require(sound, "refine.ratio", "is no ratio", "give 1 to 10; 3 is usual");
+                report.require(sound, "refine.ratio", "is not a valid ratio", "give 1 to 10; 3 is usual");
                 Some(Source::Refine(Refine { steps: steps as usize, ratio }))
             }
             _ => {
@@ -191,21 +196,21 @@ impl CloudKeys {
         let nodes = self.nodes.map(|n| count(n, report));
         let size = self.size.map(|size| size.read(&report.at("size")));
         let (of_mesh, stray) = (size.is_some(), "does not belong to this cloud");
-        let help = "it moves the nodes of a mesh: give size";
+        let help = "jitter moves the nodes of a mesh: give size";
         report.require(of_mesh || jitter.is_none(), "jitter", stray, help);
         let given = of_mesh || matches!(source, Some(Source::File(_)));
         report.require(!given || self.seed.is_none(), "seed", stray, "nodes that are given need none");
         let seed = self.seed.unwrap_or(1);
         if let Some(source) = source {
-            let help = "cloud = { ... } is the whole cloud; nodes = 83 beside it is how many it has";
+            let help = "cloud = { ... } describes the whole cloud; nodes = 83 may give its number of nodes";
             for (key, given) in [("size", of_mesh), ("graded_towards", self.graded_towards.is_some())] {
-                report.require(!given, key, "does not go with this cloud", help);
+                report.require(!given, key, "does not apply to this cloud", help);
             }
             return match (source, nodes) {
                 (Source::File(file), nodes) => Some(Cloud::File { file, nodes }),
                 (Source::Refine(refine), Some(nodes)) => Some(Cloud::Refined { nodes, seed, refine }),
                 (Source::Refine(_), None) => {
-                    report.missing("nodes", "give nodes = 332, how many there are after every step");
+                    report.missing("nodes", "give nodes = 332, the number of nodes after every step");
                     None
                 }
             };
@@ -221,7 +226,7 @@ impl CloudKeys {
                 Some(Cloud::Graded { nodes, seed, towards })
             }
             (Some(_), None, Some(CloudName::Graded), None) => {
-                let help = "say where it is denser: graded_towards = \"z >= 10 mm\"";
+                let help = "give the denser region: graded_towards = \"z >= 10 mm\"";
                 report.missing("graded_towards", help);
                 None
             }
@@ -231,9 +236,9 @@ impl CloudKeys {
                 None
             }
             _ => {
-                let help = "nodes goes with cloud = \"uniform\", or \"graded\" and graded_towards; size with \
-                            cloud = \"mesh\"";
-                report.add("cloud", Problem::new("does not go with the keys beside it").help(help));
+                let help = "give nodes with cloud = \"uniform\", or with \"graded\" and graded_towards; give size \
+                            with cloud = \"mesh\"";
+                report.add("cloud", Problem::new("does not fit the other keys").help(help));
                 None
             }
         }

@@ -52,20 +52,25 @@ impl SizeKeys {
     pub fn read(self, report: &Report) -> Option<Size> {
         let (grading, has_file) = (self.grading, self.file.is_some());
         let sound = grading.is_none() || self.cells.is_some();
-        report.require(sound, "grading", "goes with cells only", "leave it out");
-        report.require(self.unit.is_none() || has_file, "unit", "goes with file only", "leave it out");
+        report.require(sound, "grading", "applies to cells only", "leave it out");
+        report.require(self.unit.is_none() || has_file, "unit", "applies to file only", "leave it out");
         match (self.nodes, self.spacing, self.level, self.cells, self.file) {
             (Some(n), None, None, None, None) => Some(Size::Nodes(count(n, report))),
             (None, Some(q), None, None, None) => Some(Size::Spacing(report.positive("spacing", q.0))),
             (None, None, Some(level), None, None) => {
-                report.require((1..=8).contains(&level), "level", "is no level", "levels are 1 to 8");
+                report.require(
+                    (1..=8).contains(&level),
+                    "level",
+                    "is not a valid level",
+                    "levels are 1 to 8",
+                );
                 Some(Size::Level(level))
             }
             (None, None, None, Some(cells), None) => {
                 let cells = cells.map(|n| n as usize);
                 let all = cells.iter().fold(1usize, |all, n| all.saturating_mul(*n));
                 let help = format!("give 1 or more along each axis, {MOST} in all at most");
-                report.require((1..=MOST).contains(&all), "cells", "is no number of cells", &help);
+                report.require((1..=MOST).contains(&all), "cells", "is not a valid number of cells", &help);
                 let grading = grading.unwrap_or([1.0; 3]);
                 let sound = grading.iter().all(|g| *g > 0.0);
                 report.require(sound, "grading", "is not positive", "1 is uniform");
@@ -99,7 +104,7 @@ const MOST: usize = 20_000_000;
 /// Checks the number of nodes at the key `nodes`.
 pub(super) fn count(n: u32, report: &Report) -> usize {
     let help = format!("give 4 to {MOST}");
-    report.require((4..=MOST).contains(&(n as usize)), "nodes", "is no number of nodes", &help);
+    report.require((4..=MOST).contains(&(n as usize)), "nodes", "is not a valid number of nodes", &help);
     n as usize
 }
 
@@ -125,7 +130,12 @@ impl JitterKeys {
     pub fn read(self, report: &Report) -> Jitter {
         let JitterKeys { fraction, seed } = self;
         let sound = (0.0..0.5).contains(&fraction);
-        report.require(sound, "jitter.fraction", "is no share of a cell", "give 0 to below 0.5");
+        report.require(
+            sound,
+            "jitter.fraction",
+            "is not a valid fraction of the cell size",
+            "give 0 to below 0.5",
+        );
         Jitter { fraction, seed }
     }
 }

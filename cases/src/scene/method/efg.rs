@@ -72,10 +72,11 @@ impl EfgKeys {
         let (cloud, functions, background) = (cloud?, functions?, background?);
         let couples = essential == Essential::Coupling;
         if couples {
-            let problem = "does not go with essential = \"coupling\"";
-            let help = "take basis = \"linear\": what linear elements leave of another does not vanish where they hold";
+            let problem = "can't be combined with essential = \"coupling\"";
+            let help =
+                "take basis = \"linear\": the other terms of the basis do not vanish on the coupled elements";
             report.require(functions.have_linear_basis(), "basis", problem, help);
-            let help = "take essential = \"elimination\": nodes of finite elements can't be placed anew";
+            let help = "take essential = \"elimination\": the nodes of finite elements can't be refined";
             report.require(!cloud.is_refined(), "cloud.refine", problem, help);
         }
         let dilation = self.dilation.unwrap_or(Dilation::Standard);
@@ -83,7 +84,7 @@ impl EfgKeys {
         report.require(
             regions == Regions::Blended || couples,
             "regions",
-            "wants finite elements along the borders, as essential = \"coupling\" has them along supports",
+            "needs finite elements along the borders, which only essential = \"coupling\" provides",
             "take essential = \"coupling\", or regions = \"blended\"",
         );
         Some(Efg { cloud, functions, integration, essential, dilation, regions, background })
@@ -103,13 +104,13 @@ impl Efg {
         report.require(
             has_regions || self.regions != Regions::Separate,
             "regions",
-            "is of the borders between material regions, and the scene has no [[region]]",
+            "concerns the borders between material regions, but the scene has no [[region]]",
             "leave it out",
         );
         report.require(
             kind == ProcedureKind::Linear || !self.cloud.is_refined(),
             "cloud.refine",
-            "wants a solution at every step, which only a linear procedure is cheap enough for",
+            "needs a solution at every step, which is affordable only in a linear procedure",
             "take [procedure] kind = \"linear\", or leave refine out",
         );
     }

@@ -61,9 +61,9 @@ impl EssentialKeys {
         let factor = factor.map(|factor| report.positive("factor", factor));
         let weak = matches!(kind, EssentialKind::Nitsche | EssentialKind::Penalty);
         let help = "leave it out";
-        report.require(factor.is_none() || weak, "factor", "goes with nitsche and penalty only", help);
+        report.require(factor.is_none() || weak, "factor", "applies to nitsche and penalty only", help);
         let eliminated = kind == EssentialKind::Elimination;
-        report.require(rows.is_none() || eliminated, "rows", "goes with elimination only", help);
+        report.require(rows.is_none() || eliminated, "rows", "applies to elimination only", help);
         match kind {
             EssentialKind::Nitsche => Essential::Nitsche { factor },
             EssentialKind::Penalty => Essential::Penalty { factor },
@@ -91,7 +91,8 @@ impl Essential {
     /// The problem if the procedure does not support this condition; `None` if it does.
     pub(crate) fn unsupported(&self, kind: ProcedureKind) -> Option<Problem> {
         let general = matches!(self, Essential::Penalty { .. } | Essential::Coupling);
-        let problem = format!("serves linear procedures and modes, not kind = \"{}\"", kind.name());
+        let problem =
+            format!("is available for linear procedures and modes, not for kind = \"{}\"", kind.name());
         let unsupported = !general && !kind.has_no_steps();
         unsupported.then(|| Problem::new(problem).help("take \"penalty\" or \"coupling\""))
     }

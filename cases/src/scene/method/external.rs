@@ -88,8 +88,8 @@ impl External {
 }
 
 /// Message for an invalid adapter name, and the help that goes with it.
-pub(crate) const NO_ADAPTER: &str = "is no name of an adapter";
-pub(crate) const ADAPTERS: &str = "tissuebench adapter list has them";
+pub(crate) const NO_ADAPTER: &str = "is not the name of an adapter";
+pub(crate) const ADAPTERS: &str = "`tissuebench adapter list` prints all adapters";
 
 /// Whether a text is a valid adapter name.
 pub(crate) fn is_adapter(name: &str) -> bool {

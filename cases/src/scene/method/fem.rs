@@ -57,7 +57,7 @@ impl FemKeys {
         let size = self.size.read(&report.at("size"));
         let sound = !reduced || element == Element::Hex20;
         let help = "leave it out, or take element = \"hex20\"";
-        report.require(sound, "reduced", "is for hex20 only", help);
+        report.require(sound, "reduced", "applies to hex20 only", help);
         let jitter = self.jitter.map(|jitter| jitter.read(report));
         let dilation = self.dilation.unwrap_or(Dilation::Standard);
         Some(Fem { element, dilation, reduced, size: size?, jitter })

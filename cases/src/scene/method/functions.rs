@@ -135,7 +135,7 @@ impl FunctionKeys {
     /// Reads the functions on a cloud whose nodes are those of cells if it `has_cells`.
     pub fn read(self, has_cells: bool, report: &Report) -> Option<Functions> {
         let (problem, help) = (
-            "follows the cells around each node, and the nodes of this cloud have none",
+            "follows the cells around each node, but the nodes of this cloud have no cells",
             "take the nodes of a mesh: size = { level = 2 }",
         );
         let sound = has_cells || self.neighbourhood != Some(SupportShape::Ellipsoid);
@@ -144,7 +144,7 @@ impl FunctionKeys {
             BasisKeys::Polynomial(basis) => basis,
             BasisKeys::Entropy(Entropy::Maximum) => return Some(self.maximum_entropy(report)),
         };
-        let problem = "goes with basis = \"maximum-entropy\" only";
+        let problem = "applies to basis = \"maximum-entropy\" only";
         report.require(self.gamma.is_none(), "gamma", problem, "leave it out");
         let shape = self.neighbourhood.unwrap_or(SupportShape::Ball);
         let support = self.support(basis, report);
@@ -164,40 +164,42 @@ impl FunctionKeys {
             ("factor", self.factor.is_some()),
             ("neighbourhood", self.neighbourhood.is_some()),
         ] {
-            let problem = "does not go with basis = \"maximum-entropy\"";
-            report.require(!given, key, problem, "leave it out: gamma says how far nodes reach");
+            let problem = "can't be combined with basis = \"maximum-entropy\"";
+            report.require(!given, key, problem, "leave it out: gamma determines the support of the nodes");
         }
         let gamma = self.gamma.unwrap_or(Functions::GAMMA);
-        let help = "0.8 to 4 is usual: below, rows are long; above, close to linear interpolation";
-        report.require((0.6..=6.0).contains(&gamma), "gamma", "is no locality", help);
+        let help =
+            "0.8 to 4 is usual: smaller values give long rows, larger values approach linear interpolation";
+        report.require((0.6..=6.0).contains(&gamma), "gamma", "is not a valid locality", help);
         Functions::MaximumEntropy { gamma }
     }
 
     fn support(&self, basis: Basis, report: &Report) -> Option<SupportRule> {
         let stray = self.factor.is_some() && self.neighbours.is_none();
-        report.require(!stray, "factor", "goes with neighbours only", "leave it out");
+        report.require(!stray, "factor", "applies to neighbours only", "leave it out");
         match (self.support_scale, self.neighbours) {
             (Some(d), None) => {
                 let sound = (1.0..=10.0).contains(&d);
-                report.require(sound, "support_scale", "is no support scale", "1.2 to 3 is usual");
+                report.require(sound, "support_scale", "is not a valid support scale", "1.2 to 3 is usual");
                 Some(SupportRule::Scale(d))
             }
             (None, Some(k)) => {
                 let factor = self.factor.unwrap_or(1.2);
                 let sound = (1.0..=10.0).contains(&factor);
-                report.require(sound, "factor", "is no factor", "1.1 to 1.6 is usual");
+                report.require(sound, "factor", "is not a valid factor", "1.1 to 1.6 is usual");
                 let least = match basis {
                     Basis::Linear => 4,
                     Basis::Quadratic => 10,
                 };
                 let basis = basis.name();
-                let help = format!("a {basis} basis needs {least} at the least, better three times that");
+                let help =
+                    format!("a {basis} basis needs at least {least}, and preferably three times as many");
                 report.require(k >= least, "neighbours", "are too few", &help);
                 Some(SupportRule::Neighbours { k: k as usize, factor })
             }
             (Some(_), Some(_)) => {
                 let help = "give support_scale, or neighbours and factor, not both";
-                report.add("neighbours", Problem::new("stands beside support_scale").help(help));
+                report.add("neighbours", Problem::new("can't be combined with support_scale").help(help));
                 None
             }
             (None, None) => {

@@ -74,31 +74,31 @@ impl IntegrationKeys {
     pub fn read(self, report: &Report) -> Integration {
         match self {
             IntegrationKeys::Gauss { points } => {
-                let help = "in a tetrahedron 1, 4, 8, 14, 15, 24, 35 and 46 are known";
+                let help = "a tetrahedron has rules of 1, 4, 8, 14, 15, 24, 35 and 46 points";
                 report.require(points > 0, "points", "is zero", help);
                 Integration::Gauss { points: points as usize }
             }
             IntegrationKeys::Grid { points, spacing } => {
                 let sound = (1u32..=10).any(|n| n.pow(3) == points);
                 let help = "points per grid cell are 1, 8, 27, 64, ... 1000";
-                report.require(sound, "points", "is no cube number", help);
+                report.require(sound, "points", "is not a cube number", help);
                 let spacing = spacing.map(|q| report.positive("spacing", q.0));
                 Integration::Grid { points: points as usize, spacing }
             }
             IntegrationKeys::CellSmoothed { points, order } => {
                 let order = order.unwrap_or(1);
-                let help = "1 is exact for linear displacements, 2 for quadratic ones";
+                let help = "1 is exact for linear displacements, 2 for quadratic displacements";
                 report.require([1, 2].contains(&order), "order", "is not known", help);
                 let points = points.unwrap_or(if order == 2 { 6 } else { 1 });
                 let sound = order != 2 || ![1, 3].contains(&points);
-                let help = "6 points per face are exact to the degree it needs";
+                let help = "6 points per face have the required degree";
                 report.require(sound, "points", "is too coarse for order 2", help);
                 Integration::CellSmoothed { order, face_points: face_points(points, report) }
             }
             IntegrationKeys::NodeSmoothed { stabilisation, points } => {
                 let sound = (0.0..1.0).contains(&stabilisation);
-                let help = "0 is none, 0.05 is usual; all of it is rule = \"cell-smoothed\"";
-                report.require(sound, "stabilisation", "is no share of the weight", help);
+                let help = "0 is none, 0.05 is usual; for the full weight take rule = \"cell-smoothed\"";
+                report.require(sound, "stabilisation", "is not a valid fraction of the weight", help);
                 let face_points = face_points(points.unwrap_or(1), report);
                 Integration::NodeSmoothed { stabilisation, face_points }
             }
@@ -108,6 +108,6 @@ impl IntegrationKeys {
 
 fn face_points(points: u32, report: &Report) -> usize {
     let sound = [1, 3, 6].contains(&points);
-    report.require(sound, "points", "is no face rule", "points per face are 1, 3 or 6");
+    report.require(sound, "points", "is not a face rule", "points per face are 1, 3 or 6");
     points as usize
 }

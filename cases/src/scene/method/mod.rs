@@ -160,13 +160,13 @@ pub(crate) fn demands(methods: &[Method], kind: ProcedureKind, has_regions: bool
         let dots = method.id.chars().all(|c| c == '.');
         let sound = !dots && method.id.len() <= LONGEST_ID && method.id.chars().all(plain);
         let help = format!("use up to {LONGEST_ID} letters, digits, '-', '_' and '.', not dots alone");
-        report.require(sound, "id", "is no id", &help);
+        report.require(sound, "id", "is not a valid id", &help);
         let vibrates = kind == ProcedureKind::Modes;
         if vibrates && method.mass.is_none() && !matches!(method.family, Family::External(_)) {
             report.missing("mass", "add mass = \"consistent\", \"lumped\" or \"transformed\"");
         }
         let help = "leave it out, or take [procedure] kind = \"modes\"";
-        report.require(vibrates || method.mass.is_none(), "mass", "is of vibrations alone", help);
+        report.require(vibrates || method.mass.is_none(), "mass", "applies to vibrations only", help);
         match &method.family {
             Family::Fem(fem) => fem.demands(&report),
             Family::Efg(efg) => efg.demands(kind, has_regions, &report),
