@@ -247,9 +247,9 @@ fn what_a_repair_would_have_to_do_is_said() {
         "{holes}"
     );
     let some = edit(&|soup| [3, 7].iter().for_each(|&triangle| turn(soup, triangle)));
-    assert!(some.contains(&format!("2 of {all} are not (4 and 8)")), "{some}");
+    assert!(some.contains(&format!("2 of {all} are clockwise (4 and 8)")), "{some}");
     let most = edit(&|soup| (1..all).for_each(|triangle| turn(soup, triangle)));
-    assert!(most.contains(&format!("{} of {all} are not (2, 3, 4, 5, ...)", all - 1)), "{most}");
+    assert!(most.contains(&format!("{} of {all} are clockwise (2, 3, 4, 5, ...)", all - 1)), "{most}");
     let inwards = edit(&|soup| (0..all).for_each(|triangle| turn(soup, triangle)));
     assert!(inwards.contains(&format!("{all} of {all} triangles face inwards")), "{inwards}");
     let twice = edit(&|soup| {

@@ -163,10 +163,7 @@ impl fmt::Display for SurfaceProblem {
                     line(ends)
                 )?;
                 if !orientable {
-                    return write!(
-                        f,
-                        "no reversal of triangles achieves this, so the surface has no outside"
-                    );
+                    return write!(f, "no reversal achieves this, so the surface has no outside");
                 }
                 let (count, numbers) = (turned.len(), list(turned));
                 write!(
