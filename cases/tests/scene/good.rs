@@ -325,6 +325,18 @@ fn contradictions_of_a_static_scene_name_their_key() {
             "method[0].dilation",
             "'mixed' has no stable pressure field with tet4",
         ],
+        [
+            "element = \"tet4\"",
+            "element = \"tet10\"",
+            "method[0].dilation",
+            "'nodal-mean' averages over a negative volume at the corners of tet10",
+        ],
+        [
+            "element = \"tet4\"",
+            "element = \"hex20\"",
+            "method[0].dilation",
+            "take \"element-mean\" or \"nodal-near\" with hex20, or \"nodal-mean\" with tet4 or hex8",
+        ],
         ["steps = 10", "steps = 10\ntolerance = 1", "procedure.tolerance", "is no tolerance"],
         [
             "kind = \"static\"",

@@ -65,13 +65,28 @@ impl FemKeys {
 }
 
 impl Fem {
-    /// Requires elements of second order for a mixed pressure field: linear between corners, it is stable
-    /// with these only.
+    /// Refuses dilations that do not suit the element. A mixed pressure field, linear between corners, is stable with
+    /// elements of second order only. With these, the functions of the corners are negative in most of a cell, so
+    /// nodal means average over negative volumes.
     pub(super) fn demands(&self, report: &Report) {
-        if self.dilation == Dilation::Mixed && matches!(self.element, Element::Tet4 | Element::Hex8) {
-            let problem = format!("has no stable pressure field with {}", self.element.name());
-            let help = "take tet10 or hex20, or \"nodal-mean\" (tet4) or \"element-mean\" (hex8)";
-            report.add("dilation", Problem::new(problem).found("mixed").help(help));
-        }
+        let (name, linear) = (self.element.name(), matches!(self.element, Element::Tet4 | Element::Hex8));
+        let (found, problem, help) = match self.dilation {
+            Dilation::Mixed if linear => (
+                "mixed",
+                format!("has no stable pressure field with {name}"),
+                "take tet10 or hex20, or \"nodal-mean\" (tet4) or \"element-mean\" (hex8)".to_string(),
+            ),
+            Dilation::NodalMean if !linear => (
+                "nodal-mean",
+                format!(
+                    "averages over a negative volume at the corners of {name}, where its functions are negative"
+                ),
+                format!(
+                    "take \"element-mean\" or \"nodal-near\" with {name}, or \"nodal-mean\" with tet4 or hex8"
+                ),
+            ),
+            _ => return,
+        };
+        report.add("dilation", Problem::new(problem).found(found).help(help));
     }
 }
