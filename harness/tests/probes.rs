@@ -143,6 +143,6 @@ fn a_probe_far_from_the_body_is_refused() {
     assert_fails(
         &tissuebench(&["run", &path]),
         2,
-        "far.toml:6: key 'output.probes[0]': (12.0000, 9.0000, 131.0000) mm",
+        "far.toml:6: key 'output.probes[0]': (12.0, 9.0, 131.0) mm",
     );
 }

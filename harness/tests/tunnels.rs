@@ -92,13 +92,13 @@ fn a_tool_between_the_points_is_refused_with_its_depth() {
     let shallow = scene(&ball("10 mm", r#""15 mm", "25 mm", "30 mm""#), "0.2 mm", STATIC);
     let done = run(&shallow);
     assert_fails(&done, 3, "key 'tool[0]'");
-    assert_fails(&done, 3, "overlaps the body by 2.000e-4 m near (0.0150, 0.0250, 0.0200) m");
+    assert_fails(&done, 3, "overlaps the body by 2.000e-4 m near (15.00, 25.00, 20.00) mm");
     assert_fails(&done, 3, "a finer surface is needed");
     let time = r#"kind = "implicit-dynamic", duration = "10 ms", steps = 2"#;
     assert_fails(
         &run(&shallow.replace(STATIC, time)),
         3,
-        "overlaps the body by 2.000e-4 m near (0.0150, 0.0250, 0.0200) m",
+        "overlaps the body by 2.000e-4 m near (15.00, 25.00, 20.00) mm",
     );
     // Over a vertex, the same ball is carried by the vertex: .029 N on these cells, .0103 N on cells of an
     // eighth of the size.
@@ -114,11 +114,11 @@ fn a_tool_between_the_points_is_refused_with_its_depth() {
 #[test]
 fn tools_that_cannot_touch_are_refused_before_the_first_step() {
     let within = scene(&ball("2 mm", r#""20 mm", "20 mm", "9 mm""#), "2 mm", STATIC);
-    assert_fails(&run(&within), 2, "key 'tool[0].at': (20.0000, 20.0000, 9.0000) mm lies within the body");
+    assert_fails(&run(&within), 2, "key 'tool[0].at': (20.00, 20.00, 9.00) mm lies within the body");
     let needle = scene(&ball("20 um", r#""20 mm", "20 mm", "21 mm""#), "2 mm", STATIC);
     let done = run(&needle);
     assert_fails(&done, 3, "key 'method[0].size'");
-    assert_fails(&done, 3, "tool[0] is 0.040 mm wide and would slip through");
+    assert_fails(&done, 3, "tool[0] is 39.7 um wide and would slip through");
 }
 
 #[test]

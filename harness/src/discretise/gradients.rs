@@ -6,7 +6,7 @@
 
 use cases::scene::ErrorKind;
 use geometry::Point3;
-use shape::GradRows;
+use shape::{GradRows, position_alone};
 
 use crate::Failure;
 use crate::error::Key;
@@ -21,13 +21,10 @@ pub(crate) fn check(key: Key, nodes: &[Point3], rows: &GradRows) -> Result<(), F
     let Some((q, off)) = rows.worst_reproduction(nodes).filter(|(_, off)| *off > LIMIT) else {
         return Ok(());
     };
-    let x = rows.points()[q];
     let problem = format!(
-        "has inaccurate gradients: at ({:e}, {:e}, {:e}) m, with {} nodes, the gradient of a linear field has a \
+        "has inaccurate gradients: at {}, with {} nodes, the gradient of a linear field has a \
          relative error of {off:.1e}; stresses are computed up to {LIMIT:e}",
-        x.x,
-        x.y,
-        x.z,
+        position_alone(&rows.points()[q]),
         rows.row(q).0.len()
     );
     let help = "take rule = \"cell-smoothed\", which forms gradients from values, or cells with edges of similar length";

@@ -33,8 +33,13 @@ impl CutTriangle {
 
 /// Returns the tolerance of regions, m: the diagonal of the mesh's bounding box times the relative tolerance.
 pub fn tolerance(mesh: &Mesh) -> f64 {
+    Region::TOLERANCE * size(mesh)
+}
+
+/// Returns the diagonal of the mesh's bounding box, m.
+pub fn size(mesh: &Mesh) -> f64 {
     let (low, high) = bounds(mesh);
-    Region::TOLERANCE * (high - low).norm()
+    (high - low).norm()
 }
 
 /// Returns the lowest and highest corner of the mesh's bounding box, m.

@@ -2,6 +2,7 @@
 
 use catalogue::{metric, warning};
 use geometry::{CellKind, Facet, Matrix3, Point3, Vector3};
+use shape::position;
 
 use super::Solved;
 use crate::Failure;
@@ -46,11 +47,11 @@ pub(super) fn warning(run: &Solved, metrics: &[Metric]) -> Result<Option<Warning
     counts.sort_by(|a, b| a.0.total_cmp(&b.0));
     let Some(&(cells, q)) = counts.get(counts.len() / 2) else { return Ok(None) };
     Ok((cells < FEW).then(|| {
-        let [x, y, z] = [0, 1, 2].map(|a| 1e3 * run.prepared.volume.rows.points()[q][a]);
+        let at = position(&run.prepared.volume.rows.points()[q], place::size(run.method.mesh()));
         let below = counts.iter().filter(|(cells, _)| *cells < FEW).count();
         let message = format!(
             "half of the strain energy lies where the body has at most {cells:.1} cells across in the direction of \
-             its displacement (a quadratic cell counts twice), for example at ({x:.2}, {y:.2}, {z:.2}) mm, and {:.0} \
+             its displacement (a quadratic cell counts twice), for example at {at}, and {:.0} \
              % of the energy lies where there are fewer than three: forces and displacements may be inaccurate; take \
              smaller cells",
             100.0 * below as f64 / counts.len() as f64

@@ -2,6 +2,7 @@
 
 use catalogue::warning;
 use geometry::Point3;
+use shape::length;
 
 use super::Solved;
 use crate::outcome::{LoadStep, Warning};
@@ -40,12 +41,12 @@ pub(super) fn warnings(run: &Solved) -> Vec<Warning> {
             let penalty = placed.tool.law().penalty();
             let enough = penalty * part / (1.0 - part).max(DEEP) / GOOD;
             let message = format!(
-                "sinks {:.4} mm into the surface, {:.1} % of the {:.4} mm {of}, because its penalty of {:.3e} MPa/mm \
+                "sinks {} into the surface, {:.1} % of the {} {of}, because its penalty of {:.3e} MPa/mm \
                  is too small: forces and displacements have errors of that size; a penalty of about {:.1e} MPa/mm \
                  reduces the penetration to 1 %",
-                1e3 * deepest,
+                length(deepest),
                 100.0 * part,
-                1e3 * way,
+                length(way),
                 1e-9 * penalty,
                 1e-9 * enough
             );

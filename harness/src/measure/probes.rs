@@ -3,10 +3,12 @@
 use cases::exact::Exact;
 use catalogue::metric;
 use geometry::{Mesh, Point3, Vector3};
+use shape::{length, position};
 
 use super::Solved;
 use super::stress::Recovered;
 use crate::Failure;
+use crate::discretise::place;
 use crate::error::Key;
 use crate::outcome::{Metric, Probe, push};
 
@@ -21,8 +23,8 @@ pub(crate) fn check_probes(mesh: &Mesh, points: &[Point3]) -> Result<(), Failure
     {
         if outside > width(mesh, cell) {
             let key = Key::Scene(format!("output.probes[{index}]"));
-            let [x, y, z] = [x.x, x.y, x.z].map(|x| 1e3 * x);
-            let problem = format!("({x:.4}, {y:.4}, {z:.4}) mm is {:.4} mm outside the body", 1e3 * outside);
+            let problem =
+                format!("{} is {} outside the body", position(x, place::size(mesh)), length(outside));
             return Err(Failure::input(key, problem, "give a point of the undeformed body"));
         }
     }

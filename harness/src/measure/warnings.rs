@@ -3,6 +3,7 @@
 use cases::scene::Procedure;
 use catalogue::{metric, warning};
 use geometry::Point3;
+use shape::{length, position};
 
 use super::exact_fit::Misfit;
 use super::patch::patch_error;
@@ -83,7 +84,7 @@ pub(crate) fn warnings(
     found.extend(run.solution.digits.and_then(few_digits));
     found.extend(unchecked(run));
     found.extend(large_strain(run));
-    found.extend(rough_stress(recovered, value(&metric::STRESS_JUMP)));
+    found.extend(rough_stress(run, recovered, value(&metric::STRESS_JUMP)));
     Ok(found)
 }
 
@@ -100,8 +101,8 @@ fn unchecked(run: &Solved) -> Option<Warning> {
 fn outside(index: usize, probe: &Probe) -> Option<Warning> {
     (probe.outside > 0.0).then(|| {
         let message = format!(
-            "lies {:.4} mm outside the mesh: its values are taken at the nearest point of the mesh",
-            1e3 * probe.outside
+            "lies {} outside the mesh: its values are taken at the nearest point of the mesh",
+            length(probe.outside)
         );
         Warning::new(&warning::PROBE_OUTSIDE, probe.outside, format!("output.probes[{index}]"), message)
     })
@@ -169,8 +170,8 @@ fn another_problem(run: &Solved) -> Option<Warning> {
 /// Largest nodal displacement of all recorded states, m, and at least the rounding of the body's size.
 fn largest_displacement(run: &Solved) -> f64 {
     let recorded = run.solution.history.iter().flat_map(|history| &history.fields).chain([&run.solution.u]);
-    let (low, high) = place::bounds(run.method.mesh());
-    recorded.flatten().map(|u| u.norm()).fold(ROUNDING * (high - low).norm(), f64::max)
+    let size = place::size(run.method.mesh());
+    recorded.flatten().map(|u| u.norm()).fold(ROUNDING * size, f64::max)
 }
 
 fn long_step(run: &Solved, error: Option<f64>, largest: f64) -> Option<Warning> {
@@ -296,9 +297,9 @@ fn inside(run: &Solved) -> Vec<Warning> {
         let depth = -points.iter().map(|x| placed.tool.gap(0.0, x)).fold(f64::INFINITY, f64::min);
         let message = || {
             format!(
-                "overlaps the undeformed body by {:.3} mm, which the first step has to push out: place the tool \
+                "overlaps the undeformed body by {}, which the first step has to push out: place the tool \
                  farther away (at)",
-                1e3 * depth
+                length(depth)
             )
         };
         (depth > DEEP * narrowest)
@@ -330,8 +331,9 @@ fn few_digits(digits: f64) -> Option<Warning> {
     })
 }
 
-fn millimetres(x: &Point3) -> String {
-    format!("({:.2}, {:.2}, {:.2}) mm", 1e3 * x.x, 1e3 * x.y, 1e3 * x.z)
+/// Writes a position (m) of the undeformed body.
+fn at(run: &Solved, x: &Point3) -> String {
+    position(x, place::size(run.method.mesh()))
 }
 
 fn large_strain(run: &Solved) -> Vec<Warning> {
@@ -342,7 +344,7 @@ fn large_strain(run: &Solved) -> Vec<Warning> {
             "reaches a strain of {:.1} % at {}, and more than {:.0} % in {:.2} % of the volume, beyond the range of a \
              law of small strain: {help}",
             100.0 * strain.value,
-            millimetres(&strain.at),
+            at(run, &strain.at),
             100.0 * large_strain::LARGE,
             100.0 * strain.share
         );
@@ -353,7 +355,7 @@ fn large_strain(run: &Solved) -> Vec<Warning> {
             "reaches a rotation of {:.3} rad at {}, and more than {} rad in {:.2} % of the volume, to which a law of \
              small strain assigns a strain of {:.1} %: {help}",
             turn.value,
-            millimetres(&turn.at),
+            at(run, &turn.at),
             large_strain::TURNED,
             100.0 * turn.share,
             50.0 * turn.value * turn.value
@@ -363,7 +365,7 @@ fn large_strain(run: &Solved) -> Vec<Warning> {
     strained.into_iter().chain(turned).collect()
 }
 
-fn rough_stress(recovered: Option<&Recovered>, jump: Option<f64>) -> Option<Warning> {
+fn rough_stress(run: &Solved, recovered: Option<&Recovered>, jump: Option<f64>) -> Option<Warning> {
     let value = jump.filter(|value| *value > ROUGH_STRESS)?;
     let (_, at) = recovered?.jump()?;
     let message = format!(
@@ -371,7 +373,7 @@ fn rough_stress(recovered: Option<&Recovered>, jump: Option<f64>) -> Option<Warn
          largest at {}. The mesh or cloud is too coarse, or the method locks; the error may be smaller or several \
          times as large",
         100.0 * value,
-        millimetres(&at)
+        self::at(run, &at)
     );
     Some(Warning::new(&warning::STRESS_JUMP, value, "", message))
 }

@@ -4,6 +4,7 @@
 use std::collections::HashMap;
 
 use geometry::{Mesh, Vector3};
+use shape::position;
 
 use super::at;
 use crate::Failure;
@@ -24,8 +25,8 @@ pub(super) fn check(supports: &[Support], mesh: &Mesh) -> Result<(), Failure> {
         Ok(vertices.into_iter().zip(values).collect())
     };
     let values: Vec<_> = supports.iter().map(values).collect::<Result<_, _>>()?;
-    let (low, high) = place::bounds(mesh);
-    let largest = values.iter().flatten().map(|(_, value)| value.amax()).fold((high - low).norm(), f64::max);
+    let size = place::size(mesh);
+    let largest = values.iter().flatten().map(|(_, value)| value.amax()).fold(size, f64::max);
     // First support and its value, m, by vertex and axis.
     let mut prescribed: HashMap<(u32, usize), (usize, f64)> = HashMap::new();
     for (index, (support, values)) in supports.iter().zip(values).enumerate() {
@@ -35,10 +36,9 @@ pub(super) fn check(supports: &[Support], mesh: &Mesh) -> Result<(), Failure> {
                 let &mut (other, first) = prescribed.entry((vertex, axis)).or_insert((index, second));
                 if (first - second).abs() > ROUNDING * largest {
                     let axis = ["x", "y", "z"][axis];
-                    let x = &mesh.points()[vertex as usize];
-                    let [x, y, z] = [x.x, x.y, x.z].map(|x| 1e3 * x);
+                    let node = position(&mesh.points()[vertex as usize], size);
                     let problem = format!(
-                        "prescribes {:.6e} mm along {axis} at ({x:.4}, {y:.4}, {z:.4}) mm, where {} \
+                        "prescribes {:.6e} mm along {axis} at {node}, where {} \
                          prescribes {:.6e} mm",
                         1e3 * second,
                         supports[other].key,

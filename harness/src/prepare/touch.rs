@@ -5,7 +5,7 @@ use cases::scene::ErrorKind;
 use contact::{ContactSurface, Outline, Tool};
 use geometry::quadrature::Parts;
 use geometry::{Facet, Mesh, Point3, Vector3};
-use shape::{PointRows, RowSource, SurfaceRows};
+use shape::{PointRows, RowSource, SurfaceRows, length, position_alone};
 
 use super::sharp;
 use crate::Failure;
@@ -100,8 +100,7 @@ fn outside(surface: &SurfaceRows, index: usize, tool: &Tool) -> Result<(), Failu
     if tool.shape().is_endless() || !(angle > WITHIN * 4.0 * std::f64::consts::PI) {
         return Ok(());
     }
-    let at = place.coords.map(|c| 1e3 * c);
-    let problem = format!("({:.4}, {:.4}, {:.4}) mm lies within the body", at.x, at.y, at.z);
+    let problem = format!("{} lies within the body", position_alone(&place));
     Err(Failure::input(
         Key::Scene(format!("tool[{index}].at")),
         problem,
@@ -134,10 +133,10 @@ fn affordable(index: usize, half: f64, free: f64, points: usize) -> Result<(), F
         return Ok(());
     }
     let problem = format!(
-        "leaves {:.3} mm between contact points, and tool[{index}] is {:.3} mm wide and would slip through; \
+        "leaves {} between contact points, and tool[{index}] is {} wide and would slip through; \
          subdividing the faces would take more than {MOST} points",
-        2e3 * free,
-        2e3 * half
+        length(2.0 * free),
+        length(2.0 * half)
     );
     Err(Failure::at(ErrorKind::NotRun, Key::Size(""), problem, "take a finer mesh near the tool"))
 }

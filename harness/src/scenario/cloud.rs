@@ -6,6 +6,7 @@ use cases::scene::{self, ErrorKind};
 use efg::{CloudSource, Functions, Integration};
 use geometry::shapes::Shape;
 use geometry::{CellKind, Cloud, CloudError, Mesh, cloud, cloud_from_mesh, files, locate};
+use shape::{length, position};
 
 use super::discretise::dilation;
 use super::{Scenario, body, cloud_file, file_body, grading};
@@ -303,16 +304,13 @@ fn in_background(cloud: &Cloud, background: &Mesh) -> Result<(), Failure> {
     let Some(&farthest) = lost.iter().max_by(|&&a, &&b| found[a].outside.total_cmp(&found[b].outside)) else {
         return Ok(());
     };
-    let at = cloud.points[farthest].coords * 1e3;
     let problem = format!(
-        "has no cells around {} of {} nodes; the farthest node, at ({:.4}, {:.4}, {:.4}) mm, is {:.4} mm away from \
+        "has no cells around {} of {} nodes; the farthest node, at {}, is {} away from \
          all cells: the cells leave out thin parts of the body",
         lost.len(),
         found.len(),
-        at.x,
-        at.y,
-        at.z,
-        1e3 * found[farthest].outside
+        position(&cloud.points[farthest], place::size(background)),
+        length(found[farthest].outside)
     );
     Err(Failure::at(
         ErrorKind::NotRun,

@@ -2,6 +2,7 @@
 
 use cases::scene::{Body, MeshFile, Size};
 use geometry::{CellKind, Mesh, Point3, Vector3, files, quality};
+use shape::position;
 
 use super::body;
 use crate::Failure;
@@ -69,10 +70,8 @@ pub fn check(body: &Body, file: &MeshFile, mesh: &Mesh) -> Result<(), Failure> {
 }
 
 fn describe(extent: &Extent) -> String {
-    let range = |axis: usize| {
-        format!("{} = {:.4} to {:.4}", ["x", "y", "z"][axis], 1e3 * extent.min[axis], 1e3 * extent.max[axis])
-    };
-    format!("{}, {}, {} mm and {:.4} cm^3", range(0), range(1), range(2), 1e6 * extent.volume)
+    let [low, high] = [extent.min, extent.max].map(|x| position(&x, extent.size().norm()));
+    format!("{:.4e} cm^3, from {low} to {high}", 1e6 * extent.volume)
 }
 
 /// Returns the help for a mesh `ratio` times as large as the body.
@@ -96,7 +95,7 @@ mod tests {
         let file = MeshFile { path: "ball.msh".into(), unit: 1.0, join: false };
         let ball = ball_mesh(CellKind::Hex8, 0.02, 8).unwrap();
         let wrong = check(&cube, &file, &ball).unwrap_err().to_string();
-        assert!(wrong.contains("64.0000 cm^3"), "{wrong}");
+        assert!(wrong.contains("6.4000e1 cm^3, from (-20.0, -20.0, -20.0) mm"), "{wrong}");
         check(&Body::Ball { radius: 0.02 }, &file, &ball).unwrap();
     }
 }

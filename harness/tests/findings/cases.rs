@@ -191,7 +191,7 @@ pub const CASES: &[Case] = &[
             "[[support]]\nwhere = \"z == 0 mm\"\nfix = \"xyz\"\n\n[[support]] #<\nwhere = \"x == 0 mm\"\nmove = { x = \"1 mm\" }",
         ),
         key: "support[1]",
-        says: &["1.000000e0 mm along x at (0.0000, 0.0000, 0.0000) mm, where support[0]", "values agree"],
+        says: &["1.000000e0 mm along x at (0.0, 0.0, 0.0) mm, where support[0]", "values agree"],
         stops: &["tet4", "efg"],
         ..SOUND
     },

@@ -1,6 +1,6 @@
 //! Errors in the definition of a tool and in contact.
 
-use shape::Point3;
+use shape::{Point3, position_alone};
 
 /// Reason why a tool cannot be made, or why contact has no meaning in a state.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -95,10 +95,10 @@ pub enum ContactError {
     },
     /// A tool passes through the surface within one step and touches nothing afterwards.
     #[error(
-        "the surface near ({:.4}, {:.4}, {:.4}) m would pass through the tool in this step, as deep as \
+        "the surface near {} would pass through the tool in this step, as deep as \
          {depth:.3e} m below the tool's surface: the step moves tool and body by {travel:.3e} m relative to \
          each other; a smaller step is needed",
-        at.x, at.y, at.z
+        position_alone(at)
     )]
     JumpedOver {
         /// Depth along the path, m.
@@ -110,10 +110,10 @@ pub enum ContactError {
     },
     /// A tool overlaps the body but touches no point of its surface.
     #[error(
-        "the tool overlaps the body by {depth:.3e} m near ({:.4}, {:.4}, {:.4}) m but touches no contact \
+        "the tool overlaps the body by {depth:.3e} m near {} but touches no contact \
          point, so the contact force is zero: the nearest contact point is {apart:.3e} m away; a finer \
          surface is needed",
-        at.x, at.y, at.z
+        position_alone(at)
     )]
     Overlap {
         /// Depth, m.
@@ -126,8 +126,8 @@ pub enum ContactError {
     /// A tool pushes out of the body from within.
     #[error(
         "{:.0} % of the tool's force acts outwards from inside the body, at surface point {point} near \
-         ({:.4}, {:.4}, {:.4}) m: the tool has slipped between the contact points; a finer surface is needed",
-        100.0 * share, at.x, at.y, at.z
+         {}: the tool has slipped between the contact points; a finer surface is needed",
+        100.0 * share, position_alone(at)
     )]
     WithinBody {
         /// Part of the force that pushes outwards, 0 to 1.

@@ -58,9 +58,9 @@ pub enum EfgError {
     },
     /// A point covered by too few nodes, even with the largest allowed enlargement of supports.
     #[error(
-        "point ({:e}, {:e}, {:e}) m has {found} neighbours even with supports enlarged {enlargement:.2} \
+        "point {} has {found} neighbours even with supports enlarged {enlargement:.2} \
          times; {needed} are needed",
-        point.x, point.y, point.z
+        shape::position_alone(point)
     )]
     TooFewNeighbours {
         /// Position, m.
@@ -75,10 +75,10 @@ pub enum EfgError {
     /// A point whose neighbours do not span the basis (for example because they lie in one plane), even after
     /// all remedies.
     #[error(
-        "the {found} neighbours of point ({:e}, {:e}, {:e}) m do not span the linear basis, even with \
+        "the {found} neighbours of point {} do not span the linear basis, even with \
          supports enlarged {enlargement:.2} times (do the neighbours lie in one plane?); the requested basis \
          has {needed} terms",
-        point.x, point.y, point.z
+        shape::position_alone(point)
     )]
     SingularMoment {
         /// Position, m.
@@ -93,10 +93,10 @@ pub enum EfgError {
     /// A point outside the convex hull of its neighbours, at which no positive functions reproduce linear
     /// fields.
     #[error(
-        "point ({:e}, {:e}, {:e}) m lies outside the convex hull of its {found} neighbours: after \
+        "point {} lies outside the convex hull of its {found} neighbours: after \
          {iterations} Newton steps the weighted mean of the neighbours is still {gap:e} m away \
          (maximum-entropy functions are positive and cannot extrapolate)",
-        point.x, point.y, point.z
+        shape::position_alone(point)
     )]
     OutsideHull {
         /// Position, m.

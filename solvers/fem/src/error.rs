@@ -53,8 +53,8 @@ pub enum FemError {
     },
     /// No cell contains the point.
     #[error(
-        "point {point} at ({:e}, {:e}, {:e}) m lies outside the mesh, {distance:e} m from its surface",
-        position[0], position[1], position[2]
+        "point {point} at {} lies outside the mesh, {} from its surface",
+        shape::position_alone(&(*position).into()), shape::length(*distance)
     )]
     Outside {
         /// Index into the requested points.

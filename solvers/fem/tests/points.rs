@@ -130,7 +130,7 @@ fn points_outside_are_named_with_their_distance() {
     }
     let message = point_rows(&mesh, &[Point3::new(1.0, 0.5, 1.25)]).unwrap_err().to_string();
     assert!(
-        message.contains("point 0 at (1e0, 5e-1, 1.25e0) m lies outside the mesh, 2.5e-1 m"),
+        message.contains("point 0 at (1.000, 0.500, 1.250) m lies outside the mesh, 250 mm"),
         "{message}"
     );
     let bad = [Point3::origin(), Point3::new(0.0, f64::NAN, 0.0)];

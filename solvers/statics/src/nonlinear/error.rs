@@ -67,9 +67,9 @@ pub enum StaticError {
     /// Newton's method did not converge.
     #[error(
         "no equilibrium after {iterations} iterations: relative residual {residual:.2e} (limit \
-         {tolerance:.0e}), largest at node {} near ({:.4}, {:.4}, {:.4}) m: {:.2e} N; smallest J \
+         {tolerance:.0e}), largest at node {} near {}: {:.2e} N; smallest J \
          {smallest:.3} at quadrature point {smallest_at}",
-        worst.node, worst.at.x, worst.at.y, worst.at.z, worst.force
+        worst.node, shape::position_alone(&worst.at), worst.force
     )]
     NotConverged {
         /// Iterations done.
