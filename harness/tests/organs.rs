@@ -22,7 +22,7 @@ fn runs(name: &str, stl: &str) {
         let (force, load) = (value("tool-force"), value("load-carried"));
         assert!(force > 0.0 && load == 1.0, "{force} N at {load} of the load: {run}");
     }
-    for warning in ["tool-untouched", "probe-outside", "tool-inside"] {
+    for warning in ["tool-untouched", "probe-outside", "tool-inside", "deep-penetration"] {
         assert!(!done.stderr.contains(warning), "{}", done.stderr);
     }
 }
