@@ -8,12 +8,12 @@ use cases::scene::{
     Body, Cloud, Element, ErrorKind, External, Family, MeshFile, Method, Procedure, Reference, Scene,
     SceneError, Size,
 };
-use geometry::shapes::Shape;
+use geometry::CellKind;
 use material::Material as _;
 
-use super::body::{self, base, shape};
-use super::expected::narrowest;
-use super::file_body;
+use super::body::{self, base};
+use super::discretise::kind;
+use super::expected::{self, narrowest};
 
 /// Bytes of a mesh file per node, including cells.
 const FILE_BYTES: f64 = 250.0;
@@ -149,24 +149,20 @@ fn factor(unknowns: f64) -> f64 {
 fn size(scene: &Scene, family: &Family) -> (f64, f64, f64) {
     let body = &scene.body;
     let of_cloud = |count: usize| (count as f64, (count as f64).cbrt(), CLOUD);
+    let over_mesh = |cells, size: &Size| (nodes(body, cells, size), across(body, size), CLOUD);
     match family {
         Family::Fem(fem) | Family::External(External { elements: fem, .. }) => {
-            let (cells, across) = cells(body, &fem.size);
-            match fem.element {
-                Element::Tet4 | Element::Hex8 => (nodes(cells, 1.0), across, 1.0),
-                Element::Hex20 => (4.0 * nodes(cells, 1.0), across, 2.0),
-                Element::Tet10 => (nodes(cells, 2.0), 2.0 * across, 1.0),
-            }
+            let (kind, across) = (kind(fem.element), across(body, &fem.size));
+            let (across, rows) = match fem.element {
+                Element::Tet4 | Element::Hex8 => (across, 1.0),
+                Element::Hex20 => (across, 2.0),
+                Element::Tet10 => (2.0 * across, 1.0),
+            };
+            (nodes(body, kind, &fem.size), across, rows)
         }
-        Family::OverMesh(over) => {
-            let (cells, across) = cells(body, &over.size);
-            (nodes(cells, 1.0), across, CLOUD)
-        }
+        Family::OverMesh(over) => over_mesh(over.family.cells, &over.size),
         Family::Efg(efg) => match &efg.cloud {
-            Cloud::Mesh { size, .. } => {
-                let (cells, across) = cells(body, size);
-                (nodes(cells, 1.0), across, CLOUD)
-            }
+            Cloud::Mesh { size, .. } => over_mesh(CellKind::Tet4, size),
             Cloud::Uniform { nodes, .. } | Cloud::Graded { nodes, .. } => of_cloud(*nodes),
             // Each refined cloud is solved.
             Cloud::Refined { nodes, refine, .. } => {
@@ -181,38 +177,27 @@ fn size(scene: &Scene, family: &Family) -> (f64, f64, f64) {
     }
 }
 
-/// Returns the number of approximately cubic cells of a body, and their number across its narrowest extent.
-fn cells(body: &Body, size: &Size) -> (f64, f64) {
-    let across = match size {
-        Size::Level(level) => base(body) as f64 * f64::from(*level - 1).exp2(),
-        Size::Spacing(spacing) => (narrowest(body) / spacing).max(1.0),
-        Size::Nodes(nodes) => return (*nodes as f64, (*nodes as f64).cbrt()),
-        Size::Cells { cells, .. } => {
-            let least = cells.iter().copied().min().unwrap_or(1);
-            return (cells.iter().map(|&n| n as f64).product(), least as f64);
-        }
-        Size::File(file) => return (of_file(file), of_file(file).cbrt()),
-    };
-    (volume(body) / (narrowest(body) / across).powi(3), across)
+/// Returns the number of nodes of a mesh.
+fn nodes(body: &Body, kind: CellKind, size: &Size) -> f64 {
+    match size {
+        Size::File(file) => of_file(file),
+        size => expected::nodes(body, kind, size),
+    }
 }
 
-/// Returns the number of corners of `cells` cells in a cube, with each edge divided into `parts`.
-fn nodes(cells: f64, parts: f64) -> f64 {
-    (parts * cells.cbrt() + 1.0).powi(3)
+/// Returns the number of cells across the body's narrowest extent.
+fn across(body: &Body, size: &Size) -> f64 {
+    match size {
+        Size::Level(level) => base(body) as f64 * f64::from(*level - 1).exp2(),
+        Size::Spacing(spacing) => (narrowest(body) / spacing).max(1.0),
+        Size::Nodes(nodes) => (*nodes as f64).cbrt(),
+        Size::Cells { cells, .. } => cells.iter().copied().min().unwrap_or(1) as f64,
+        Size::File(file) => of_file(file).cbrt(),
+    }
 }
 
 fn of_file(file: &MeshFile) -> f64 {
     std::fs::metadata(&file.path).map_or(0.0, |of| of.len() as f64 / FILE_BYTES)
-}
-
-fn volume(body: &Body) -> f64 {
-    let shell = |inner: f64, outer: f64| std::f64::consts::PI * (outer.powi(3) - inner.powi(3)) / 6.0;
-    match (shape(body), body) {
-        (Some(shape), _) => Shape::volume(&*shape),
-        (None, Body::SphereShell { inner, outer, .. }) => shell(*inner, *outer),
-        (None, Body::File(file)) => file_body::load(file).map_or(0.0, |body| body.surface.volume()),
-        (None, _) => 0.0,
-    }
 }
 
 /// Returns the number of load steps or time steps. Explicit steps follow from the travel time of a wave

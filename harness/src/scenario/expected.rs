@@ -39,8 +39,8 @@ fn cloud(body: &Body, cloud: &scene::Cloud) -> f64 {
     }
 }
 
-/// Returns the number of nodes of a mesh of the body.
-fn nodes(body: &Body, kind: CellKind, size: &Size) -> f64 {
+/// Returns the number of nodes of a mesh of the body; 0 for a mesh file.
+pub(super) fn nodes(body: &Body, kind: CellKind, size: &Size) -> f64 {
     match *size {
         // The coarsest mesh of a box a million times as long as it is narrow has more nodes than requested.
         Size::Nodes(wanted) => of_family(body, kind, 1.0).max(wanted as f64),

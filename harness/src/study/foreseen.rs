@@ -13,8 +13,9 @@ pub(super) struct Foreseen {
     seconds: Vec<f64>,
     /// Whether each task's time is a stored measurement.
     known: Vec<bool>,
-    /// Median ratios of measured to estimated time, by scene and over all scenes.
-    of_scene: BTreeMap<usize, f64>,
+    /// Number of measured runs and median ratio of measured to estimated time, by scene; and the median over all
+    /// scenes.
+    of_scene: BTreeMap<usize, (usize, f64)>,
     of_all: f64,
 }
 
@@ -34,7 +35,8 @@ impl Plan {
         };
         let mut by_scene: BTreeMap<usize, Vec<f64>> = BTreeMap::new();
         ratios().for_each(|(scene, ratio)| by_scene.entry(scene).or_default().push(ratio));
-        let of_scene = by_scene.into_iter().map(|(scene, ratios)| (scene, median(ratios))).collect();
+        let of_scene =
+            by_scene.into_iter().map(|(scene, ratios)| (scene, (ratios.len(), median(ratios)))).collect();
         let of_all = median(ratios().map(|(_, ratio)| ratio).collect());
         let mut foreseen = Foreseen { seconds: Vec::new(), known: Vec::new(), of_scene, of_all };
         let tasks = self.tasks.iter().zip(known.iter().zip(estimated));
@@ -77,9 +79,12 @@ impl Foreseen {
         self.known[task]
     }
 
-    /// Ratio of measured to estimated time of a scene.
+    /// Ratio of measured to estimated time of a scene. The ratio of all scenes counts like one more run of this
+    /// scene, so that a single run does not decide.
     pub(super) fn factor(&self, scene: usize) -> f64 {
-        self.of_scene.get(&scene).copied().unwrap_or(self.of_all)
+        let (count, of_scene) = self.of_scene.get(&scene).copied().unwrap_or((0, 1.0));
+        let runs = count as f64;
+        ((runs * of_scene.ln() + self.of_all.ln()) / (runs + 1.0)).exp()
     }
 }
 
