@@ -5,6 +5,7 @@ mod common;
 use std::fmt::Write as _;
 use std::path::Path;
 
+use common::implicit::turned;
 use common::{assert_fails, inside, objects, tissuebench, write};
 use tempfile::TempDir;
 
@@ -130,6 +131,29 @@ fn a_body_with_a_tip_has_its_probes_inside() {
     assert_eq!(done.code, 0, "{}", done.stderr);
     let done = tissuebench(&["run", &out, "--once", "--method", "tet4-coarse", "--format", "json"]);
     assert_eq!(done.code, 0, "{}", done.stderr);
+}
+
+/// A tip under the plate, and a blade: faces of different directions meet there. No run takes the plate for one that
+/// pushes out of the body from within.
+#[test]
+fn a_plate_on_a_tip_is_carried_from_outside() {
+    let dir = tempfile::tempdir().unwrap();
+    let spindle = turned(&[[6.0, 0.0], [9.0, 6.0], [0.0, 36.0]], 10);
+    // Flat ends, and a ridge of 1 mm instead of a tip.
+    let blade = turned(&[[12.0, 0.0], [0.5, 30.0]], 4);
+    for (name, stl) in [("spindle", spindle), ("blade", blade)] {
+        let (file, out) = (write(&dir, &format!("{name}.stl"), &stl), inside(&dir, &format!("{name}.toml")));
+        let init =
+            ["init", "--file", &file, "--methods", "tet4-nodal,tet10", "--nodes", "150", "--out", &out];
+        let done = tissuebench(&init);
+        assert_eq!(done.code, 0, "{name}: {}", done.stderr);
+        let done = tissuebench(&["run", &out, "--once", "--format", "json"]);
+        assert_eq!(done.code, 0, "{name}: {}", done.stderr);
+        for run in objects(&done.stdout) {
+            let value = |metric: &str| run["metrics"][metric]["value"].as_f64().unwrap();
+            assert!(value("load-carried") == 1.0 && value("tool-force") > 0.0, "{name}: {run}");
+        }
+    }
 }
 
 /// Every side, method, drive and strain level makes a scene that can be planned; a few scenes are run.

@@ -47,6 +47,73 @@ fn what_a_deck_has_beside_its_mesh_is_said_in_info_and_run() {
     assert!(done.code == 0 && !done.stdout.contains("left-out"), "{}", done.stdout);
 }
 
+/// Two blocks of 10 mm that share no node, with `*TIE` between them. The second block has `parts` cells along y.
+fn tied(parts: usize) -> String {
+    let mut text = String::from(
+        "*NODE\n1,0,0,0\n2,10,0,0\n3,0,10,0\n4,10,10,0\n5,0,0,10\n6,10,0,10\n7,0,10,10\n8,10,10,10\n",
+    );
+    let number = |y: usize, k: usize| 10 + 4 * y + k;
+    for y in 0..=parts {
+        for (k, [x, z]) in [[10, 0], [20, 0], [10, 10], [20, 10]].iter().enumerate() {
+            text += &format!("{},{x},{},{z}\n", number(y, k), 10.0 * y as f64 / parts as f64);
+        }
+    }
+    text += "*ELEMENT, TYPE=C3D8\n1,1,2,4,3,5,6,8,7\n";
+    for y in 0..parts {
+        let nodes = [(0, 0), (0, 1), (1, 1), (1, 0), (0, 2), (0, 3), (1, 3), (1, 2)];
+        let nodes = nodes.map(|(more, k)| number(y + more, k).to_string());
+        text += &format!("{},{}\n", 2 + y, nodes.join(","));
+    }
+    text + "*TIE, NAME=GLUE\nSLAVE, MASTER\n"
+}
+
+/// The tie is listed by its line, and the blocks that it would join are counted. Blocks with coincident faces are
+/// joined on request, and then move as a mesh of one piece does.
+#[test]
+fn pieces_of_a_tie_are_counted_and_joined_on_request() {
+    let dir = tempfile::tempdir().unwrap();
+    let held = |file: &str, join: &str| {
+        let text = scene(file, "").replace("unit = \"mm\" }", &format!("unit = \"mm\"{join} }}"));
+        let support = "support = [{ where = \"z == 0 mm\", fix = \"xyz\" }]";
+        text.replace("support = [{ where = \"x == 0 mm\", fix = \"xyz\" }]", support)
+    };
+    let largest = |text: &str| {
+        let done = tissuebench(&["run", &write(&dir, "scene.toml", text), "--once", "--format", "json"]);
+        assert_eq!(done.code, 0, "{}", done.stderr);
+        let run = objects(&done.stdout).remove(0);
+        let codes =
+            run["warnings"].as_array().unwrap().iter().map(|w| w["code"].as_str().unwrap().to_string());
+        (run["metrics"]["max-x"]["value"].as_f64().unwrap(), codes.collect::<Vec<_>>())
+    };
+    write(&dir, "plain.inp", NODES);
+    let (whole, none) = largest(&held("plain.inp", ""));
+    assert!(!none.iter().any(|code| code == "pieces-apart" || code == "left-out"), "{none:?}");
+    for (parts, faces, line) in [(1, 1, 21), (2, 0, 26)] {
+        let (name, join) = (format!("tied-{parts}.inp"), ", join = true");
+        let deck = write(&dir, &name, &tied(parts));
+        let info = tissuebench(&["mesh", "info", &deck]);
+        assert_eq!(info.code, 0, "{}", info.stderr);
+        let pieces = format!("2 pieces that share no node, {faces} coincident faces");
+        for part in [&pieces, &format!("left out    *TIE, NAME=GLUE (line {line})")] {
+            assert!(info.stdout.contains(part), "no {part} in {}", info.stdout);
+        }
+        let (apart, codes) = largest(&held(&name, ""));
+        assert!((apart / whole - 1.0).abs() > 0.05, "{apart} {whole}");
+        assert!(
+            codes.iter().any(|c| c == "pieces-apart") && codes.iter().any(|c| c == "left-out"),
+            "{codes:?}"
+        );
+        if faces > 0 {
+            let (joined, codes) = largest(&held(&name, join));
+            assert!((joined / whole - 1.0).abs() < 1e-9, "{joined} {whole}");
+            assert!(!codes.iter().any(|code| code == "pieces-apart"), "{codes:?}");
+        } else {
+            let path = write(&dir, "scene.toml", &held(&name, join));
+            assert_fails(&tissuebench(&["run", &path]), 2, "have no coincident faces");
+        }
+    }
+}
+
 #[test]
 fn a_region_may_be_any_group_but_a_cell_has_one_material() {
     let dir = tempfile::tempdir().unwrap();

@@ -87,6 +87,52 @@ fn a_mesh_that_locks_warns_of_its_stress_and_a_good_one_does_not() {
     }
 }
 
+/// Next to the edge of a bonded punch, forces of coarse meshes are too large by tens of percent, and nothing says how
+/// far: no number of a run without a reference is called an error. The jump of stress warns.
+#[test]
+fn no_number_of_a_run_without_a_reference_is_called_an_error() {
+    let dir = tempfile::tempdir().unwrap();
+    let out = inside(&dir, "out");
+    let scene = |moved: &str| {
+        let methods = [("tet4-nodal", "tet4", "nodal-mean"), ("hex8-mean", "hex8", "element-mean")];
+        let methods = methods.map(|(id, element, dilation)| {
+            format!(r#"{{ id = "{id}", family = "fem", element = "{element}", dilation = "{dilation}", size = {{ cells = [5, 5, 4] }} }}"#)
+        });
+        format!(
+            r#"title = "A punch bonded to a block"
+body = {{ shape = "box", size = ["50 mm", "50 mm", "40 mm"] }}
+material = {{ law = "linear", young = "8 kPa", poisson = 0.49 }}
+support = [{{ on = "z-min", fix = "FIX" }}, {{ on = "x-min", fix = "x" }}, {{ on = "y-min", fix = "y" }}, {{ {moved} }}]
+method = [{}]
+"#,
+            methods.join(", ")
+        )
+    };
+    let punch = scene(
+        "where = \"z >= 39.9 mm and x <= 20.1 mm and y <= 20.1 mm\", move = [\"0 mm\", \"0 mm\", \"-2 mm\"]",
+    );
+    let path = write(&dir, "punch.toml", &punch.replace("FIX", "xyz"));
+    let done = tissuebench(&["run", &path, "--once", "--format", "json", "--out", &out]);
+    assert_eq!(done.code, 0, "{}", done.stderr);
+    let runs = objects(&done.stdout);
+    for run in &runs {
+        assert!((0.1..0.5).contains(&metric(run, "stress-jump")), "{run}");
+        let mut names = run["metrics"].as_object().unwrap().keys();
+        assert!(!names.any(|name| name.contains("error")), "{run}");
+    }
+    let warning = runs[1]["warnings"].as_array().unwrap().iter().find(|w| w["code"] == "stress-jump");
+    let message = warning.expect("a warning of stress")["message"].as_str().unwrap();
+    assert!(message.contains("jumps between neighbours") && message.contains(" mm"), "{message}");
+    let records = std::fs::read_to_string(inside(&dir, "out/records.csv")).unwrap();
+    let wrong = records.lines().find(|line| line.contains("error"));
+    assert!(records.contains("stress-jump") && wrong.is_none(), "{wrong:?}");
+    // A punch as wide as the block on a smooth base strains it evenly.
+    let even = scene("on = \"z-max\", move = { z = \"-2 mm\" }").replace("FIX", "z");
+    for run in self::run(&dir, &even) {
+        assert!(metric(&run, "stress-jump") < 1e-6 && codes(&run).is_empty(), "{run}");
+    }
+}
+
 #[test]
 fn a_check_can_forbid_warnings_and_a_folder_keeps_them() {
     let dir = tempfile::tempdir().unwrap();
