@@ -198,6 +198,7 @@ impl Discretisation {
                 Dilation::Mixed => pressure = Some(source.pressure(alike)?.ok_or_else(no_pressure)?),
             }
         }
+        groups.as_ref().map_or(Ok(()), |groups| positive(groups, rows.weights()))?;
         counters.support_radii += source.supports() as u64;
         counters.volume_rows += rows.weights().len() as u64;
         counters.pressure_parameters += pressure.as_ref().map_or(0, Rows::node_count) as u64;
@@ -205,6 +206,22 @@ impl Discretisation {
         counters.point_laws += region.len() as u64;
         Ok((source, Volume { rows, region, groups, pressure, diagnostics }))
     }
+}
+
+/// Refuses groups without a positive volume: their mean dilation has no meaning, and negative ones make a body
+/// unstable. Functions of second order are negative over most of their support.
+fn positive(groups: &DilationGroups, weights: &[f64]) -> Result<(), Failure> {
+    let volume = |group: usize| -> f64 {
+        let (points, shares) = groups.group(group);
+        points.iter().zip(shares).map(|(&point, share)| share * weights[point as usize]).sum()
+    };
+    // The negation also refuses NaN.
+    let Some(bad) = (0..groups.len()).find(|&group| !(volume(group) > 0.0)) else { return Ok(()) };
+    let problem = format!(
+        "averages over {:.3e} m^3 at node {bad}, where the shape functions are mostly negative; a positive volume is needed",
+        volume(bad)
+    );
+    Err(Failure::unavailable(Key::Method("dilation"), problem, "take \"nodal-near\""))
 }
 
 fn no_cells() -> Failure {

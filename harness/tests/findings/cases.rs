@@ -407,6 +407,19 @@ pub const CASES: &[Case] = &[
         ..SOUND
     },
     Case {
+        name: "a mean dilation over a negative volume",
+        edit: (
+            "nodes = 60\nkernel = \"cubic-spline\"\nsupport_scale = 1.6\nbasis = \"linear\"\nintegration = { rule = \"gauss\", points = 4 }",
+            "size = { cells = [4, 4, 2] }\nkernel = \"cubic-spline\"\nsupport_scale = 2.6\nbasis = \"quadratic\"\ndilation = \"nodal-mean\" #<\n\
+             integration = { rule = \"cell-smoothed\", order = 2, points = 6 }",
+        ),
+        code: 3,
+        key: "method[1].dilation",
+        says: &["'nodal-mean' averages over -6.265e-10 m^3 at node 0", "\"nodal-near\""],
+        stops: &["efg"],
+        ..SOUND
+    },
+    Case {
         name: "a cloud of an exact count in an octant",
         base: &[OCTANT[0], OCTANT[1], OCTANT[3]],
         edit: ("nodes = 60", "nodes = 60 #<"),
