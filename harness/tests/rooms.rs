@@ -76,6 +76,7 @@ const SCENE: House = House {
         "conform",
         "sources",
         "error",
+        "table",
         "units",
         "region",
         "expression",
@@ -235,7 +236,7 @@ fn an_arrow_back_would_be_seen() {
     assert_eq!(used("use super::{Method, common::{Size, Mass}};"), [12, 21].into());
     assert_eq!(
         used("use crate::exact::Exact; use crate::scene::{tool::Tool, words::words};"),
-        [22, 41].into()
+        [22, 42].into()
     );
 }
 

@@ -37,6 +37,7 @@ mod set;
 mod shared;
 mod sources;
 mod study;
+mod table;
 mod tool;
 mod units;
 mod vocabulary;

@@ -10,6 +10,7 @@ use super::reference::Reference;
 use super::region::Region;
 use super::report::Report;
 use super::selection::{Names, Place};
+use super::table::{Key, table};
 use super::units::{Length, Q, Time, Unit};
 use super::vocabulary::{Given, Schemes, Word, build, settings};
 use super::words::words;
@@ -41,18 +42,19 @@ struct MeanKeys {
     place: Option<Region>,
 }
 
-/// A simulator's loop: prepared once, the loading goes up and down frame by frame
-#[derive(Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-struct RepeatedKeys {
-    /// Total number of frames; percentiles above 99 need 1000
-    frames: u32,
-    /// Frames of one cycle up and down; 120 unless given, 4 s at 30 Hz
-    cycle: Option<u32>,
-    /// Time after which no further frame starts; 10 s unless given
-    within: Option<Q<Time>>,
-    /// Relative residual of a frame solved by Newton's method; the procedure's tolerance unless given
-    tolerance: Option<f64>,
+table! {
+    /// A simulator's loop: prepared once, the loading goes up and down frame by frame
+    #[serde(deny_unknown_fields)]
+    pub struct Repeated from RepeatedKeys {
+        /// Total number of frames; percentiles above 99 need 1000
+        frames: usize as u32,
+        /// Frames of one cycle up and down; 120 unless given, 4 s at 30 Hz
+        cycle: usize as u32 = 120,
+        /// Time after which no further frame starts; 10 s unless given
+        within: f64 as Q<Time> = 10.0,
+        /// Relative residual of a frame solved by Newton's method; the procedure's tolerance unless given
+        tolerance: Option<f64>,
+    }
 }
 
 /// One transfer or several
@@ -128,19 +130,6 @@ pub struct Output {
     pub repeated: Option<Repeated>,
 }
 
-/// A simulator's loop: prepared once, the loading goes up and down frame by frame.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Repeated {
-    /// Total number of frames.
-    pub frames: usize,
-    /// Frames of one cycle up and down.
-    pub cycle: usize,
-    /// Time after which no further frame starts, s.
-    pub within: f64,
-    /// Relative residual of a frame; the procedure's tolerance if `None`.
-    pub tolerance: Option<f64>,
-}
-
 /// A transfer of nodal displacements to other points.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Transfer {
@@ -191,15 +180,16 @@ const MOST_FRAMES: usize = 1_000_000;
 
 impl RepeatedKeys {
     fn read(self, report: &Report) -> Repeated {
-        let (frames, cycle) = (self.frames as usize, self.cycle.unwrap_or(120) as usize);
-        let sound = (1..=MOST_FRAMES).contains(&frames);
+        let repeated = self.value();
+        let sound = (1..=MOST_FRAMES).contains(&repeated.frames);
         let help = "give 1 to 1000000; a percentile of 99.9 needs 1000";
         report.require(sound, "frames", "is no number of frames", help);
+        let sound = repeated.cycle >= 2 && repeated.cycle % 2 == 0;
         let help = "give an even number of frames, half of them for the way up";
-        report.require(cycle >= 2 && cycle % 2 == 0, "cycle", "is no way up and down", help);
-        let within = self.within.map_or(10.0, |q| report.positive("within", q.0));
-        let tolerance = self.tolerance.map(|tolerance| report.positive("tolerance", tolerance));
-        Repeated { frames, cycle, within, tolerance }
+        report.require(sound, "cycle", "is no way up and down", help);
+        report.positive("within", repeated.within);
+        repeated.tolerance.map(|tolerance| report.positive("tolerance", tolerance));
+        repeated
     }
 }
 
