@@ -9,8 +9,8 @@ use geometry::element::HEX_CORNERS;
 use shape::DilationGroups;
 
 use super::Kernel;
+use super::body::ExplicitBody;
 use super::chunks::{Border, ChunkNodes, Slot, load, split};
-use super::force::ExplicitBody;
 use super::hex8_lanes::{Block, Point, dilated, internal};
 use super::moduli::LaneLaw;
 use super::trilinear::{NODE, fit, reference};

@@ -27,6 +27,7 @@
 //! # }
 //! ```
 
+mod body;
 mod central_difference;
 mod chunks;
 mod critical_step;
@@ -49,10 +50,11 @@ mod tet4_lanes;
 mod tools;
 mod trilinear;
 
+pub use body::ExplicitBody;
 pub use central_difference::{Balance, Dynamics, DynamicsParams, External, Prescribed};
 pub use critical_step::{CriticalStep, LanczosParams, Springs, critical_step, critical_step_touching};
 pub use error::{ExplicitError, InvertedPoint};
-pub use force::{ExplicitBody, InternalForce};
+pub use force::InternalForce;
 pub use kernel::{Kernel, KernelInfo};
 pub use mass::{Lumping, lumped_mass};
 pub use pressing::{Pressing, PressingTool};

@@ -1,6 +1,6 @@
 //! Laws in the form that the kernels use.
 
-use super::force::ExplicitBody;
+use super::body::ExplicitBody;
 use lanes::madd;
 use lanes::on_path;
 use material::lane::math::{inverse_cbrt_less_1, ln_1p};

@@ -19,8 +19,8 @@
 use rayon::prelude::*;
 use shape::DilationGroups;
 
+use super::body::ExplicitBody;
 use super::chunks::{Border, ChunkNodes};
-use super::force::ExplicitBody;
 use super::moduli::{LaneLaw, close_group};
 use lanes::{LANES, LanePath, on_path};
 

@@ -4,8 +4,8 @@
 //! Lanes over points would need a gather and a scatter for every component, because neighbours differ from
 //! point to point. Along x, y, z both are a single load or store of 32 bytes.
 
+use super::body::ExplicitBody;
 use super::chunks::{Border, ChunkNodes, Slot, load, split};
-use super::force::ExplicitBody;
 use super::moduli::{LaneLaw, Moduli, stress};
 use super::quad::axpy;
 use lanes::{LanePath, on_path};

@@ -6,11 +6,11 @@
 //! nodes) instead of 120.
 
 use super::Kernel;
+use super::body::ExplicitBody;
 use super::chunks::{Border, ChunkNodes, Slot, load, split};
-use super::force::ExplicitBody;
 use super::moduli::LaneLaw;
 use super::nodal::Nodal;
-use super::tet4_lanes::{Block, dilated, dilations, internal};
+use super::tet4_lanes::{Block, Chunk, dilated, dilations, internal};
 use lanes::{LANES, LanePath};
 use shape::Vector3;
 use shape::locality_order;
@@ -98,13 +98,6 @@ impl Tet4 {
         border.forces(sums, f);
         not_inverted
     }
-}
-
-/// Blocks of one chunk, by law.
-pub(super) struct Chunk {
-    pub blocks: Vec<Block>,
-    /// Consecutive blocks of one region: index after the last block, and region index.
-    pub runs: Vec<(usize, u16)>,
 }
 
 impl Chunk {

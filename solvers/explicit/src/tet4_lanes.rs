@@ -9,7 +9,6 @@
 use super::chunks::Slot;
 use super::moduli::{LaneLaw, Moduli, stress};
 use super::quad::{add_lanes, lanes_of, lanes_of_sums, within};
-use super::tet4::Chunk;
 use lanes::{LanePath, fetch, madd, on_path};
 use material::Law;
 use material::lane::invariants::{Invariants, add_cofactor, piola, pressed};
@@ -24,6 +23,13 @@ pub(super) struct Block {
     pub grads: [[f64; LANES]; 9],
     pub weight: [f64; LANES],
     pub nodes: [[u16; LANES]; 4],
+}
+
+/// Blocks of one chunk, by law.
+pub(super) struct Chunk {
+    pub blocks: Vec<Block>,
+    /// Consecutive blocks of one region: index after the last block, and region index.
+    pub runs: Vec<(usize, u16)>,
 }
 
 /// Intermediate results between passes, aligned like [`LaneStrain`].

@@ -1,0 +1,49 @@
+//! Body for explicit computation.
+
+use material::Law;
+use shape::{DilationGroups, VolumeRows};
+
+use super::error::ExplicitError;
+
+/// Body for explicit computation: a quadrature with its laws.
+#[derive(Clone, Copy)]
+pub struct ExplicitBody<'a> {
+    /// The volume quadrature.
+    pub volume: &'a VolumeRows,
+    /// Laws, by region index.
+    pub laws: &'a [Law],
+    /// Region index of every quadrature point; empty if all points are in region 0.
+    pub region: &'a [u16],
+    /// Groups of points that share one dilation (F-bar), if any.
+    pub groups: Option<&'a DilationGroups>,
+}
+
+impl ExplicitBody<'_> {
+    pub(super) fn region(&self, q: usize) -> u16 {
+        self.region.get(q).copied().unwrap_or(0)
+    }
+
+    pub(super) fn law(&self, q: usize) -> &Law {
+        &self.laws[self.region(q) as usize]
+    }
+
+    pub(super) fn check(&self) -> Result<(), ExplicitError> {
+        let points = self.volume.weights().len();
+        let length = |what, found, expected| Err(ExplicitError::Length { what, found, expected });
+        if !self.region.is_empty() && self.region.len() != points {
+            return length("region indices", self.region.len(), points);
+        }
+        if let Some(groups) = self.groups
+            && groups.point_count() != points
+        {
+            return length("points of the dilation groups", groups.point_count(), points);
+        }
+        match (0..points).find(|&q| self.region(q) as usize >= self.laws.len()) {
+            Some(point) => {
+                let region = self.region(point) as usize;
+                Err(ExplicitError::NoLaw { point, region, laws: self.laws.len() })
+            }
+            None => Ok(()),
+        }
+    }
+}
