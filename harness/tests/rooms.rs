@@ -220,8 +220,9 @@ fn every_file_of_scenes_is_in_a_room_and_names_rooms() {
 }
 
 /// Folders whose modules use each other in no circle, in whatever order.
-const NO_CIRCLES: [&str; 9] = [
+const NO_CIRCLES: [&str; 10] = [
     "cases/src",
+    "reports/src",
     "solvers/contact/src",
     "solvers/disk/src",
     "solvers/explicit/src",

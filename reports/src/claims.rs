@@ -7,9 +7,9 @@ use records::text::significant;
 use records::{Family, Record, RecordError, RunSet};
 use serde::Deserialize;
 
+use crate::busy::decide;
 use crate::findings::Matched;
 use crate::fronts::{Clock, judged};
-use crate::seconds::decide;
 use crate::select::{Run, runs, solved};
 
 /// Verdict of the results on a claim.

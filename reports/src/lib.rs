@@ -24,6 +24,7 @@
 
 mod asks;
 pub mod baseline;
+mod busy;
 mod claims;
 mod clouds;
 pub mod commits;
@@ -49,9 +50,11 @@ mod within;
 #[cfg(test)]
 mod blank;
 
+pub use busy::Busy;
 pub use claims::{Claim, ClaimVerdict, Judged, read_claims};
 pub use error::ReportError;
+pub use figures::svg_over_commits;
 pub use order::{Order, observed as observed_order};
 pub use published::is_known_publication;
 pub use render::{Rendered, render, render_over_commits, write_with_report};
-pub use seconds::{Busy, Seconds, Took};
+pub use seconds::{Seconds, Took};

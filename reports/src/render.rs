@@ -6,12 +6,12 @@ use rayon::prelude::*;
 use records::RunSet;
 use records::store::{end, make_dir, read_marked, read_numbers, remove_files, write_marked, write_text};
 
+use crate::busy;
 use crate::clouds;
 use crate::commits;
 use crate::error::ReportError;
 use crate::figures::{self, Figure};
 use crate::page::{self, Drawn};
-use crate::seconds;
 use crate::select;
 use crate::tables;
 
@@ -73,7 +73,7 @@ fn render_set(
     // Each value on an axis is a different scene; stability maps show these runs.
     let as_they_are = set.records.iter().filter(|r| r.at.is_none());
     let mut all = select::runs(as_they_are);
-    seconds::decide(&mut all, &set.provenance.machine);
+    busy::decide(&mut all, &set.provenance.machine);
     let (runs, clouds) = clouds::part(&all);
     let (table_dir, figure_dir) = (out.join("tables"), out.join("figures"));
     make_dir(&table_dir)?;

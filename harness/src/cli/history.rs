@@ -4,7 +4,8 @@ use std::path::PathBuf;
 
 use clap::{Args, Subcommand};
 use reports::ReportError;
-use reports::commits::{Point, Step, Trend, add, svg, trends};
+use reports::commits::{Point, Step, Trend, add, trends};
+use reports::svg_over_commits;
 
 use super::args::Format;
 use super::colour::{self, BAD, DOUBTFUL, GOOD};
@@ -75,7 +76,7 @@ fn show(args: &ShowArgs) -> Result<u8, ReportError> {
         }
     }
     if let Some(path) = &args.figure {
-        records::write_text(path, svg(&found)?)?;
+        records::write_text(path, svg_over_commits(&found)?)?;
     }
     Ok(0)
 }

@@ -14,7 +14,6 @@ pub use summary::{RunNumbers, Summary};
 pub use trend::{ErrorStep, Point, Step, Trend};
 
 use crate::error::ReportError;
-use crate::figures::{OVER_COMMITS as TITLE, over_commits};
 
 /// Adds results to a history, with a label in addition to their commit. Returns the path of the new file.
 ///
@@ -57,14 +56,6 @@ pub(crate) fn shown(history: &Path, source: &str) -> Result<Vec<Trend>, ReportEr
     let mut found = trends(history)?;
     found.sort_by_key(|trend| trend.source != source);
     Ok(found)
-}
-
-/// Draws errors and times of trends over commits as SVG.
-///
-/// # Errors
-/// A figure that cannot be drawn.
-pub fn svg(trends: &[Trend]) -> Result<String, ReportError> {
-    over_commits(trends).svg("history", TITLE)
 }
 
 /// Files of a history with their numbers; empty for a folder that does not exist.

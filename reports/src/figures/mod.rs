@@ -24,7 +24,7 @@ mod transfer;
 
 pub(crate) use canvas::{Canvas, png_and_pdf};
 pub(crate) use locking::sweeps;
-pub(crate) use over_commits::{TITLE as OVER_COMMITS, over_commits};
+pub use over_commits::svg as svg_over_commits;
 
 use records::RunSet;
 use records::text::ratio;

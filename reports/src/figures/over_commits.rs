@@ -9,9 +9,10 @@ use super::grid::{Content, multiples};
 use super::style::{Style, find, styles};
 use super::{Data, Figure};
 use crate::commits::{Point, Trend};
+use crate::error::ReportError;
 
 /// Title of the figure.
-pub(crate) const TITLE: &str = "Errors and processor seconds over commits";
+const TITLE: &str = "Errors and processor seconds over commits";
 
 /// Figure of the report, `None` without a history.
 pub(super) fn figure(trends: &[Trend]) -> Option<Figure> {
@@ -24,6 +25,14 @@ pub(super) fn figure(trends: &[Trend]) -> Option<Figure> {
         canvas: over_commits(trends),
         data: Data::Rows(csv(trends)),
     })
+}
+
+/// Draws errors and times of trends over commits as SVG.
+///
+/// # Errors
+/// A figure that cannot be drawn.
+pub fn svg(trends: &[Trend]) -> Result<String, ReportError> {
+    over_commits(trends).svg("history", TITLE)
 }
 
 fn csv(trends: &[Trend]) -> String {
@@ -60,7 +69,7 @@ const NAMED: usize = 6;
 
 /// Draws two panels over the commits of each trend, as ratios to the first commit: errors and CPU seconds.
 /// Only steps outside of the noise have markers.
-pub(crate) fn over_commits(trends: &[Trend]) -> Canvas {
+fn over_commits(trends: &[Trend]) -> Canvas {
     let labels: Vec<(String, Family)> = trends.iter().map(|trend| (trend.label(), Family::Fem)).collect();
     let styles = styles(&labels);
     let errors = |point: &Point| point.error_ratio;
