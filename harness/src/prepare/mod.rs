@@ -272,7 +272,14 @@ impl Prepared {
                 Essential::Coupling(coupled) => {
                     self.constrain_nodes(method.mesh(), support, &mut first, |vertex| coupled.node(vertex))?;
                 }
-                _ => self.constrain_cloud(method, support)?,
+                Essential::Multipliers => self.constrain_rows(method, support, None)?,
+                Essential::Elimination(rows) => self.constrain_rows(method, support, Some(*rows))?,
+                Essential::Nitsche(gamma) => {
+                    self.constrain_weakly(method, support, Weak::Nitsche { gamma: *gamma })?;
+                }
+                Essential::Penalty(factor) => {
+                    self.constrain_weakly(method, support, Weak::Penalty { factor: *factor })?;
+                }
             }
             self.hold(support.axes, from);
         }
@@ -303,83 +310,80 @@ impl Prepared {
         Ok(())
     }
 
-    /// Applies a support to a basis whose parameters are not displacements and to which no elements are
-    /// coupled. The support acts on the facets of the place, and also in its volume if the place has one (a
-    /// clamped end instead of a clamped face).
-    fn constrain_cloud(&mut self, method: &Discretisation, support: &Support) -> Result<(), Failure> {
+    /// Constrains a cloud by rows: those of multipliers, or eliminated ones if `eliminated` says which
+    /// displacements they prescribe. The rows are those of the facets of the place and, if the place has a
+    /// volume (a clamped end instead of a clamped face), of the nodes in it.
+    fn constrain_rows(
+        &mut self,
+        method: &Discretisation,
+        support: &Support,
+        eliminated: Option<ConstraintRows>,
+    ) -> Result<(), Failure> {
         let patch = place::patch(&support.key, &support.place, method.mesh())?;
-        let (rows, constraints) = (self.weak.len(), self.constraints.len());
-        match method.essential {
-            Essential::Multipliers => {
-                if !patch.whole.is_empty() {
-                    let surface = self.source.surface(&patch.whole)?;
+        let before = self.constraints.len();
+        if !patch.whole.is_empty() {
+            let surface = self.source.surface(&patch.whole)?;
+            let patches = || nodal_patches(method.nodes(), &surface);
+            match eliminated {
+                None => {
                     let basis = self.multiplier_basis(&patch.whole)?;
                     let values = at(support, surface.points())?;
                     self.constraints.extend(multiplier_rows(&surface, basis.rows(), support.axes, &values)?);
                 }
-            }
-            Essential::Elimination(rows) => {
-                if !patch.whole.is_empty() {
-                    let surface = self.source.surface(&patch.whole)?;
-                    let patches = nodal_patches(method.nodes(), &surface);
-                    match rows {
-                        ConstraintRows::Means => {
-                            let values = at(support, surface.points())?;
-                            self.constraints.extend(mean_rows(&surface, &patches, support.axes, &values));
-                        }
-                        ConstraintRows::Points => {
-                            let points = on_facets(method.nodes(), &patches, method.mesh(), &patch.whole);
-                            let (rows, _) = self.source.at_points(&points)?;
-                            self.constraints.extend(collocated(&rows, support.axes, &at(support, &points)?));
-                        }
-                    }
+                Some(ConstraintRows::Means) => {
+                    let values = at(support, surface.points())?;
+                    self.constraints.extend(mean_rows(&surface, &patches(), support.axes, &values));
                 }
-            }
-            Essential::Nodal | Essential::Coupling(_) => {
-                unreachable!("constrained node by node")
-            }
-            Essential::Nitsche(gamma) => {
-                if !patch.whole.is_empty() {
-                    place::outer(&support.key, &support.place, method.mesh(), &patch.whole)?;
-                    let flux = self.source.flux(&patch.whole)?;
-                    let trace = self.source.trace(&patch.whole)?;
-                    // A trace replaces these gradients by those of the volume, which are checked already.
-                    if trace.is_none() {
-                        gradients::check(Key::Method("essential"), method.nodes(), flux.at())?;
-                    }
-                    self.constrain_flux(method, support, flux, Weak::Nitsche { gamma }, trace)?;
-                }
-            }
-            Essential::Penalty(factor) => {
-                if !patch.whole.is_empty() {
-                    let flux = self.source.flux(&patch.whole)?;
-                    self.constrain_flux(method, support, flux, Weak::Penalty { factor }, None)?;
+                Some(ConstraintRows::Points) => {
+                    let points = on_facets(method.nodes(), &patches(), method.mesh(), &patch.whole);
+                    let (rows, _) = self.source.at_points(&points)?;
+                    self.constraints.extend(collocated(&rows, support.axes, &at(support, &points)?));
                 }
             }
         }
-        match method.essential {
-            // A cloud cannot satisfy constraints at all volume points, but at its own nodes it can.
-            Essential::Multipliers | Essential::Elimination(_)
-                if matches!(support.place, Place::Where(_)) =>
-            {
-                let tolerance = tolerance(method.mesh());
-                let inside = method.nodes().iter().filter(|x| place::holds(&support.place, x, tolerance));
-                let nodes: Vec<Point3> = inside.copied().collect();
-                let (rows, _) = self.source.at_points(&nodes)?;
-                let values = at(support, &nodes)?;
-                self.constraints.extend(collocated(&rows, support.axes, &values));
-            }
-            Essential::Multipliers
-            | Essential::Elimination(_)
-            | Essential::Coupling(_)
-            | Essential::Nodal => {}
-            Essential::Nitsche(factor) | Essential::Penalty(factor) => {
-                if let Some(flux) = self.clamped_volume(method, support)? {
-                    self.constrain_flux(method, support, flux, Weak::Penalty { factor }, None)?;
-                }
-            }
+        // A cloud cannot satisfy constraints at all volume points, but at its own nodes it can.
+        if let Place::Where(_) = support.place {
+            let tolerance = tolerance(method.mesh());
+            let inside = method.nodes().iter().filter(|x| place::holds(&support.place, x, tolerance));
+            let nodes: Vec<Point3> = inside.copied().collect();
+            let (rows, _) = self.source.at_points(&nodes)?;
+            let values = at(support, &nodes)?;
+            self.constraints.extend(collocated(&rows, support.axes, &values));
         }
-        if self.weak.len() == rows && self.constraints.len() == constraints {
+        if self.constraints.len() == before {
+            return Err(place::empty(&support.key, &support.place, method.mesh()));
+        }
+        Ok(())
+    }
+
+    /// Constrains a cloud by a weak condition on the facets of the place, and by a penalty in its volume if the
+    /// place has one (a clamped end instead of a clamped face).
+    fn constrain_weakly(
+        &mut self,
+        method: &Discretisation,
+        support: &Support,
+        weak: Weak,
+    ) -> Result<(), Failure> {
+        let patch = place::patch(&support.key, &support.place, method.mesh())?;
+        let before = self.weak.len();
+        if !patch.whole.is_empty() {
+            let is_nitsche = matches!(weak, Weak::Nitsche { .. });
+            if is_nitsche {
+                place::outer(&support.key, &support.place, method.mesh(), &patch.whole)?;
+            }
+            let flux = self.source.flux(&patch.whole)?;
+            let trace = if is_nitsche { self.source.trace(&patch.whole)? } else { None };
+            // A trace replaces these gradients by those of the volume, which are checked already.
+            if is_nitsche && trace.is_none() {
+                gradients::check(Key::Method("essential"), method.nodes(), flux.at())?;
+            }
+            self.constrain_flux(method, support, flux, weak, trace)?;
+        }
+        let (Weak::Nitsche { gamma: factor } | Weak::Penalty { factor }) = weak;
+        if let Some(flux) = self.clamped_volume(method, support)? {
+            self.constrain_flux(method, support, flux, Weak::Penalty { factor }, None)?;
+        }
+        if self.weak.len() == before {
             return Err(place::empty(&support.key, &support.place, method.mesh()));
         }
         Ok(())

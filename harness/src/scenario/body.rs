@@ -54,19 +54,13 @@ pub(super) fn unchecked(
     size: &Size,
     jitter: Option<Jitter>,
 ) -> Result<Mesh, Failure> {
-    if let Size::File(file) = size {
-        let join = matches!(body, Body::File(of_body) if of_body.join);
-        return from_file(&MeshFile { join, ..file.clone() }, kind);
-    }
-    if let Body::File(file) = body {
-        return inside(file, kind, size, jitter);
-    }
-    if let (Some(_), true) = (jitter, !matches!(body, Body::Box { .. })) {
+    let is_box = matches!(body, Body::Box { .. });
+    if jitter.is_some() && !is_box && !matches!(size, Size::File(_)) {
         let problem = format!("applies to boxes only, not to a {}", body.name());
         return Err(Failure::input(Key::Method("jitter"), problem, "leave it out"));
     }
     let family = |n: usize| -> Result<Mesh, Failure> {
-        if !matches!(body, Body::Box { .. }) {
+        if !is_box {
             few_enough(expected::of_family(body, kind, n as f64))?;
         }
         let mesh = match *body {
@@ -100,7 +94,9 @@ pub(super) fn unchecked(
                 let drawn = if mildly_graded { Drawn::Mildly } else { Drawn::Strongly };
                 half_kidney_mesh(kind, n, drawn)
             }
-            Body::File(_) => unreachable!("returned above"),
+            Body::File(ref file) => {
+                return inside(file, kind, Inside::Spacing(narrowest(body) / n as f64));
+            }
         };
         let mesh = mesh.map_err(|bad| ungenerated(bad, size, jitter))?;
         few_enough(mesh.points().len() as f64)?;
@@ -110,9 +106,15 @@ pub(super) fn unchecked(
         Size::Level(level) => family(base(body) << (level - 1).min(16)),
         Size::Nodes(wanted) => {
             few_enough(wanted as f64)?;
-            nearest_count(family, wanted)
+            match body {
+                Body::File(file) => inside(file, kind, Inside::Nodes(wanted)),
+                _ => nearest_count(family, wanted),
+            }
         }
         Size::Spacing(spacing) => {
+            if let Body::File(file) = body {
+                return inside(file, kind, Inside::Spacing(spacing));
+            }
             let n = narrowest(body) / spacing;
             if !(n.is_finite() && n < 1e3) {
                 let problem = format!("gives {n:.0} cells across the body");
@@ -130,46 +132,37 @@ pub(super) fn unchecked(
                 Err(Failure::input(Key::Size("cells"), problem, "give level, nodes or spacing"))
             }
         },
-        Size::File(_) => unreachable!("returned above"),
+        Size::File(ref file) => {
+            let join = matches!(body, Body::File(of_body) if of_body.join);
+            from_file(&MeshFile { join, ..file.clone() }, kind)
+        }
     }
 }
 
+/// Size of the tetrahedra inside a surface.
+enum Inside {
+    /// Edge length, m.
+    Spacing(f64),
+    /// Number of nodes.
+    Nodes(usize),
+}
+
 /// Meshes the interior of a surface file, or of the boundary of a mesh file.
-fn inside(file: &MeshFile, kind: CellKind, size: &Size, jitter: Option<Jitter>) -> Result<Mesh, Failure> {
-    if jitter.is_some() {
-        return Err(Failure::input(
-            Key::Method("jitter"),
-            "applies to boxes only, not to a file",
-            "leave it out",
-        ));
-    }
+fn inside(file: &MeshFile, kind: CellKind, size: Inside) -> Result<Mesh, Failure> {
     if !kind.is_tet() {
         let problem =
             format!("fills the surface of {} with tetrahedra, not with {}", file.path.display(), kind.name());
         let help = "take element = \"tet4\" or \"tet10\", or a mesh: size = { file = \"...\" }";
         return Err(Failure::input(Key::Size(""), problem, help));
     }
-    let body = Body::File(file.clone());
-    let spacing = match *size {
-        Size::Level(level) => Ok(narrowest(&body) / (base(&body) << (level - 1).min(16)) as f64),
-        Size::Spacing(spacing) => Ok(spacing),
-        Size::Nodes(nodes) => Err(nodes),
-        Size::Cells { .. } => {
-            let problem = format!("is for boxes, not for a {}", body.name());
-            return Err(Failure::input(Key::Size("cells"), problem, "give level, nodes or spacing"));
-        }
-        Size::File(_) => unreachable!("read as it is"),
-    };
     let from_file = file_body::load(file)?;
-    let fill = match spacing {
-        Ok(spacing) => {
-            few_enough(expected::of_spacing(&body, kind, spacing))?;
+    let fill = match size {
+        Inside::Spacing(spacing) => {
+            few_enough(expected::of_spacing(&Body::File(file.clone()), kind, spacing))?;
             Fill::spacing(spacing)
         }
-        Err(nodes) => {
-            few_enough(nodes as f64)?;
-            if kind == CellKind::Tet10 { Fill::QuadraticNodes(nodes) } else { Fill::Nodes(nodes) }
-        }
+        Inside::Nodes(nodes) if kind == CellKind::Tet10 => Fill::QuadraticNodes(nodes),
+        Inside::Nodes(nodes) => Fill::Nodes(nodes),
     };
     let mesh = from_file.mesh(fill)?;
     Ok(if kind == CellKind::Tet10 { raise_order(&mesh) } else { mesh })
