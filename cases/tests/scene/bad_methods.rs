@@ -4,7 +4,7 @@ use crate::bad_scenes::Bad;
 
 pub const METHODS: &[Bad] = &[
     ("id = \"efg-83\"", "id = \"tet4\" #<", "method[1].id", &["'tet4' is the id of another method"]),
-    ("id = \"efg-83\"", "id = \"efg 83\" #<", "method[1].id", &["'efg 83' is no id"]),
+    ("id = \"efg-83\"", "id = \"efg 83\" #<", "method[1].id", &["'efg 83' is not a valid id"]),
     (
         "[[method]]\nid = \"efg-83\"\nfamily = \"efg\"\nnodes = 83",
         "[[method]] #<\nid = \"efg-83\"\nfamily = \"efg\"",
