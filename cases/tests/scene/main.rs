@@ -5,6 +5,7 @@ mod bad_methods;
 mod bad_parts;
 mod bad_scenes;
 mod bad_studies;
+mod contradictions;
 mod expressions;
 mod fuzz;
 mod good;
