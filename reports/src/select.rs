@@ -2,6 +2,7 @@
 
 use std::cmp::Ordering;
 
+use catalogue::element;
 use records::{Family, Purpose, Record};
 
 use crate::seconds::Seconds;
@@ -36,11 +37,6 @@ impl<'a> Run<'a> {
     fn plain(&self, quantity: &str) -> Option<&'a Record> {
         let fits = |r: &&&Record| r.quantity == quantity && r.statistic == "value" && r.index().is_none();
         self.records.iter().find(fits).copied()
-    }
-
-    /// Unit of a plain value.
-    pub(crate) fn unit(&self, quantity: &str) -> Option<&'a str> {
-        self.plain(quantity).map(|r| r.unit.as_str())
     }
 
     /// Time of a phase by statistic, s. If runs are not compared by median wall time, the `median` is the
@@ -147,18 +143,17 @@ impl<'a> Series<'a> {
 /// Polynomial degree to which the approximation is complete.
 fn degree(record: &Record) -> Option<f64> {
     match (record.family, record.variant.as_str(), record.basis.as_deref()) {
-        (Family::Fem | Family::External, "tet4" | "hex8", _) | (Family::Efg, _, Some("linear")) => Some(1.0),
-        (Family::Fem | Family::External, "tet10" | "hex20", _) | (Family::Efg, _, Some("quadratic")) => {
-            Some(2.0)
-        }
+        (Family::Fem | Family::External, name, _) => element::find(name).map(|element| element.degree as f64),
+        (Family::Efg, _, Some("linear")) => Some(1.0),
+        (Family::Efg, _, Some("quadratic")) => Some(2.0),
         _ => None,
     }
 }
 
 /// Sort key of methods: elements in their usual order, then meshfree methods, then transfer schemes.
 fn rank(record: &Record) -> (Family, usize) {
-    let known = ["tet4", "tet10", "hex8", "hex20"];
-    (record.family, known.iter().position(|n| *n == record.variant).unwrap_or(known.len()))
+    let known = element::ELEMENTS.iter().position(|known| known.name == record.variant);
+    (record.family, known.unwrap_or(element::ELEMENTS.len()))
 }
 
 /// Order of runs in tables and figures: by case, Poisson's ratio and family, elements before clouds, then by

@@ -1,7 +1,7 @@
 //! Steps that take a tool through the surface, and tools that overlap the body between its points.
 
 use contact::{ContactError, ContactLaw, ContactSurface, Cylinder, Outline, Sphere, Stand, Tool, ToolShape};
-use geometry::{CellKind, FaceKind};
+use geometry::CellKind;
 use integration::block::{Block, SIDES};
 use integration::tools::SHAPES;
 use shape::{Matrix3, Point3, Vector3};
@@ -105,10 +105,7 @@ fn a_tool_between_the_points_is_found() {
         for (k, &facet) in facets.iter().enumerate() {
             let row = |node: u32| nodes.binary_search(&node).unwrap() as u32;
             let around: Vec<u32> = block.mesh.facet_nodes(facet).map(row).collect();
-            let corners = match block.mesh.kind(facet.cell as usize).face_kind() {
-                FaceKind::Tri3 | FaceKind::Tri6 => 3,
-                FaceKind::Quad4 | FaceKind::Quad8 => 4,
-            };
+            let corners = block.mesh.facet_kind(facet).corner_count();
             let middle = (nodes.len() + k) as u32;
             triangles.extend((0..corners).map(|i| [around[i], around[(i + 1) % corners], middle]));
         }

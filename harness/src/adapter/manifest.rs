@@ -3,12 +3,12 @@
 use std::path::Path;
 
 use catalogue::suggest;
+use geometry::CellKind;
 use material::LAWS;
 use serde::Deserialize;
 
 /// Words that `can` accepts besides the names of material laws.
 const WORDS: [&str; 3] = ["linear", "static", "tools"];
-const ELEMENTS: [&str; 4] = ["tet4", "tet10", "hex8", "hex20"];
 const READS: [&str; 2] = ["mesh.inp", "mesh.vtu"];
 /// Longest name of an adapter, in characters; the name is also that of a folder.
 const LONGEST_NAME: usize = 64;
@@ -100,7 +100,7 @@ impl Manifest {
         let can: Vec<&str> = WORDS.into_iter().chain(laws).collect();
         for (key, given, known) in [
             ("can", &self.can, &can[..]),
-            ("elements", &self.elements, &ELEMENTS),
+            ("elements", &self.elements, &CellKind::ALL.map(CellKind::name)),
             ("reads", &self.reads, &READS),
         ] {
             if let Some(word) = given.iter().find(|word| !known.contains(&word.as_str())) {

@@ -87,7 +87,7 @@ pub(super) fn input(error: impl std::fmt::Display) -> Failure {
 
 fn into(mesh: Mesh, name: &str) -> Result<Mesh, Failure> {
     let Some(kind) = CellKind::ALL.into_iter().find(|kind| kind.name() == name) else {
-        let problem = format!("no element '{name}'; give tet4, tet10, hex8 or hex20");
+        let problem = format!("no element '{name}'; give {}", CellKind::ALL.map(CellKind::name).join(", "));
         return Err(Failure::Input(problem));
     };
     let from = mesh.uniform_kind().map_or("mixed", CellKind::name);

@@ -237,10 +237,8 @@ impl Found<'_> {
 
 /// Returns the area of a face (m^2), approximated by flat triangles around the mean of its corners.
 fn area(mesh: &Mesh, facet: Facet) -> f64 {
-    let count = mesh.kind(facet.cell as usize).face_kind().corner_count();
-    let corners: Vec<Vector3> =
-        mesh.facet_nodes(facet).take(count).map(|n| mesh.points()[n as usize].coords).collect();
-    let mean = corners.iter().sum::<Vector3>() / count as f64;
+    let corners: Vec<Vector3> = mesh.facet_corners(facet).map(|n| mesh.points()[n as usize].coords).collect();
+    let mean = corners.iter().sum::<Vector3>() / corners.len() as f64;
     let next = corners.iter().cycle().skip(1);
     corners.iter().zip(next).map(|(a, b)| 0.5 * (a - mean).cross(&(b - mean)).norm()).sum()
 }

@@ -212,8 +212,7 @@ pub fn whole(key: &str, place: &Place, mesh: &Mesh) -> Result<(), Failure> {
 
 /// Returns the three or four corners of a facet, m.
 pub fn corners(mesh: &Mesh, facet: Facet) -> Vec<Point3> {
-    let count = mesh.kind(facet.cell as usize).face_kind().corner_count();
-    mesh.facet_nodes(facet).take(count).map(|node| mesh.points()[node as usize]).collect()
+    mesh.facet_corners(facet).map(|node| mesh.points()[node as usize]).collect()
 }
 
 /// Returns the distance, m, of `x` from the plane of a comparison, positive on the kept side. For an equality

@@ -5,6 +5,7 @@
 //! additional support, or use other numbers. Errors would then be distances between two problems.
 
 use std::collections::{HashMap, HashSet};
+use std::iter::repeat_n;
 
 use cases::exact::Exact;
 use cases::scene::Procedure;
@@ -145,13 +146,14 @@ impl OnSurface {
         [held, loaded]: [&[Covered]; 2],
     ) -> Result<OnSurface, Failure> {
         let surface = fem::surface_rows(run.method.mesh(), facets, &SurfaceRule::STANDARD)?;
-        let points_each = surface.weights().len() / facets.len();
+        let of_point: Vec<Facet> =
+            facets.iter().flat_map(|&f| repeat_n(f, points(run.method.mesh(), f))).collect();
         let area = surface.weights().iter().sum();
         let turn = turn(run.method.mesh(), facets, &surface);
         let (displacement, traction) = (Sums::default(), Sums::default());
         let mut sums = OnSurface { name, area, turn, displacement, traction, all: [0.0; 2] };
         for (q, &w) in surface.weights().iter().enumerate() {
-            let (facet, x, n) = (&facets[q / points_each], &surface.points()[q], &surface.normals()[q]);
+            let (facet, x, n) = (&of_point[q], &surface.points()[q], &surface.normals()[q]);
             let (u, t) = (exact.displacement(x), exact.traction(x, n));
             sums.all[0] += w * u.norm_squared();
             sums.all[1] += w * t.norm_squared();
@@ -171,13 +173,21 @@ impl OnSurface {
     }
 }
 
+/// Number of points on a facet.
+fn points(mesh: &Mesh, facet: Facet) -> usize {
+    SurfaceRule::STANDARD.points(mesh.facet_kind(facet))
+}
+
 /// Root-mean-square angle (rad) between the normal of a facet and the mean normals at its corners; 0 for a
 /// plane.
 fn turn(mesh: &Mesh, facets: &[Facet], surface: &SurfaceRows) -> f64 {
-    let each = surface.weights().len() / facets.len();
-    let of_facet =
-        |k: usize| (each * k..each * (k + 1)).map(|q| surface.normals()[q] * surface.weights()[q]).sum();
-    let normals: Vec<Vector3> = (0..facets.len()).map(of_facet).collect();
+    let mut start = 0;
+    let of_facet = |&facet: &Facet| {
+        let own = start..start + points(mesh, facet);
+        start = own.end;
+        own.map(|q| surface.normals()[q] * surface.weights()[q]).sum()
+    };
+    let normals: Vec<Vector3> = facets.iter().map(of_facet).collect();
     let mut of_corners: HashMap<u32, Vector3> = HashMap::new();
     for (facet, normal) in facets.iter().zip(&normals) {
         mesh.facet_nodes(*facet).for_each(|node| *of_corners.entry(node).or_default() += normal);

@@ -1,7 +1,7 @@
 //! Bodies with fewer than three cells across a section that bends or is compressed.
 
 use catalogue::{metric, warning};
-use geometry::{CellKind, Facet, Matrix3, Point3, Vector3};
+use geometry::{Facet, Matrix3, Point3, Vector3};
 use shape::position;
 
 use super::Solved;
@@ -116,7 +116,7 @@ fn size(run: &Solved, nodes: &[u32], along: &Vector3) -> f64 {
     }
     let at = || nodes.iter().map(|&node| run.method.nodes()[node as usize].coords.dot(along));
     let extent = at().fold(f64::NEG_INFINITY, f64::max) - at().fold(f64::INFINITY, f64::min);
-    if matches!(run.method.mesh().kind(0), CellKind::Tet10 | CellKind::Hex20) { extent / 2.0 } else { extent }
+    if run.method.order == 2 { extent / 2.0 } else { extent }
 }
 
 /// Nearest triangle from a point inside along a direction, with its distance, m.

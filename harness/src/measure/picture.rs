@@ -22,9 +22,8 @@ pub(crate) fn picture(
     let mesh = method.mesh();
     let mut triangles: Vec<[u32; 3]> = Vec::new();
     for facet in mesh.boundary() {
-        let count = mesh.kind(facet.cell as usize).face_kind().corner_count();
-        let corners: Vec<u32> = mesh.facet_nodes(facet).take(count).collect();
-        triangles.extend((1..count - 1).map(|k| [corners[0], corners[k], corners[k + 1]]));
+        let corners: Vec<u32> = mesh.facet_corners(facet).collect();
+        triangles.extend((1..corners.len() - 1).map(|k| [corners[0], corners[k], corners[k + 1]]));
     }
     let mut used: Vec<u32> = triangles.iter().flatten().copied().collect();
     used.sort_unstable();

@@ -93,8 +93,8 @@ pub(super) fn mark(
 }
 
 fn face(mesh: &Mesh, facet: Facet) -> Face {
-    let count = mesh.kind(facet.cell as usize).face_kind().corner_count();
-    let corners: Vec<u32> = mesh.facet_nodes(facet).take(count).collect();
+    let corners: Vec<u32> = mesh.facet_corners(facet).collect();
+    let count = corners.len();
     let at: Vec<Vector3> = corners.iter().map(|&node| mesh.points()[node as usize].coords).collect();
     let normal = (at[2] - at[0]).cross(&(at[count - 1] - at[1]));
     let middle = Point3::from(at.iter().sum::<Vector3>() / count as f64);

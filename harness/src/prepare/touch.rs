@@ -116,9 +116,8 @@ fn triangles(mesh: &Mesh, facets: &[Facet]) -> Vec<[u32; 3]> {
     for (k, &facet) in facets.iter().enumerate() {
         let row = |node: u32| nodes.binary_search(&node).expect("a node of the facets") as u32;
         let of_facet: Vec<u32> = mesh.facet_nodes(facet).map(row).collect();
-        let corners = mesh.kind(facet.cell as usize).face_kind().corner_count();
         // Edge nodes, if any, follow the corners. Each lies after the corner of the same index.
-        let (corners, between) = of_facet.split_at(corners);
+        let (corners, between) = of_facet.split_at(mesh.facet_kind(facet).corner_count());
         let around: Vec<u32> =
             (0..corners.len()).flat_map(|i| [Some(corners[i]), between.get(i).copied()]).flatten().collect();
         let middle = (nodes.len() + k) as u32;

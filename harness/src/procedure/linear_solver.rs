@@ -84,7 +84,7 @@ pub(super) fn serves(method: &Discretisation, setup: &Setup, asked: LinearSolver
     };
     let stiffest = setup.materials.iter().map(|m| m.lambda() / m.mu()).fold(0.0, f64::max);
     let shared = matches!(method.dilation, Dilation::Element | Dilation::Nodal) && method.interpolates;
-    let quadratic = method.mesh().uniform_kind().is_some_and(|kind| kind.order() == 2);
+    let quadratic = method.order == 2;
     let (iterated, power) = match shared && stiffest >= PRESSURES {
         true => (Serves::Pressures, if quadratic { QUADRATIC } else { LINEAR }),
         false => (Serves::Multigrid, 0.5),

@@ -12,6 +12,7 @@
 use cases::scene::{Cloud, Dilation, Element, Family, Fem, Method, Size};
 use catalogue::Dimension;
 use catalogue::metric::{self, Kind, Needs};
+use geometry::CellKind;
 
 use super::{Group, run};
 use crate::Failure;
@@ -85,10 +86,11 @@ fn is_error(metric: &Metric) -> bool {
 fn witnesses(reference: &Method, nodes: usize) -> Result<Vec<Method>, String> {
     let size = fineness(reference);
     let second = is_first_order(&reference.family).then(|| match elements(&reference.family) {
-        Some(fem) if fem.element == Element::Hex8 => Element::Hex20,
-        _ => Element::Tet10,
+        Some(fem) => fem.element.0.of_order(2).unwrap_or(CellKind::Tet10),
+        None => CellKind::Tet10,
     });
-    let of_second = |element: Element, size: Size| {
+    let of_second = |kind: CellKind, size: Size| {
+        let element = Element(kind);
         let fem = Fem { element, dilation: Dilation::Standard, reduced: false, size, jitter: None };
         let (id, family) = (element.name().to_string(), Family::Fem(fem));
         Method { series: id.clone(), id, family, mass: reference.mass }
@@ -136,7 +138,7 @@ fn elements(family: &Family) -> Option<&Fem> {
 
 /// Whether the method's shape functions reproduce only linear polynomials, as far as is known.
 fn is_first_order(family: &Family) -> bool {
-    elements(family).is_none_or(|fem| matches!(fem.element, Element::Tet4 | Element::Hex8))
+    elements(family).is_none_or(|fem| fem.element.order() == 1)
 }
 
 /// Size setting of a method.

@@ -149,7 +149,7 @@ enum Inside {
 
 /// Meshes the interior of a surface file, or of the boundary of a mesh file.
 fn inside(file: &MeshFile, kind: CellKind, size: Inside) -> Result<Mesh, Failure> {
-    if !kind.is_tet() {
+    if kind.of_order(1) != Some(CellKind::Tet4) {
         let problem =
             format!("fills the surface of {} with tetrahedra, not with {}", file.path.display(), kind.name());
         let help = "take element = \"tet4\" or \"tet10\", or a mesh: size = { file = \"...\" }";
@@ -161,11 +161,11 @@ fn inside(file: &MeshFile, kind: CellKind, size: Inside) -> Result<Mesh, Failure
             few_enough(expected::of_spacing(&Body::File(file.clone()), kind, spacing))?;
             Fill::spacing(spacing)
         }
-        Inside::Nodes(nodes) if kind == CellKind::Tet10 => Fill::QuadraticNodes(nodes),
+        Inside::Nodes(nodes) if kind.order() == 2 => Fill::QuadraticNodes(nodes),
         Inside::Nodes(nodes) => Fill::Nodes(nodes),
     };
     let mesh = from_file.mesh(fill)?;
-    Ok(if kind == CellKind::Tet10 { raise_order(&mesh) } else { mesh })
+    Ok(if kind.order() == 2 { raise_order(&mesh) } else { mesh })
 }
 
 /// Refuses a mesh of too many nodes before it is made, because making it takes seconds and gigabytes.
@@ -265,27 +265,25 @@ pub(super) fn read(file: &MeshFile, key: Key) -> Result<Mesh, Failure> {
 /// edges.
 fn from_file(file: &MeshFile, kind: CellKind) -> Result<Mesh, Failure> {
     let mesh = read(file, Key::Size("file"))?;
-    let fits = |mesh: &Mesh, kind| (0..mesh.cell_count()).all(|c| mesh.kind(c) == kind);
-    match kind {
-        _ if fits(&mesh, kind) => Ok(mesh),
-        CellKind::Tet10 if fits(&mesh, CellKind::Tet4) => Ok(raise_order(&mesh)),
-        CellKind::Hex20 if fits(&mesh, CellKind::Hex8) => Ok(raise_order(&mesh)),
-        _ => {
-            let found = mesh.uniform_kind().map_or("mixed", CellKind::name);
-            let problem = format!("holds {found} cells, not {}", kind.name());
-            let becomes: Vec<&str> =
-                CellKind::ALL.into_iter().filter(|k| is_convertible(&mesh, *k)).map(CellKind::name).collect();
-            let help = match is_convertible(&mesh, kind) {
-                true => format!("tissuebench mesh convert ... --element {}", kind.name()),
-                false => format!(
-                    "the cells can't be converted to {}; take a method of {}",
-                    kind.name(),
-                    becomes.join(" or ")
-                ),
-            };
-            Err(Failure::input(Key::Size("file"), problem, &help))
-        }
+    let found = mesh.uniform_kind();
+    if found == Some(kind) {
+        return Ok(mesh);
     }
+    if found.is_some() && found == kind.of_order(1) {
+        return Ok(raise_order(&mesh));
+    }
+    let problem = format!("holds {} cells, not {}", found.map_or("mixed", CellKind::name), kind.name());
+    let becomes: Vec<&str> =
+        CellKind::ALL.into_iter().filter(|k| is_convertible(&mesh, *k)).map(CellKind::name).collect();
+    let help = match is_convertible(&mesh, kind) {
+        true => format!("tissuebench mesh convert ... --element {}", kind.name()),
+        false => format!(
+            "the cells can't be converted to {}; take a method of {}",
+            kind.name(),
+            becomes.join(" or ")
+        ),
+    };
+    Err(Failure::input(Key::Size("file"), problem, &help))
 }
 
 /// Converts coordinates to a point.

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use cases::scene::{self, Family};
 use fem::{Elements, VolumeRule};
-use geometry::{CellKind, Mesh, Point3, Vector3};
+use geometry::{Mesh, Point3, Vector3};
 
 use super::cloud::PENALTY;
 use super::{Scenario, body};
@@ -30,16 +30,15 @@ impl Scenario<'_> {
     }
 
     pub(super) fn elements(&self, fem: &scene::Fem) -> Result<Discretisation, Failure> {
-        let mesh = body::mesh(&self.scene.body, kind(fem.element), &fem.size, fem.jitter)?;
-        let standard = VolumeRule::STANDARD;
-        let rule = if fem.reduced { standard.with(CellKind::Hex20, 2)? } else { standard };
+        let mesh = body::mesh(&self.scene.body, fem.element.0, &fem.size, fem.jitter)?;
+        let rule = if fem.reduced { VolumeRule::reduced() } else { VolumeRule::STANDARD };
         let mesh = Arc::new(self.with_regions(mesh)?);
         Ok(Discretisation {
             nodes: Arc::new(mesh.points().to_vec()),
             mesh: mesh.clone(),
             interpolates: true,
             blends: false,
-            order: kind(fem.element).order(),
+            order: fem.element.order(),
             reduced: fem.reduced,
             essential: Essential::Nodal,
             dilation: dilation(fem.dilation),
@@ -134,15 +133,6 @@ impl Scenario<'_> {
             second.name, names[1], first.name, names[0]
         );
         Err(Failure::input(key, problem, "name groups that share no cell"))
-    }
-}
-
-pub(super) fn kind(element: scene::Element) -> CellKind {
-    match element {
-        scene::Element::Tet4 => CellKind::Tet4,
-        scene::Element::Tet10 => CellKind::Tet10,
-        scene::Element::Hex8 => CellKind::Hex8,
-        scene::Element::Hex20 => CellKind::Hex20,
     }
 }
 

@@ -5,14 +5,12 @@
 //! a run that a typing error has made a thousand times too large.
 
 use cases::scene::{
-    Body, Cloud, Element, ErrorKind, External, Family, MeshFile, Method, Procedure, Reference, Scene,
-    SceneError, Size,
+    Body, Cloud, ErrorKind, External, Family, MeshFile, Method, Procedure, Reference, Scene, SceneError, Size,
 };
 use geometry::CellKind;
 use material::Material as _;
 
 use super::body::{self, base};
-use super::discretise::kind;
 use super::expected::{self, narrowest};
 
 /// Bytes of a mesh file per node, including cells.
@@ -152,11 +150,13 @@ fn size(scene: &Scene, family: &Family) -> (f64, f64, f64) {
     let over_mesh = |cells, size: &Size| (nodes(body, cells, size), across(body, size), CLOUD);
     match family {
         Family::Fem(fem) | Family::External(External { elements: fem, .. }) => {
-            let (kind, across) = (kind(fem.element), across(body, &fem.size));
-            let (across, rows) = match fem.element {
-                Element::Tet4 | Element::Hex8 => (across, 1.0),
-                Element::Hex20 => (across, 2.0),
-                Element::Tet10 => (2.0 * across, 1.0),
+            let (kind, across) = (fem.element.0, across(body, &fem.size));
+            // The midpoints of the edges of tetrahedra are those of a lattice of half the spacing.
+            let fills = kind.entry().cell.diagonals == [1; 4];
+            let (across, rows) = match kind.order() {
+                1 => (across, 1.0),
+                _ if fills => (2.0 * across, 1.0),
+                _ => (across, 2.0),
             };
             (nodes(body, kind, &fem.size), across, rows)
         }

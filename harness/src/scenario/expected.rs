@@ -6,7 +6,6 @@ use geometry::CellKind;
 use geometry::shapes::Kidney;
 use geometry::stuffing::expected_nodes;
 
-use super::discretise::kind;
 use super::{Scenario, file_body};
 
 impl Scenario<'_> {
@@ -15,10 +14,8 @@ impl Scenario<'_> {
     pub fn expected_nodes(&self) -> f64 {
         let body = &self.scene.body;
         match &self.method.family {
-            Family::Fem(fem) => nodes(body, kind(fem.element), &fem.size),
-            Family::External(external) => {
-                nodes(body, kind(external.elements.element), &external.elements.size)
-            }
+            Family::Fem(fem) => nodes(body, fem.element.0, &fem.size),
+            Family::External(external) => nodes(body, external.elements.element.0, &external.elements.size),
             Family::OverMesh(over) => nodes(body, over.family.cells, &over.size),
             Family::Efg(efg) => {
                 let background =
@@ -72,14 +69,9 @@ pub(super) fn of_family(body: &Body, kind: CellKind, n: f64) -> f64 {
         Body::SphereShell { octant, .. } => n * n * n * if octant { 3.0 } else { 6.0 },
         Body::File(_) => return of_spacing(body, kind, narrowest(body) / n),
     };
-    // Nodes per cell, with shared nodes counted once: corners and edge midpoints, for six tetrahedra in a
-    // hexahedron.
-    let each = match kind {
-        CellKind::Hex8 | CellKind::Tet4 => 1.0,
-        CellKind::Hex20 => 4.0,
-        CellKind::Tet10 => 8.0,
-    };
-    cells * each
+    // Nodes per cube, with shared nodes counted once: corners and edge midpoints.
+    let midpoints = if kind.order() == 2 { 3 + kind.entry().cell.diagonals.iter().sum::<usize>() } else { 0 };
+    cells * (1 + midpoints) as f64
 }
 
 /// Returns the number of nodes of a box with `cells` cells along x, y and z.
@@ -87,12 +79,10 @@ pub(super) fn of_box(kind: CellKind, cells: [f64; 3]) -> f64 {
     let [x, y, z] = cells;
     let corners = (x + 1.0) * (y + 1.0) * (z + 1.0);
     let edges = x * (y + 1.0) * (z + 1.0) + (x + 1.0) * y * (z + 1.0) + (x + 1.0) * (y + 1.0) * z;
-    let diagonals = x * y * (z + 1.0) + x * (y + 1.0) * z + (x + 1.0) * y * z + x * y * z;
-    match kind {
-        CellKind::Hex8 | CellKind::Tet4 => corners,
-        CellKind::Hex20 => corners + edges,
-        CellKind::Tet10 => corners + edges + diagonals,
-    }
+    let places = [x * y * (z + 1.0), x * (y + 1.0) * z, (x + 1.0) * y * z, x * y * z];
+    let diagonals: f64 =
+        places.iter().zip(kind.entry().cell.diagonals).map(|(n, each)| n * each as f64).sum();
+    if kind.order() == 2 { corners + edges + diagonals } else { corners }
 }
 
 /// Returns the length (m) that the number of cells of a size divides.
@@ -111,7 +101,7 @@ pub(super) fn of_spacing(body: &Body, kind: CellKind, spacing: f64) -> f64 {
     let Body::File(file) = body else { return 0.0 };
     let corners = file_body::load(file)
         .map_or(0.0, |body| expected_nodes(body.surface.volume(), body.surface.area(), spacing));
-    if kind == CellKind::Tet10 { 8.0 * corners } else { corners }
+    if kind.order() == 2 { 8.0 * corners } else { corners }
 }
 
 #[cfg(test)]

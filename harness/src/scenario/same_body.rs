@@ -32,8 +32,8 @@ impl Extent {
     fn of(mesh: &Mesh) -> Extent {
         let volume: f64 = quality::volumes(mesh).iter().sum();
         let (min, max) = place::bounds(mesh);
-        let cubes = if mesh.kind(0).is_tet() { 6.0 * 2f64.sqrt() } else { 1.0 };
-        Extent { min, max, volume, edge: (cubes * volume / mesh.cell_count() as f64).cbrt() }
+        let regular = mesh.kind(0).entry().cell.regular_volume;
+        Extent { min, max, volume, edge: (volume / mesh.cell_count() as f64 / regular).cbrt() }
     }
 
     fn size(&self) -> Vector3 {

@@ -1,5 +1,7 @@
 //! Observed orders of convergence and grid convergence indices.
 
+use catalogue::Dimension;
+use catalogue::metric::{self, Metric};
 use records::text::ratio;
 
 use crate::order;
@@ -7,6 +9,9 @@ use crate::select::{Run, Series, by_material, labels, series, solved};
 use crate::table::Column::{Number, Words};
 use crate::table::{Cell, Table};
 
+/// Outcomes with a grid convergence index.
+const OUTCOMES: [&Metric; 6] =
+    [&metric::TIP, &metric::STRAIN_ENERGY, &metric::MAX, &metric::MAX_X, &metric::MAX_Y, &metric::MAX_Z];
 const ERRORS: [&str; 5] = ["l2", "energy", "pressure", "rms", "max-error"];
 
 /// Table of observed orders, by least squares and between the finest levels.
@@ -78,7 +83,8 @@ pub(super) fn convergence_index(runs: &[Run]) -> Table {
         ],
     );
     for (label, series) in labelled(runs) {
-        for quantity in ["tip", "strain-energy", "max", "max-x", "max-y", "max-z"] {
+        for outcome in OUTCOMES {
+            let quantity = outcome.name;
             let points: Vec<(f64, f64)> = series
                 .runs
                 .iter()
@@ -87,19 +93,15 @@ pub(super) fn convergence_index(runs: &[Run]) -> Table {
                 .collect();
             // In a direction that hardly moves, rounding or the asymmetry of the mesh dominates, not a
             // converging outcome.
-            let still = |v: f64| v < 1e-3 * series.finest().value("max").unwrap_or(0.0);
-            if quantity.starts_with("max-") && points.last().is_some_and(|p| still(p.1)) {
+            let still = |v: f64| v < 1e-3 * series.finest().value(metric::MAX.name).unwrap_or(0.0);
+            let is_length = outcome.dimension == Dimension::Length;
+            if is_length && *outcome != metric::MAX && points.last().is_some_and(|p| still(p.1)) {
                 continue;
             }
-            let Some(outcome) = order::grid_convergence(&points) else { continue };
-            let of = |value: fn(&order::Gci) -> f64| outcome.index.as_ref().map(value);
+            let Some(found) = order::grid_convergence(&points) else { continue };
+            let of = |value: fn(&order::Gci) -> f64| found.index.as_ref().map(value);
             let poisson = ratio(series.is().poisson);
-            let unit = if quantity.starts_with("max") {
-                "mm"
-            } else {
-                series.finest().unit(quantity).unwrap_or("1")
-            };
-            let scale = if quantity.starts_with("max") { 1e3 } else { 1.0 };
+            let (unit, scale) = if is_length { ("mm", 1e3) } else { (outcome.unit(), 1.0) };
             table.row(&[
                 Cell::Text(&series.is().case),
                 Cell::Text(&poisson),
@@ -112,7 +114,7 @@ pub(super) fn convergence_index(runs: &[Run]) -> Table {
                 Cell::Digits(of(|gci| 100.0 * gci.fine), 3),
                 Cell::Digits(of(|gci| 100.0 * gci.coarse), 3),
                 Cell::Digits(of(|gci| gci.range), 3),
-                Cell::Text(outcome.verdict.name()),
+                Cell::Text(found.verdict.name()),
             ]);
         }
     }

@@ -6,8 +6,8 @@
 //! and finds the nearest known name of a mistyped one. Scene files, their schema, messages, lists and
 //! property tests all use the same slices of entries.
 //!
-//! The [metrics](metric) and [warnings](warning) are defined here, because solvers record them and reports
-//! draw them.
+//! The [metrics](metric), [warnings](warning) and names of [elements](element) are defined here, because
+//! solvers record them and reports draw them.
 //!
 //! ```
 //! use catalogue::{Dimension, Entry, Parameter, Problem, Value, Values, find, metric};
@@ -31,6 +31,7 @@
 //! ```
 
 mod dimension;
+pub mod element;
 mod entry;
 pub mod metric;
 mod names;

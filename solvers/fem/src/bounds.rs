@@ -55,21 +55,20 @@ impl Bounds {
 /// Returns a box that contains one cell.
 ///
 /// A quadratic map is the (tri)linear map of its corners plus, per edge, the deviation of the mid-edge node
-/// from the middle times a function between 0 and 1. These functions sum to at most 3/2 on a tet
-/// (`4 sum L_a L_b`) and 3 on a hexahedron (the four of each axis sum to at most 1). The corners plus that
-/// many largest deviations therefore bound the cell. The box is enlarged by 1e-9 of its diagonal, so that
+/// from the middle times a function between 0 and 1. The sum of these functions is bounded by the cell's
+/// [`bulge`](geometry::element::ReferenceCell::bulge). The corners plus that many largest deviations therefore
+/// bound the cell. The box is enlarged by 1e-9 of its diagonal, so that
 /// rounding leaves no gap between cells.
 pub(crate) fn cell_bounds(mesh: &Mesh, cell: usize) -> Bounds {
     let kind = mesh.kind(cell);
-    let local: [usize; 20] = std::array::from_fn(|i| i);
-    let reach = if kind.is_tet() { 1.5 } else { 3.0 };
+    let local: Vec<usize> = (0..kind.node_count()).collect();
     quadratic_bounds(
         mesh,
         mesh.cell(cell),
-        &local[..kind.node_count()],
+        &local,
         kind.corner_count(),
         kind.edges(),
-        reach,
+        kind.entry().cell.bulge,
     )
 }
 
@@ -79,7 +78,7 @@ pub(crate) fn facet_bounds(mesh: &Mesh, facet: Facet) -> Bounds {
     const EDGES: [[usize; 2]; 4] = [[0, 1], [1, 2], [2, 3], [3, 0]];
     const TRIANGLE: [[usize; 2]; 3] = [[0, 1], [1, 2], [2, 0]];
     let kind = mesh.kind(facet.cell as usize);
-    let corners = kind.face_kind().corner_count();
+    let corners = mesh.facet_kind(facet).corner_count();
     let local = kind.faces()[facet.face as usize];
     let (edges, reach): (&[_], f64) = if corners == 3 { (&TRIANGLE, 4.0 / 3.0) } else { (&EDGES, 2.0) };
     quadratic_bounds(mesh, mesh.cell(facet.cell as usize), local, corners, edges, reach)

@@ -3,7 +3,7 @@
 use geometry::{Facet, Mesh, Point3, Vector3};
 
 use crate::bounds::{Bounds, facet_bounds};
-use crate::face::{Face, into_cell, is_triangle, with_face};
+use crate::face::{Face, into_cell, with_face};
 use crate::locate::Place;
 use crate::map::Nodes;
 
@@ -45,7 +45,7 @@ impl<'a> Surface<'a> {
 
 /// Returns reference coordinates and distance (m) of the point of one facet nearest to `p`.
 fn closest_on_facet(mesh: &Mesh, facet: Facet, p: &Point3) -> ([f64; 2], f64) {
-    let kind = mesh.kind(facet.cell as usize).face_kind();
+    let kind = mesh.facet_kind(facet);
     with_face!(kind, F, N => {
         let mut nodes = [0; N];
         for (slot, node) in nodes.iter_mut().zip(mesh.facet_nodes(facet)) {
@@ -57,10 +57,10 @@ fn closest_on_facet(mesh: &Mesh, facet: Facet, p: &Point3) -> ([f64; 2], f64) {
         let tangents = |s| x.tangents(&<F as Face<N>>::shape_grad(s));
         let corners = &<F as Face<N>>::NODES[..kind.corner_count()];
 
-        let middle = if is_triangle(kind) { [1.0 / 3.0; 2] } else { [0.0; 2] };
+        let middle = kind.centre();
         let mut best = (middle, gap(middle).norm());
         let inner = descend(middle, &gap, &tangents);
-        let inside = if is_triangle(kind) {
+        let inside = if kind.is_triangle() {
             inner[0] >= 0.0 && inner[1] >= 0.0 && inner[0] + inner[1] <= 1.0
         } else {
             inner[0].abs() <= 1.0 && inner[1].abs() <= 1.0

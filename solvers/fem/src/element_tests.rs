@@ -3,19 +3,19 @@
 use geometry::CellKind;
 use proptest::prelude::*;
 
-use crate::face::{Face, into_cell, is_triangle, with_face};
-use geometry::element::{Element, centre, excess, nodes, with_element};
+use crate::face::{Face, into_cell, with_face};
+use geometry::element::{Element, with_element};
 
 /// Maps three numbers in (0, 1) to a point inside the reference cell of a kind.
 fn inside(kind: CellKind, r: [f64; 3]) -> [f64; 3] {
-    let corners = &nodes(kind)[..kind.corner_count()];
-    let mix = |t: f64, a: [f64; 3], b: [f64; 3]| std::array::from_fn(|i| a[i] + t * (b[i] - a[i]));
-    if kind.is_tet() {
-        let middle = mix(r[1], mix(r[0], corners[0], corners[1]), corners[2]);
-        mix(r[2], middle, corners[3])
-    } else {
-        r.map(|r| 2.0 * r - 1.0)
+    let corners = &kind.entry().nodes[..kind.corner_count()];
+    // Trilinear weights of a cube's corners, dealt to the corners of the cell.
+    let weight = |k: usize| (0..3).map(|i| if k >> i & 1 == 0 { 1.0 - r[i] } else { r[i] }).product::<f64>();
+    let mut xi = [0.0; 3];
+    for k in 0..8 {
+        (0..3).for_each(|i| xi[i] += weight(k) * corners[k % corners.len()][i]);
     }
+    xi
 }
 
 fn monomials(order: usize, x: [f64; 3]) -> Vec<f64> {
@@ -48,7 +48,7 @@ fn shape_functions_are_one_at_their_node_and_zero_at_the_others() {
 #[test]
 fn node_coordinates_follow_the_topology_of_the_kind() {
     for kind in CellKind::ALL {
-        let nodes = nodes(kind);
+        let (nodes, cell) = (kind.entry().nodes, kind.entry().cell);
         if kind.order() == 2 {
             for (middle, &[a, b]) in (kind.corner_count()..).zip(kind.edges()) {
                 for i in 0..3 {
@@ -61,8 +61,8 @@ fn node_coordinates_follow_the_topology_of_the_kind() {
                 }
             }
         }
-        assert!(nodes.iter().all(|&xi| excess(kind, xi) == 0.0));
-        assert!(excess(kind, centre(kind)) < 0.0);
+        assert!(nodes.iter().all(|&xi| (cell.excess)(xi) == 0.0));
+        assert!((cell.excess)(cell.centre) < 0.0);
     }
 }
 
@@ -73,7 +73,7 @@ proptest! {
     fn every_element_holds_the_list(r in prop::array::uniform3(0.0..1.0_f64)) {
         for kind in CellKind::ALL {
             let xi = inside(kind, r);
-            prop_assert!(excess(kind, xi) <= 1e-15);
+            prop_assert!((kind.entry().cell.excess)(xi) <= 1e-15);
             with_element!(kind, E, N => {
                 let (n, dn) = (E::shape(xi), E::shape_grad(xi));
                 // Partition of unity: 20 terms of size 1, with a few last bits of error each.
@@ -107,18 +107,19 @@ proptest! {
     #[test]
     fn an_element_is_its_face_element_on_every_face(r in prop::array::uniform2(0.0..1.0_f64)) {
         for kind in CellKind::ALL {
-            let face_kind = kind.face_kind();
-            let s = if is_triangle(face_kind) { [r[0], r[1] * (1.0 - r[0])] } else { r.map(|r| 2.0 * r - 1.0) };
             for (face, local) in kind.faces().iter().enumerate() {
+                let face_kind = kind.face_kind(face);
+                let s =
+                    if face_kind.is_triangle() { [r[0], r[1] * (1.0 - r[0])] } else { r.map(|r| 2.0 * r - 1.0) };
                 let xi = into_cell(kind, face, s);
-                prop_assert!(excess(kind, xi).abs() < 1e-15);
+                prop_assert!((kind.entry().cell.excess)(xi).abs() < 1e-15);
                 let mut on_face = vec![0.0; kind.node_count()];
                 with_face!(face_kind, F, N => {
                     for (&node, n) in local.iter().zip(F::shape(s)) {
                         on_face[node] = n;
                     }
                     for (&node, &s) in local.iter().zip(&F::NODES) {
-                        prop_assert_eq!(into_cell(kind, face, s), nodes(kind)[node]);
+                        prop_assert_eq!(into_cell(kind, face, s), kind.entry().nodes[node]);
                     }
                     let h = 1e-5;
                     for k in 0..2 {

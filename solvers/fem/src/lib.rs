@@ -1,6 +1,6 @@
 //! Finite elements: from a mesh to shape tables.
 //!
-//! Cells are tet4, tet10, hex8 and hex20 in any mixture, curved or straight. A table is built once,
+//! Cells are of any kinds in any mixture, curved or straight. A table is built once,
 //! independently of its use: stiffness, loads, boundary terms, probes and transfer all read the same rows.
 //! Everything is in the reference configuration, in metres.
 //!

@@ -5,7 +5,7 @@ use geometry::{CellKind, Mesh, Point3, Vector3};
 
 use crate::bounds::{Bounds, cell_bounds};
 use crate::map::{Nodes, cofactors};
-use geometry::element::{self, Element, with_element};
+use geometry::element::{Element, with_element};
 
 /// Largest distance outside its reference cell at which a point counts as inside, in reference units.
 /// Rounding leaves points of a face some 1e-15 outside both its cells.
@@ -95,20 +95,20 @@ impl<'a> Locator<'a> {
         };
         let from = |cell, start| {
             invert(self.mesh, cell, p, start)
-                .filter(|&xi| element::excess(self.mesh.kind(cell), xi) <= INSIDE)
+                .filter(|&xi| (self.mesh.kind(cell).entry().cell.excess)(xi) <= INSIDE)
                 .map(|xi| Place { cell, xi })
         };
         candidates()
-            .find_map(|cell| from(cell, element::centre(self.mesh.kind(cell))))
+            .find_map(|cell| from(cell, self.mesh.kind(cell).entry().cell.centre))
             // In a strongly distorted cell, Newton's method from the middle may leave the cell and miss: it
             // is repeated from near every node. Of 3000 hex20 (tet10) with all nodes shifted by up to 12 %
             // (15 %) of the edge, 19 (104) contained points that only the repetition finds; none were left
             // over.
             .or_else(|| {
                 candidates().filter(|&cell| self.mesh.kind(cell) != CellKind::Tet4).find_map(|cell| {
-                    let (kind, nodes) = (self.mesh.kind(cell), element::nodes(self.mesh.kind(cell)));
-                    let middle = element::centre(kind);
-                    nodes.iter().find_map(|node| {
+                    let entry = self.mesh.kind(cell).entry();
+                    let middle = entry.cell.centre;
+                    entry.nodes.iter().find_map(|node| {
                         from(cell, std::array::from_fn(|i| middle[i] + 0.8 * (node[i] - middle[i])))
                     })
                 })
@@ -157,7 +157,7 @@ fn newton<E: Element<N>, const N: usize>(
                 return None;
             }
         }
-        if element::excess(E::KIND, xi) > 10.0 {
+        if (E::ENTRY.cell.excess)(xi) > 10.0 {
             return None;
         }
     }

@@ -1,70 +1,66 @@
 //! Quadrature of each kind of cell and face, by name or by number of points.
 
-use geometry::quadrature::{self, Parts, Rule, TET_RULES, TRI_RULES};
+use geometry::quadrature::{self, Parts, Rule, TRI_RULES};
 use geometry::{CellKind, FaceKind};
 
 use crate::FemError;
 
-/// Largest number of Gauss points along an axis; a larger number is taken for a typing error.
+/// Largest number of Gauss points along an axis of a face; a larger number is taken for a typing error.
 const MOST_PER_AXIS: usize = 16;
 
-/// Volume quadrature for each kind of cell: points per cell for tets (one of [`TET_RULES`]), points along
-/// each axis for hexahedra (1 to 16).
+/// Volume quadrature: the number of points in a cell of each kind.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct VolumeRule {
-    tet4: usize,
-    tet10: usize,
-    hex8: usize,
-    hex20: usize,
-}
+pub struct VolumeRule([usize; CellKind::ALL.len()]);
 
 impl VolumeRule {
-    /// Full integration, exact for the stiffness of an affine cell: tet4 1 point, tet10 4, hex8 2 x 2 x 2,
-    /// hex20 3 x 3 x 3.
-    pub const STANDARD: VolumeRule = VolumeRule { tet4: 1, tet10: 4, hex8: 2, hex20: 3 };
+    /// Full integration, exact for the stiffness of an affine cell.
+    pub const STANDARD: VolumeRule = VolumeRule::of(false);
 
     /// Integration of at least one order more, for error norms against solutions that the cells cannot
-    /// represent: tet4 14 points (degree 5), tet10 24 (degree 6), hex8 3 x 3 x 3, hex20 4 x 4 x 4.
-    pub const FINE: VolumeRule = VolumeRule { tet4: 14, tet10: 24, hex8: 3, hex20: 4 };
+    /// represent.
+    pub const FINE: VolumeRule = VolumeRule::of(true);
 
-    /// Returns the rule with another number of points for one kind of cell: `points` per cell (tets) or along
-    /// each axis (hexahedra).
+    const fn of(fine: bool) -> VolumeRule {
+        let mut points = [0; CellKind::ALL.len()];
+        let mut at = 0;
+        while at < points.len() {
+            let offered = &CellKind::ALL[at].entry().points;
+            points[at] = if fine { offered.fine } else { offered.full };
+            at += 1;
+        }
+        VolumeRule(points)
+    }
+
+    /// Returns full integration, but reduced integration for the kinds that are in use with it.
+    pub fn reduced() -> VolumeRule {
+        let points = CellKind::ALL.map(|kind| kind.entry().points);
+        VolumeRule(points.map(|points| points.reduced.map_or(points.full, |rule| rule.0)))
+    }
+
+    /// Returns the rule with another number of points for one kind of cell.
     ///
     /// # Errors
     ///
     /// [`FemError::NoRule`] if there is no such rule.
-    pub fn with(self, kind: CellKind, points: usize) -> Result<VolumeRule, FemError> {
-        check(kind.name(), kind.is_tet(), points, &TET_RULES)?;
-        Ok(match kind {
-            CellKind::Tet4 => VolumeRule { tet4: points, ..self },
-            CellKind::Tet10 => VolumeRule { tet10: points, ..self },
-            CellKind::Hex8 => VolumeRule { hex8: points, ..self },
-            CellKind::Hex20 => VolumeRule { hex20: points, ..self },
-        })
+    pub fn with(mut self, kind: CellKind, points: usize) -> Result<VolumeRule, FemError> {
+        self.0[kind as usize] = points;
+        self.rule(kind)?;
+        Ok(self)
     }
 
     /// Number of points in a cell of this kind.
     pub fn points(&self, kind: CellKind) -> usize {
-        let n = self.number(kind);
-        if kind.is_tet() { n } else { n * n * n }
+        self.0[kind as usize]
     }
 
     pub(crate) fn rule(&self, kind: CellKind) -> Result<Rule<3>, FemError> {
-        let n = self.number(kind);
-        if kind.is_tet() {
-            quadrature::tet(n).ok_or_else(|| no_rule(kind.name(), true, n, &TET_RULES))
-        } else {
-            Ok(quadrature::hex(n))
-        }
-    }
-
-    fn number(&self, kind: CellKind) -> usize {
-        match kind {
-            CellKind::Tet4 => self.tet4,
-            CellKind::Tet10 => self.tet10,
-            CellKind::Hex8 => self.hex8,
-            CellKind::Hex20 => self.hex20,
-        }
+        let (points, cell) = (self.points(kind), kind.entry().cell);
+        (cell.rule)(points).ok_or_else(|| FemError::NoRule {
+            kind: kind.name(),
+            points,
+            counted: "points",
+            known: cell.rules.into(),
+        })
     }
 }
 
@@ -94,7 +90,7 @@ impl SurfaceRule {
     ///
     /// [`FemError::NoRule`] if there is no such rule.
     pub fn with(self, kind: FaceKind, points: usize) -> Result<SurfaceRule, FemError> {
-        check(face_name(kind), is_triangle(kind), points, &TRI_RULES)?;
+        check(kind.name(), kind.is_triangle(), points, &TRI_RULES)?;
         Ok(match kind {
             FaceKind::Tri3 => SurfaceRule { tri3: points, ..self },
             FaceKind::Tri6 => SurfaceRule { tri6: points, ..self },
@@ -106,13 +102,13 @@ impl SurfaceRule {
     /// Number of points on a face of this kind.
     pub fn points(&self, kind: FaceKind) -> usize {
         let n = self.number(kind);
-        if is_triangle(kind) { n } else { n * n }
+        if kind.is_triangle() { n } else { n * n }
     }
 
     pub(crate) fn rule(&self, kind: FaceKind) -> Result<Rule<2>, FemError> {
         let n = self.number(kind);
-        if is_triangle(kind) {
-            quadrature::tri(n).ok_or_else(|| no_rule(face_name(kind), true, n, &TRI_RULES))
+        if kind.is_triangle() {
+            quadrature::tri(n).ok_or_else(|| no_rule(kind.name(), true, n, &TRI_RULES))
         } else {
             Ok(quadrature::quad(n))
         }
@@ -121,7 +117,7 @@ impl SurfaceRule {
     /// Returns the rule on parts of a face.
     pub(crate) fn divided(&self, kind: FaceKind, parts: Parts) -> Result<Rule<2>, FemError> {
         let whole = self.rule(kind)?;
-        Ok(if is_triangle(kind) { parts.tri(&whole) } else { parts.quad(&whole) })
+        Ok(if kind.is_triangle() { parts.tri(&whole) } else { parts.quad(&whole) })
     }
 
     fn number(&self, kind: FaceKind) -> usize {
@@ -131,19 +127,6 @@ impl SurfaceRule {
             FaceKind::Quad4 => self.quad4,
             FaceKind::Quad8 => self.quad8,
         }
-    }
-}
-
-fn is_triangle(kind: FaceKind) -> bool {
-    kind.corner_count() == 3
-}
-
-fn face_name(kind: FaceKind) -> &'static str {
-    match kind {
-        FaceKind::Tri3 => "tri3",
-        FaceKind::Tri6 => "tri6",
-        FaceKind::Quad4 => "quad4",
-        FaceKind::Quad8 => "quad8",
     }
 }
 

@@ -32,12 +32,13 @@ impl RowSource for Elements {
         &self.mesh
     }
 
-    /// Returns the edge of a cube with the mean cell's volume, counting six tetrahedra to a cube, m. A size
+    /// Returns the edge of a cube with the mean cell's volume, counting as many cells to a cube as fill it
+    /// (six tetrahedra), m. A size
     /// derived from the number of nodes is not suitable: on coarse meshes it decreases more slowly than the
     /// cells and overstates the observed order by up to 15 %.
     fn spacing(&self, volume: &VolumeRows) -> f64 {
         let cubes: f64 = (0..self.mesh.cell_count())
-            .map(|c| if self.mesh.kind(c).is_tet() { 1.0 / 6.0 } else { 1.0 })
+            .map(|cell| 1.0 / self.mesh.kind(cell).entry().cell.per_cube as f64)
             .sum();
         (volume.weights().iter().sum::<f64>() / cubes).cbrt()
     }
@@ -83,7 +84,7 @@ impl RowSource for Elements {
     /// element. On 2 x 2 squares of two faces each, the error of tet10 was larger by 3.4 %; with the parts it
     /// is larger by 0.05 %.
     fn field_surface(&self, facets: &[Facet]) -> Result<SurfaceRows, SourceError> {
-        let parts = |facet: &Facet| match self.mesh.kind(facet.cell as usize).face_kind() {
+        let parts = |facet: &Facet| match self.mesh.facet_kind(*facet) {
             FaceKind::Tri6 => Parts::Inside(4),
             _ => Parts::WHOLE,
         };

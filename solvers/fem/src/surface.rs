@@ -38,7 +38,7 @@ pub fn divided_surface_rows(
     let rules = rules(rule)?;
     let mut table = Table::new();
     for (k, &facet) in facets.iter().enumerate() {
-        let kind = check(mesh, facet)?.face_kind();
+        let kind = check(mesh, facet)?.face_kind(facet.face as usize);
         let divided = match parts.get(k) {
             Some(&parts) if parts != Parts::WHOLE => Some(rule.divided(kind, parts)?),
             _ => None,
@@ -69,8 +69,8 @@ pub fn outline_rows(mesh: &Mesh, facets: &[Facet]) -> Result<PointRows, FemError
         table.push_row(mesh.points()[node as usize], &[node], &[1.0]);
     }
     for &facet in facets {
-        let kind = check(mesh, facet)?.face_kind();
-        let s = if kind.corner_count() == 3 { [1.0 / 3.0; 2] } else { [0.0; 2] };
+        let kind = check(mesh, facet)?.face_kind(facet.face as usize);
+        let s = kind.centre();
         with_face!(kind, F, N => {
             let nodes = facet_nodes::<N>(mesh, facet);
             let n = <F as Face<N>>::shape(s);
@@ -93,7 +93,7 @@ pub fn flux_rows(mesh: &Mesh, facets: &[Facet], rule: &SurfaceRule) -> Result<Fl
     let mut grads = Vec::new();
     for &facet in facets {
         let kind = check(mesh, facet)?;
-        let rule = &rules[kind.face_kind() as usize];
+        let rule = &rules[kind.face_kind(facet.face as usize) as usize];
         let element = facet.cell as usize;
         with_element!(kind, E, N => {
             let nodes = &mesh.cell(element).as_chunks::<N>().0[0];
@@ -187,7 +187,7 @@ fn facet_nodes<const N: usize>(mesh: &Mesh, facet: Facet) -> [u32; N] {
 
 /// Returns `dx/ds` and `dx/dt` of a facet; their cross product points outwards.
 fn facet_tangents(mesh: &Mesh, facet: Facet, s: [f64; 2]) -> [Vector3; 2] {
-    with_face!(mesh.kind(facet.cell as usize).face_kind(), F, N => {
+    with_face!(mesh.facet_kind(facet), F, N => {
         let x = Nodes::gather(mesh, &facet_nodes::<N>(mesh, facet));
         x.tangents(&<F as Face<N>>::shape_grad(s))
     })

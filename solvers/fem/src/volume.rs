@@ -8,7 +8,7 @@ use shape::{DilationGroups, GradRows, Layout, Rows, Unity, VolumeRows};
 
 use crate::map::{Nodes, inverse, physical};
 use crate::{FemError, VolumeRule};
-use geometry::element::{Element, Hex8, Tet4, with_element};
+use geometry::element::{Element, with_element};
 
 /// Tolerance of the sum of shape values, which is one within a few last bits (20 terms of size 1: some
 /// 1e-15).
@@ -109,7 +109,7 @@ pub fn element_dilation(mesh: &Mesh, rule: &VolumeRule) -> Result<DilationGroups
 
 /// Returns the rows of the continuous pressure of Taylor-Hood elements (tet10/P1; Taylor & Hood 1973).
 ///
-/// These are the linear (tet4, hex8) shape values of each cell's corners at the points of [`volume_rows`]
+/// These are the linear shape values of each cell's corners at the points of [`volume_rows`]
 /// with the same rule. Their nodes are the corner nodes only, numbered in the order of the mesh. A corner
 /// between several materials counts as one node per material. `alike` holds the material of each region, or
 /// is empty if all regions have the same material.
@@ -138,13 +138,10 @@ pub fn pressure_rows(mesh: &Mesh, rule: &VolumeRule, alike: &[u16]) -> Result<Ro
     for cell in 0..mesh.cell_count() {
         let kind = mesh.kind(cell);
         let corners = &mesh.cell(cell)[..kind.corner_count()];
+        let linear = kind.of_order(1).expect("every shape has a linear kind");
         for &xi in &rule.rule(kind)?.points {
             nodes.extend(corners.iter().map(|&n| number[place(cell, n)]));
-            if kind.is_tet() {
-                values.extend(Tet4::shape(xi));
-            } else {
-                values.extend(Hex8::shape(xi));
-            }
+            with_element!(linear, E, N => values.extend(<E as Element<N>>::shape(xi)));
             offsets.push(nodes.len());
         }
     }
@@ -161,8 +158,8 @@ struct Table {
 
 /// Tabulates one table per kind, indexed by `CellKind as usize`; tables of kinds that the mesh does not use
 /// stay empty.
-fn tabulate(mesh: &Mesh, rule: &VolumeRule) -> Result<[Table; 4], FemError> {
-    let mut tables: [Table; 4] = Default::default();
+fn tabulate(mesh: &Mesh, rule: &VolumeRule) -> Result<[Table; CellKind::ALL.len()], FemError> {
+    let mut tables: [Table; CellKind::ALL.len()] = Default::default();
     for kind in CellKind::ALL {
         if (0..mesh.cell_count()).any(|cell| mesh.kind(cell) == kind) {
             let rule = rule.rule(kind)?;
@@ -206,7 +203,7 @@ impl<'a> Slots<'a> {
         }
     }
 
-    fn fill(mut self, mesh: &Mesh, tables: &[Table; 4]) -> Result<(), FemError> {
+    fn fill(mut self, mesh: &Mesh, tables: &[Table; CellKind::ALL.len()]) -> Result<(), FemError> {
         for cell in self.cells.clone() {
             let kind = mesh.kind(cell);
             let table = &tables[kind as usize];

@@ -18,9 +18,9 @@ fn points_inside(mesh: &Mesh) -> Vec<Point3> {
 }
 
 fn many_points() -> VolumeRule {
-    CellKind::ALL
-        .into_iter()
-        .fold(VolumeRule::FINE, |rule, kind| rule.with(kind, if kind.is_tet() { 24 } else { 5 }).unwrap())
+    CellKind::ALL.into_iter().fold(VolumeRule::FINE, |rule, kind| {
+        rule.with(kind, kind.entry().points.volume.max(24)).unwrap_or(rule)
+    })
 }
 
 #[test]

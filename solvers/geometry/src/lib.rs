@@ -33,11 +33,12 @@ pub mod stuffing;
 pub mod surface;
 mod triangle;
 
-pub use cell::{CellKind, FaceKind};
+pub use cell::FaceKind;
 pub use cloud::{
     Cloud, CloudError, PointFile, PointFileError, PointProblem, Refinement, Sizes, cloud, cloud_from_mesh,
     cloud_of_sizes, edges, read_points, read_points_text,
 };
+pub use element::CellKind;
 pub use locate::{LocateError, Location, Locator, locate};
 pub use mesh::{Facet, Mesh, MeshError};
 pub use search::{Neighbour, Search, SearchError};

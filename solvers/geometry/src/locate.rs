@@ -146,7 +146,7 @@ impl Locator {
         };
         for cell in 0..count {
             let kind = mesh.kind(cell);
-            if !kind.is_tet() {
+            if kind.corner_count() != 4 {
                 return Err(LocateError::NotTetrahedron { cell, kind });
             }
             let mut p = [Point3::origin(); 4];

@@ -4,7 +4,7 @@
 use std::collections::BTreeMap;
 use std::sync::OnceLock;
 
-use crate::{CellKind, Point3};
+use crate::{CellKind, FaceKind, Point3};
 
 /// One face of one cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -62,7 +62,7 @@ pub enum MeshError {
     },
 }
 
-/// A mesh of tet4, tet10, hex8 and hex20 cells in any mixture; positions in metres.
+/// A mesh of cells of any kinds; positions in metres.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mesh {
     points: Vec<Point3>,
@@ -262,6 +262,16 @@ impl Mesh {
         self.kind(facet.cell as usize).faces()[facet.face as usize].iter().map(|&local| cell[local])
     }
 
+    /// Shape of a facet.
+    pub fn facet_kind(&self, facet: Facet) -> FaceKind {
+        self.kind(facet.cell as usize).face_kind(facet.face as usize)
+    }
+
+    /// Global node indices of a facet's corners, counter-clockwise from outside.
+    pub fn facet_corners(&self, facet: Facet) -> impl ExactSizeIterator<Item = u32> + '_ {
+        self.facet_nodes(facet).take(self.facet_kind(facet).corner_count())
+    }
+
     /// Facets that belong to only one cell, in cell order.
     pub fn boundary(&self) -> Vec<Facet> {
         self.boundary.0.get_or_init(|| self.find_boundary()).clone()
@@ -275,11 +285,7 @@ impl Mesh {
                 let facet = Facet { cell: cell as u32, face: face as u8 };
                 // `u32::MAX` pads triangles, so that one type represents both face shapes.
                 let mut nodes = [u32::MAX; 4];
-                for (slot, node) in
-                    nodes.iter_mut().zip(self.facet_nodes(facet).take(kind.face_kind().corner_count()))
-                {
-                    *slot = node;
-                }
+                nodes.iter_mut().zip(self.facet_corners(facet)).for_each(|(slot, node)| *slot = node);
                 nodes.sort_unstable();
                 starts[nodes[0] as usize + 1] += 1;
                 faces.push((nodes, facet));

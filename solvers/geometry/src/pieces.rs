@@ -132,7 +132,7 @@ impl Twins {
 }
 
 fn corners(mesh: &Mesh, facet: Facet) -> impl Iterator<Item = u32> + '_ {
-    mesh.facet_nodes(facet).take(mesh.kind(facet.cell as usize).face_kind().corner_count())
+    mesh.facet_corners(facet)
 }
 
 /// Largest distance (m) of a coinciding node, for each node of the boundary; infinite inside.

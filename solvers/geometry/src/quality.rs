@@ -43,8 +43,8 @@ pub struct Quality {
     pub min_dihedral: Extreme,
     /// Largest such angle (degrees).
     pub max_dihedral: Extreme,
-    /// Largest aspect ratio: longest edge times surface over volume, scaled to 1 for the regular tetrahedron
-    /// and the cube.
+    /// Largest aspect ratio: longest edge times surface over volume, scaled to 1 for the regular cell of each
+    /// shape.
     pub max_aspect: Extreme,
 }
 
@@ -68,7 +68,7 @@ pub fn check(mesh: &Mesh) -> Result<Quality, InvertedElement> {
             volume += w * d;
             (low, high) = (low.min(d), high.max(d));
         }
-        for xi in nodes {
+        for xi in *nodes {
             let d = det(xi);
             (low, high) = (low.min(d), high.max(d));
         }
@@ -106,8 +106,7 @@ pub fn check(mesh: &Mesh) -> Result<Quality, InvertedElement> {
 
 /// Aspect ratio as in [`Quality::max_aspect`].
 fn aspect(kind: CellKind, points: &[Point3], volume: f64) -> f64 {
-    let regular = if kind.is_tet() { 6.0 * 6f64.sqrt() } else { 6.0 };
-    longest_edge(kind, points) * surface(kind, points) / volume / regular
+    longest_edge(kind, points) * surface(kind, points) / volume / kind.entry().cell.regular_aspect
 }
 
 /// Volume, aspect ratio and angles of one cell.
@@ -115,8 +114,8 @@ fn aspect(kind: CellKind, points: &[Point3], volume: f64) -> f64 {
 pub struct CellShape {
     /// Volume (m^3), negative if the cell is inverted.
     pub volume: f64,
-    /// Aspect ratio: longest edge times surface over volume, scaled to 1 for the regular tetrahedron and the
-    /// cube; infinite if the volume is not positive.
+    /// Aspect ratio: longest edge times surface over volume, scaled to 1 for the regular cell of each shape;
+    /// infinite if the volume is not positive.
     pub aspect: f64,
     /// Smallest and largest angle (degrees) between two faces.
     pub angles: [f64; 2],
@@ -166,16 +165,10 @@ impl Quality {
     }
 }
 
-/// Quadrature rule that integrates `det J` exactly, and the nodes. The degrees are 0 (tet4) and 3 (tet10),
-/// and per coordinate 2 (hex8) and at most 7 (hex20).
-fn probe_points(kind: CellKind) -> (quadrature::Rule<3>, Vec<[f64; 3]>) {
-    let rule = match kind {
-        CellKind::Tet4 => quadrature::tet(1),
-        CellKind::Tet10 => quadrature::tet(8),
-        CellKind::Hex8 => Some(quadrature::hex(2)),
-        CellKind::Hex20 => Some(quadrature::hex(4)),
-    };
-    (rule.expect("a tabulated rule"), element::nodes(kind).to_vec())
+/// Quadrature rule that integrates `det J` exactly, and the nodes.
+fn probe_points(kind: CellKind) -> (quadrature::Rule<3>, &'static [[f64; 3]]) {
+    let entry = kind.entry();
+    ((entry.cell.rule)(entry.points.volume).expect("a tabulated rule"), entry.nodes)
 }
 
 fn longest_edge(kind: CellKind, points: &[Point3]) -> f64 {
@@ -184,9 +177,10 @@ fn longest_edge(kind: CellKind, points: &[Point3]) -> f64 {
 
 /// Area of the faces, each as the sum of the triangles around the mean of its corners.
 fn surface(kind: CellKind, points: &[Point3]) -> f64 {
-    let corners = kind.face_kind().corner_count();
-    let face_area = |face: &[usize]| -> f64 {
-        let mean = face[..corners].iter().map(|&n| points[n].coords).sum::<Vector3>() / corners as f64;
+    let face_area = |face: usize| -> f64 {
+        let face = kind.face_corners(face);
+        let corners = face.len();
+        let mean = face.iter().map(|&n| points[n].coords).sum::<Vector3>() / corners as f64;
         (0..corners)
             .map(|i| {
                 let (a, b) = (points[face[i]].coords - mean, points[face[(i + 1) % corners]].coords - mean);
@@ -194,18 +188,18 @@ fn surface(kind: CellKind, points: &[Point3]) -> f64 {
             })
             .sum()
     };
-    kind.faces().iter().map(|face| face_area(face)).sum()
+    (0..kind.faces().len()).map(face_area).sum()
 }
 
-/// Smallest and largest angle (degrees) between faces that share an edge. At an edge of a hexahedron each
+/// Smallest and largest angle (degrees) between faces that share an edge. At an edge of a quadrilateral the
 /// face is taken as the plane through the edge and the corner adjacent to its start.
 fn dihedrals(kind: CellKind, points: &[Point3]) -> (f64, f64) {
-    let corners = kind.face_kind().corner_count();
     let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
     for &[a, b] in kind.edges() {
         let along = (points[b] - points[a]).normalize();
-        let mut arms = kind.faces().iter().filter_map(|face| {
-            let face = &face[..corners];
+        let mut arms = (0..kind.faces().len()).filter_map(|face| {
+            let face = kind.face_corners(face);
+            let corners = face.len();
             let at = face.iter().position(|&n| n == a)?;
             let (next, previous) = (face[(at + 1) % corners], face[(at + corners - 1) % corners]);
             let other = if next == b {

@@ -166,7 +166,7 @@ const DECK: [Edit; 6] = [
             l[line] = l[line].replace("C3D", "C3D1");
             Some(())
         },
-        "C3D4, C3D10, C3D8 and C3D20 with their variants",
+        "C3D4, C3D10, C3D8, C3D20",
     ),
     (
         |l| {

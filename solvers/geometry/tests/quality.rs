@@ -48,7 +48,7 @@ fn the_worst_element_is_named() {
             .map(|c| {
                 let mut nodes = mesh.cell(c).to_vec();
                 if c == bad {
-                    nodes.swap(0, if kind.is_tet() { 1 } else { 6 });
+                    nodes.swap(0, if kind.corner_count() == 4 { 1 } else { 6 });
                 }
                 (kind, nodes)
             })

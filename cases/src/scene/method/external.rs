@@ -6,7 +6,8 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::common::{Dilation, JitterKeys, SizeKeys};
-use super::fem::{Element, Fem};
+use super::element::Element;
+use super::fem::Fem;
 use crate::scene::report::Report;
 use crate::scene::units::{Bytes, Q, Time};
 

@@ -1,26 +1,13 @@
 //! Finite elements.
 
 use catalogue::Problem;
+use geometry::CellKind;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::common::{Dilation, Jitter, JitterKeys, Mass, Size, SizeKeys};
+use super::element::Element;
 use crate::scene::report::Report;
-use crate::scene::words::words;
-
-words! {
-    /// Element types.
-    pub enum Element {
-        /// Linear tetrahedron.
-        Tet4 = "tet4",
-        /// Quadratic tetrahedron.
-        Tet10 = "tet10",
-        /// Trilinear hexahedron.
-        Hex8 = "hex8",
-        /// Quadratic serendipity hexahedron.
-        Hex20 = "hex20",
-    }
-}
 
 #[derive(Deserialize, JsonSchema)]
 pub(crate) struct FemKeys {
@@ -42,7 +29,7 @@ pub struct Fem {
     pub element: Element,
     /// Treatment of the volume change.
     pub dilation: Dilation,
-    /// Whether hex20 has 2 x 2 x 2 points instead of 3 x 3 x 3: avoids locking in combined bending and
+    /// Whether the element's reduced integration is used: avoids locking in combined bending and
     /// compression.
     pub reduced: bool,
     /// Size of the mesh.
@@ -55,9 +42,14 @@ impl FemKeys {
     pub fn read(self, report: &Report) -> Option<Fem> {
         let (element, reduced) = (self.element, self.reduced);
         let size = self.size.read(&report.at("size"));
-        let sound = !reduced || element == Element::Hex20;
-        let help = "leave it out, or take element = \"hex20\"";
-        report.require(sound, "reduced", "applies to hex20 only", help);
+        let has = |kind: CellKind| kind.entry().points.reduced.is_some();
+        let problem = format!("applies to {} only", Element::named(has));
+        report.require(
+            !reduced || has(element.0),
+            "reduced",
+            &problem,
+            "leave it out, or take another element",
+        );
         let jitter = self.jitter.map(|jitter| jitter.read(report));
         let dilation = self.dilation.unwrap_or(Dilation::Standard);
         Some(Fem { element, dilation, reduced, size: size?, jitter })
@@ -69,12 +61,15 @@ impl Fem {
     /// elements of second order only. With these, the functions of the corners are negative in most of a cell, so
     /// nodal means average over negative volumes.
     pub(super) fn demands(&self, report: &Report) {
-        let (name, linear) = (self.element.name(), matches!(self.element, Element::Tet4 | Element::Hex8));
+        let (name, linear) = (self.element.name(), self.element.order() == 1);
         let (found, problem, help) = match self.dilation {
             Dilation::Mixed if linear => (
                 "mixed",
                 format!("has no stable pressure field with {name}"),
-                "take tet10 or hex20, or \"nodal-mean\" (tet4) or \"element-mean\" (hex8)".to_string(),
+                format!(
+                    "take {}, or \"nodal-mean\" (tet4) or \"element-mean\" (hex8)",
+                    Element::named(|kind| kind.order() == 2)
+                ),
             ),
             Dilation::NodalMean if !linear => (
                 "nodal-mean",

@@ -37,7 +37,7 @@ pub(crate) struct Text {
     pub(crate) id: String,
     pub(crate) case: String,
     pub(crate) method: String,
-    /// `tet4`, `tet10`, `hex8` or `hex20`: rows of `cells.npy` have the node order of VTK.
+    /// Name of the element: rows of `cells.npy` have the node order of Abaqus.
     pub(crate) element: String,
     /// Quadrature points per cell in this program. On curved cells the results depend on the number.
     pub(crate) points_per_cell: usize,

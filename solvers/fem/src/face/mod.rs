@@ -11,9 +11,7 @@ pub(crate) use quad8::Quad8;
 pub(crate) use tri3::Tri3;
 pub(crate) use tri6::Tri6;
 
-use geometry::{CellKind, FaceKind};
-
-use geometry::element;
+use geometry::CellKind;
 
 /// Lagrange element of `N` nodes on a reference face.
 pub(crate) trait Face<const N: usize> {
@@ -47,15 +45,10 @@ macro_rules! with_face {
 }
 pub(crate) use with_face;
 
-/// Whether the kind is a triangle.
-pub(crate) fn is_triangle(kind: FaceKind) -> bool {
-    kind.corner_count() == 3
-}
-
 /// Returns the reference coordinates in the cell of the point `s` of one of its faces. Reference faces are
 /// flat, so the (bi)linear functions of the corners map a face into the cell for every order.
 pub(crate) fn into_cell(kind: CellKind, face: usize, s: [f64; 2]) -> [f64; 3] {
-    let nodes = element::nodes(kind);
+    let nodes = kind.entry().nodes;
     let corners = kind.faces()[face].iter();
     let mut xi = [0.0; 3];
     let mut add = |values: &[f64]| {
@@ -65,7 +58,7 @@ pub(crate) fn into_cell(kind: CellKind, face: usize, s: [f64; 2]) -> [f64; 3] {
             }
         }
     };
-    if is_triangle(kind.face_kind()) {
+    if kind.face_kind(face).is_triangle() {
         add(&Tri3::shape(s))
     } else {
         add(&Quad4::shape(s))

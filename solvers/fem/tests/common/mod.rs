@@ -62,6 +62,8 @@ pub fn middles(mesh: &Mesh, facet: Facet) -> (Point3, Point3) {
         Point3::from(sum / nodes.len() as f64)
     };
     let kind = mesh.kind(facet.cell as usize);
-    let face = mesh.facet_nodes(facet).take(kind.face_kind().corner_count()).collect();
-    (mean(face), mean(mesh.cell(facet.cell as usize)[..kind.corner_count()].to_vec()))
+    (
+        mean(mesh.facet_corners(facet).collect()),
+        mean(mesh.cell(facet.cell as usize)[..kind.corner_count()].to_vec()),
+    )
 }

@@ -1,6 +1,8 @@
-use crate::CellKind;
+use catalogue::element as listed;
 
-use super::Element;
+use super::cube::CUBE;
+use super::{Element, Entry, FileCodes, Points, in_order};
+use crate::CellKind;
 
 /// 20-node serendipity hexahedron on the cube `[-1, 1]^3`: the corners of [`super::Hex8`], then mid-edges
 /// 01 12 23 30, 45 56 67 74, 04 15 26 37.
@@ -16,6 +18,28 @@ pub struct Hex20;
 
 impl Element<20> for Hex20 {
     const KIND: CellKind = CellKind::Hex20;
+    const ENTRY: Entry = Entry {
+        listed: &listed::HEX20,
+        cell: &CUBE,
+        nodes: &Self::NODES,
+        faces: &[
+            &[0, 3, 2, 1, 11, 10, 9, 8],
+            &[4, 5, 6, 7, 12, 13, 14, 15],
+            &[0, 1, 5, 4, 8, 17, 12, 16],
+            &[1, 2, 6, 5, 9, 18, 13, 17],
+            &[2, 3, 7, 6, 10, 19, 14, 18],
+            &[3, 0, 4, 7, 11, 16, 15, 19],
+        ],
+        points: Points { full: 27, reduced: Some((8, "2x2x2")), fine: 64, volume: 64 },
+        files: FileCodes {
+            gmsh: 17,
+            gmsh_order: &[0, 1, 2, 3, 4, 5, 6, 7, 8, 11, 16, 9, 17, 10, 18, 19, 12, 15, 13, 14],
+            abaqus: "C3D20",
+            abaqus_order: &in_order::<20>(),
+            vtk: 25,
+            vtk_order: &in_order::<20>(),
+        },
+    };
     const NODES: [[f64; 3]; 20] = [
         [-1.0, -1.0, -1.0],
         [1.0, -1.0, -1.0],

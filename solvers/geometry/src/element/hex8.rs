@@ -1,6 +1,8 @@
-use crate::CellKind;
+use catalogue::element as listed;
 
-use super::Element;
+use super::cube::CUBE;
+use super::{Element, Entry, FileCodes, Points, in_order};
+use crate::CellKind;
 
 /// 8-node trilinear hexahedron on the cube `[-1, 1]^3`: bottom 0123 counter-clockwise seen from above, 4567
 /// above.
@@ -10,6 +12,21 @@ pub struct Hex8;
 
 impl Element<8> for Hex8 {
     const KIND: CellKind = CellKind::Hex8;
+    const ENTRY: Entry = Entry {
+        listed: &listed::HEX8,
+        cell: &CUBE,
+        nodes: &Self::NODES,
+        faces: &[&[0, 3, 2, 1], &[4, 5, 6, 7], &[0, 1, 5, 4], &[1, 2, 6, 5], &[2, 3, 7, 6], &[3, 0, 4, 7]],
+        points: Points { full: 8, reduced: None, fine: 27, volume: 8 },
+        files: FileCodes {
+            gmsh: 5,
+            gmsh_order: &in_order::<8>(),
+            abaqus: "C3D8",
+            abaqus_order: &in_order::<8>(),
+            vtk: 12,
+            vtk_order: &in_order::<8>(),
+        },
+    };
     const NODES: [[f64; 3]; 8] = super::HEX_CORNERS;
 
     #[inline]

@@ -1,23 +1,63 @@
-//! Shape functions of the elements, one file each, used by quality checks, point location, tables and
-//! kernels. A new element needs a file, a line in `with_element` and a [`CellKind`].
+//! Elements, one file each: shape functions, used by quality checks, point location, tables and kernels, and an
+//! [`Entry`] of all other facts. A new element needs a file, its lines here, and its name in the catalogue.
 
+mod cube;
+mod entry;
 mod hex20;
 mod hex8;
 mod tet10;
 mod tet4;
+mod tetrahedron;
 
+pub use entry::{Entry, FileCodes, Points, ReferenceCell};
 pub use hex8::Hex8;
 pub use hex20::Hex20;
 pub use tet4::Tet4;
 pub use tet10::Tet10;
 
-use crate::{CellKind, Matrix3, Point3, Vector3};
+use crate::{Matrix3, Point3, Vector3};
+
+/// Declares the kinds of cells with their numbers of nodes.
+macro_rules! elements {
+    ($($(#[doc = $about:literal])+ $Name:ident = $nodes:literal,)+) => {
+        /// Shapes that cells of a mesh may have, in any mixture.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+        pub enum CellKind {
+            $($(#[doc = $about])+ $Name,)+
+        }
+
+        impl CellKind {
+            /// All kinds, in the order tables list them.
+            pub const ALL: [CellKind; [$($nodes),+].len()] = [$(CellKind::$Name),+];
+
+            /// Facts of the kind's element.
+            pub const fn entry(self) -> &'static Entry {
+                match self {
+                    $(CellKind::$Name => &<$Name as Element<$nodes>>::ENTRY,)+
+                }
+            }
+        }
+    };
+}
+
+elements! {
+    /// 4-node tetrahedron: corners.
+    Tet4 = 4,
+    /// 10-node tetrahedron: corners, then mid-edges 01, 12, 20, 03, 13, 23.
+    Tet10 = 10,
+    /// 8-node hexahedron: bottom 0123 counter-clockwise seen from above, top 4567 above them.
+    Hex8 = 8,
+    /// 20-node hexahedron: corners, then mid-edges 01 12 23 30, 45 56 67 74, 04 15 26 37.
+    Hex20 = 20,
+}
 
 /// A Lagrange element of `N` nodes on its reference cell: the tetrahedron (0,0,0), (1,0,0), (0,1,0), (0,0,1)
 /// or the cube `[-1, 1]^3`. The same functions map the reference cell to space: `x(xi) = sum_a N_a(xi) x_a`.
 pub trait Element<const N: usize> {
     /// Kind of mesh cell, which also defines the node order.
     const KIND: CellKind;
+    /// Facts of the element.
+    const ENTRY: Entry;
     /// Reference coordinates of the nodes, (N, 3).
     const NODES: [[f64; 3]; N];
 
@@ -62,27 +102,15 @@ macro_rules! with_element {
 }
 pub use crate::with_element;
 
-/// Distance of `xi` outside the reference cell of a kind, in reference units; negative inside.
-pub fn excess(kind: CellKind, xi: [f64; 3]) -> f64 {
-    let [x, y, z] = xi;
-    if kind.is_tet() {
-        (-x).max(-y).max(-z).max(x + y + z - 1.0)
-    } else {
-        x.abs().max(y.abs()).max(z.abs()) - 1.0
+/// The node order of a file that lists the nodes as the cell does.
+const fn in_order<const N: usize>() -> [usize; N] {
+    let mut order = [0; N];
+    let mut at = 0;
+    while at < N {
+        order[at] = at;
+        at += 1;
     }
-}
-
-/// Reference coordinates of the cell's middle.
-pub fn centre(kind: CellKind) -> [f64; 3] {
-    if kind.is_tet() { [0.25; 3] } else { [0.0; 3] }
-}
-
-/// Reference coordinates of all nodes of a kind, in its node order.
-pub fn nodes(kind: CellKind) -> &'static [[f64; 3]] {
-    with_element!(kind, E, N => {
-        const NODES: [[f64; 3]; N] = <E as Element<N>>::NODES;
-        &NODES
-    })
+    order
 }
 
 /// Position of the reference point `xi` and Jacobian `J_ij = dx_i / dxi_j` (m), for a cell with the given

@@ -1,6 +1,8 @@
-use crate::CellKind;
+use catalogue::element as listed;
 
-use super::{Element, Tet4};
+use super::tetrahedron::TETRAHEDRON;
+use super::{Element, Entry, FileCodes, Points, Tet4, in_order};
+use crate::CellKind;
 
 /// 10-node quadratic tetrahedron: the corners of [`Tet4`], then mid-edges 01, 12, 20, 03, 13, 23.
 ///
@@ -8,11 +10,23 @@ use super::{Element, Tet4};
 /// L_a L_b` at the middle of edge `ab`. The basis is complete to degree 2.
 pub struct Tet10;
 
-/// Corners of each mid-edge node, as in [`CellKind::edges`].
-const EDGES: [[usize; 2]; 6] = [[0, 1], [1, 2], [2, 0], [0, 3], [1, 3], [2, 3]];
-
 impl Element<10> for Tet10 {
     const KIND: CellKind = CellKind::Tet10;
+    const ENTRY: Entry = Entry {
+        listed: &listed::TET10,
+        cell: &TETRAHEDRON,
+        nodes: &Self::NODES,
+        faces: &[&[0, 2, 1, 6, 5, 4], &[0, 1, 3, 4, 8, 7], &[1, 2, 3, 5, 9, 8], &[0, 3, 2, 7, 9, 6]],
+        points: Points { full: 4, reduced: None, fine: 24, volume: 8 },
+        files: FileCodes {
+            gmsh: 11,
+            gmsh_order: &[0, 1, 2, 3, 4, 5, 6, 7, 9, 8],
+            abaqus: "C3D10",
+            abaqus_order: &in_order::<10>(),
+            vtk: 24,
+            vtk_order: &in_order::<10>(),
+        },
+    };
     const NODES: [[f64; 3]; 10] = [
         [0.0, 0.0, 0.0],
         [1.0, 0.0, 0.0],
@@ -32,7 +46,7 @@ impl Element<10> for Tet10 {
         std::array::from_fn(|node| match node {
             0..4 => l[node] * (2.0 * l[node] - 1.0),
             _ => {
-                let [a, b] = EDGES[node - 4];
+                let [a, b] = TETRAHEDRON.edges[node - 4];
                 4.0 * l[a] * l[b]
             }
         })
@@ -45,7 +59,7 @@ impl Element<10> for Tet10 {
         std::array::from_fn(|node| match node {
             0..4 => dl[node].map(|d| (4.0 * l[node] - 1.0) * d),
             _ => {
-                let [a, b] = EDGES[node - 4];
+                let [a, b] = TETRAHEDRON.edges[node - 4];
                 std::array::from_fn(|i| 4.0 * (l[a] * dl[b][i] + l[b] * dl[a][i]))
             }
         })

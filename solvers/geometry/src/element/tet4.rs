@@ -1,6 +1,8 @@
-use crate::CellKind;
+use catalogue::element as listed;
 
-use super::Element;
+use super::tetrahedron::TETRAHEDRON;
+use super::{Element, Entry, FileCodes, Points, in_order};
+use crate::CellKind;
 
 /// 4-node linear tetrahedron: corners (0,0,0), (1,0,0), (0,1,0), (0,0,1).
 ///
@@ -10,6 +12,21 @@ pub struct Tet4;
 
 impl Element<4> for Tet4 {
     const KIND: CellKind = CellKind::Tet4;
+    const ENTRY: Entry = Entry {
+        listed: &listed::TET4,
+        cell: &TETRAHEDRON,
+        nodes: &Self::NODES,
+        faces: &[&[0, 2, 1], &[0, 1, 3], &[1, 2, 3], &[0, 3, 2]],
+        points: Points { full: 1, reduced: None, fine: 14, volume: 1 },
+        files: FileCodes {
+            gmsh: 4,
+            gmsh_order: &in_order::<4>(),
+            abaqus: "C3D4",
+            abaqus_order: &in_order::<4>(),
+            vtk: 10,
+            vtk_order: &in_order::<4>(),
+        },
+    };
     const NODES: [[f64; 3]; 4] = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 
     #[inline]

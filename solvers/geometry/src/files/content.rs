@@ -7,6 +7,7 @@ use std::path::Path;
 
 use super::error::{FileError, Parsed, Place, Problem};
 use super::left_out::LeftOut;
+use super::middles::turn_if_inverted;
 use super::names::{Names, without_empty};
 use super::numbers::Numbers;
 use super::overlap::Cells;
@@ -177,6 +178,12 @@ impl Content {
         Ok(())
     }
 
+    /// Puts the nodes of the last cell, of this kind, in mirrored order if its volume is negative.
+    pub(super) fn turn_if_inverted(&mut self, kind: CellKind) {
+        let start = self.nodes.len() - kind.node_count();
+        turn_if_inverted(kind, &mut self.nodes[start..], &self.points);
+    }
+
     /// Cell with this element number.
     pub(super) fn cell_of(&self, number: u64) -> Option<u32> {
         let element = self.element_numbers.get(number)? as usize;
@@ -245,11 +252,11 @@ impl Content {
     /// Adds the cell face with these local corners to a group; returns `false` if the cell has no such face.
     pub(super) fn facet(&mut self, group: usize, cell: u32, corners: &[usize]) -> bool {
         let kind = self.kinds[cell as usize];
-        let corner_count = kind.face_kind().corner_count();
-        let is = |face: &&[usize]| {
-            corners.len() == corner_count && face[..corner_count].iter().all(|local| corners.contains(local))
+        let is = |&face: &usize| {
+            let own = kind.face_corners(face);
+            own.len() == corners.len() && own.iter().all(|local| corners.contains(local))
         };
-        let found = kind.faces().iter().position(|face| is(&&face[..]));
+        let found = (0..kind.faces().len()).find(is);
         if let Some(face) = found {
             self.facets.push((group, Facet { cell, face: face as u8 }));
         }
@@ -445,13 +452,12 @@ impl Content {
         }
         let mut start = 0;
         for (cell, kind) in self.kinds.iter().enumerate() {
-            let corner_count = kind.face_kind().corner_count();
-            for (face, local) in kind.faces().iter().enumerate() {
-                let mut key = [u32::MAX; 4];
-                for (slot, &local) in key.iter_mut().zip(&local[..corner_count]) {
+            for face in 0..kind.faces().len() {
+                let (mut key, corners) = ([u32::MAX; 4], kind.face_corners(face));
+                for (slot, &local) in key.iter_mut().zip(corners) {
                     *slot = self.nodes[start + local];
                 }
-                if !key[..corner_count].iter().all(|&c| near[c as usize]) {
+                if !key[..corners.len()].iter().all(|&c| near[c as usize]) {
                     continue;
                 }
                 key.sort_unstable();
@@ -476,10 +482,7 @@ impl Content {
 fn faces_of(mesh: &Mesh, nodes: impl Iterator<Item = u32>) -> Vec<Facet> {
     let mut within = vec![false; mesh.points().len()];
     nodes.filter(|&node| node != u32::MAX).for_each(|node| within[node as usize] = true);
-    let all = |facet: &Facet| {
-        let corners = mesh.kind(facet.cell as usize).face_kind().corner_count();
-        mesh.facet_nodes(*facet).take(corners).all(|node| within[node as usize])
-    };
+    let all = |facet: &Facet| mesh.facet_corners(*facet).all(|node| within[node as usize]);
     mesh.boundary().iter().copied().filter(all).collect()
 }
 

@@ -274,7 +274,7 @@ pub enum Problem {
         /// Type as written in the file.
         kind: String,
         /// Types that are supported, in words.
-        known: &'static str,
+        known: String,
     },
     /// An element with too few or too many numbers.
     #[error("element {element} of type {kind} has {found} numbers on its line instead of {expected}")]

@@ -4,7 +4,7 @@
 //! belongs to the edge whose midpoint is nearest. If all cells of a kind have the same order, and this is not
 //! the order of the format, the nodes are reordered.
 
-use crate::{CellKind, Point3};
+use crate::{CellKind, Point3, element};
 
 /// Largest distance of a mid-edge node from the midpoint of its edge, as a fraction of the edge's length.
 const NEAR: f64 = 0.25;
@@ -16,7 +16,7 @@ pub(super) fn put_in_order(
     nodes: &mut [u32],
     points: &[Point3],
 ) -> Vec<(CellKind, usize)> {
-    let quadratic = [CellKind::Tet10, CellKind::Hex20].into_iter();
+    let quadratic = CellKind::ALL.into_iter().filter(|kind| kind.order() == 2);
     quadratic.filter_map(|kind| Some((kind, of_kind(kind, kinds, nodes, points)?))).collect()
 }
 
@@ -62,4 +62,13 @@ fn order(kind: CellKind, cell: &[u32], points: &[Point3]) -> Option<Vec<usize>> 
         order.push(nearest);
     }
     Some(order)
+}
+
+/// Puts the nodes of a cell in mirrored order if its volume is negative.
+pub(super) fn turn_if_inverted(kind: CellKind, nodes: &mut [u32], points: &[Point3]) {
+    let listed = nodes.to_vec();
+    let at: Vec<Point3> = listed.iter().map(|&node| points[node as usize]).collect();
+    if element::map(kind, &at, kind.entry().cell.centre).1.determinant() < 0.0 {
+        nodes.iter_mut().zip(kind.mirrored()).for_each(|(node, local)| *node = listed[local]);
+    }
 }

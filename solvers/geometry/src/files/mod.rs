@@ -174,3 +174,9 @@ fn text(bytes: &[u8]) -> Parsed<Cow<'_, str>> {
 fn line_of(bytes: &[u8], at: usize) -> usize {
     1 + bytes[..at.min(bytes.len())].iter().filter(|&&b| b == b'\n').count()
 }
+
+/// Numbers in ascending order, with commas.
+fn ascending<T: Ord + ToString, const N: usize>(mut numbers: [T; N]) -> String {
+    numbers.sort_unstable();
+    numbers.map(|number| number.to_string()).join(", ")
+}

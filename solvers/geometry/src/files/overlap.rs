@@ -30,11 +30,10 @@ impl Cells<'_> {
         let mut keys: Vec<Key> = Vec::with_capacity(self.kinds.len());
         self.each(|_, kind, nodes| keys.push(set_key(&nodes[..kind.corner_count()])));
         let repeated = repeated(&keys, self.points.len());
-        let mut groups: HashMap<[u32; 8], Vec<usize>> = HashMap::new();
+        let mut groups: HashMap<Vec<u32>, Vec<usize>> = HashMap::new();
         self.each_of(&repeated, |cell, kind, nodes| {
             if repeated.contains(&keys[cell]) {
-                let mut corners = [u32::MAX; 8];
-                corners[..kind.corner_count()].copy_from_slice(&nodes[..kind.corner_count()]);
+                let mut corners = nodes[..kind.corner_count()].to_vec();
                 corners.sort_unstable();
                 groups.entry(corners).or_default().push(cell);
             }
@@ -69,7 +68,7 @@ impl Cells<'_> {
             let count = list.len() as f64;
             list.map(point).sum::<Vector3>() / count
         };
-        let corners = &kind.faces()[face][..kind.face_kind().corner_count()];
+        let corners = kind.face_corners(face);
         let middle = mean(&mut corners.iter().copied());
         // The normal of a quadrilateral is the cross product of its diagonals.
         let [a, b, c] = [corners[0], corners[1], corners[2]].map(point);
@@ -113,22 +112,20 @@ impl Face {
 
 /// Calls `call` with each face of a cell and its index.
 fn faces(kind: CellKind, nodes: &[u32], mut call: impl FnMut(usize, Face)) {
-    if kind.is_tet() {
-        for (at, face) in kind.faces().iter().enumerate() {
-            let [a, b, c] = [nodes[face[0]], nodes[face[1]], nodes[face[2]]];
-            let turned = match a.min(b).min(c) {
+    for (at, face) in kind.faces().iter().enumerate() {
+        let [a, b, c] = [nodes[face[0]], nodes[face[1]], nodes[face[2]]];
+        let turned = if kind.face_kind(at).is_triangle() {
+            match a.min(b).min(c) {
                 lowest if lowest == a => [a, b, c, u32::MAX],
                 lowest if lowest == b => [b, c, a, u32::MAX],
                 _ => [c, a, b, u32::MAX],
-            };
-            call(at, Face(turned));
-        }
-        return;
-    }
-    for (at, face) in kind.faces().iter().enumerate() {
-        let corners = [nodes[face[0]], nodes[face[1]], nodes[face[2]], nodes[face[3]]];
-        let lowest = (0..4).min_by_key(|&i| corners[i]).unwrap_or(0);
-        call(at, Face([0, 1, 2, 3].map(|i| corners[(lowest + i) % 4])));
+            }
+        } else {
+            let corners = [a, b, c, nodes[face[3]]];
+            let lowest = (0..4).min_by_key(|&i| corners[i]).unwrap_or(0);
+            [0, 1, 2, 3].map(|i| corners[(lowest + i) % 4])
+        };
+        call(at, Face(turned));
     }
 }
 

@@ -1,10 +1,11 @@
 //! Cells by VTK type, as in `.vtu` and `.vtk` files.
 
+use super::ascending;
 use super::content::Content;
 use super::error::{Parsed, Place, Problem};
 use super::left_out::{Kind, LeftOut};
 use super::rows::Row;
-use crate::CellKind;
+use crate::{CellKind, FaceKind};
 
 /// Names of cell arrays that number regions, by the programs that write them, compared without regard to
 /// case. The first row is the name used by this crate. Names in one row are synonyms: several such arrays in
@@ -21,10 +22,11 @@ const REGIONS: [&[&str]; 8] = [
 ];
 
 /// Cell types that are read, for the message about other types.
-const KNOWN: &str = "supported types: 10, 12, 24, 25 (solids), 5, 9, 22, 23 (faces), lines and points";
-
-/// Node order of the files, which is that of [`CellKind`].
-const ORDER: [usize; 20] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19];
+fn known() -> String {
+    let solids = ascending(CellKind::ALL.map(|kind| kind.entry().files.vtk));
+    let faces = ascending(FaceKind::ALL.map(FaceKind::vtk));
+    format!("supported types: {solids} (solids), {faces} (faces), lines and points")
+}
 
 /// An array with one number per cell.
 #[derive(Clone)]
@@ -134,7 +136,10 @@ impl Cells {
                     let region = value(&self.regions, cell);
                     let name = region.map_or("body".into(), |v| name_of(region_names, v, "region"));
                     let region = content.region(row.place, &name)?;
-                    content.cell(row, kind, region, &nodes, &ORDER[..nodes.len()])?;
+                    content.cell(row, kind, region, &nodes, kind.entry().files.vtk_order)?;
+                    if kind.entry().cell.vtk_either {
+                        content.turn_if_inverted(kind);
+                    }
                     let index = content.cell_count() as u32 - 1;
                     for (name, _) in self.further.iter().filter(|(_, values)| values[cell] > 0) {
                         content.also(row.place, name, &[index])?;
@@ -153,7 +158,7 @@ impl Cells {
                 None if THIN.contains(&kind) => content.element(row, &nodes)?,
                 None => {
                     let kind = kind.to_string();
-                    return Err((row.place, Problem::UnknownType { element: row.tag, kind, known: KNOWN }));
+                    return Err((row.place, Problem::UnknownType { element: row.tag, kind, known: known() }));
                 }
             }
         }
@@ -163,17 +168,10 @@ impl Cells {
 
 /// Number of nodes and class of a VTK cell type.
 fn of_type(kind: i64) -> Option<(usize, What)> {
-    Some(match kind {
-        10 => (4, What::Cell(CellKind::Tet4)),
-        12 => (8, What::Cell(CellKind::Hex8)),
-        24 => (10, What::Cell(CellKind::Tet10)),
-        25 => (20, What::Cell(CellKind::Hex20)),
-        5 => (3, What::Face(3)),
-        9 => (4, What::Face(4)),
-        22 => (6, What::Face(3)),
-        23 => (8, What::Face(4)),
-        _ => return None,
-    })
+    let cell = CellKind::ALL.into_iter().find(|cell| i64::from(cell.entry().files.vtk) == kind);
+    let face = || FaceKind::ALL.into_iter().find(|face| i64::from(face.vtk()) == kind);
+    cell.map(|cell| (cell.node_count(), What::Cell(cell)))
+        .or_else(|| face().map(|face| (face.node_count(), What::Face(face.corner_count()))))
 }
 
 enum What {

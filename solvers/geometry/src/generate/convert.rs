@@ -4,21 +4,17 @@ use std::collections::HashMap;
 
 use crate::{CellKind, Facet, Mesh};
 
-/// Corner faces of a hexahedron as in [`CellKind::faces`], and corner faces of a tetrahedron.
-const HEX: CellKind = CellKind::Hex8;
 const TET: CellKind = CellKind::Tet4;
 
-/// Whether every cell can be converted to `kind`. Any cell can become straight-edged tet4. In addition, tet4
-/// can become tet10, and hex8 can become hex20 or tet10.
+/// Whether every cell can be converted to `kind`. Any cell can become straight-edged tet4, linear cells can
+/// become tet10, and a linear cell can become the quadratic cell of the same shape.
 pub fn is_convertible(mesh: &Mesh, kind: CellKind) -> bool {
-    let all = |kinds: &[CellKind]| (0..mesh.cell_count()).all(|c| kinds.contains(&mesh.kind(c)));
-    all(&[kind])
-        || match kind {
-            CellKind::Tet4 => true,
-            CellKind::Tet10 => all(&[CellKind::Tet4, CellKind::Hex8]),
-            CellKind::Hex8 => false,
-            CellKind::Hex20 => all(&[CellKind::Hex8]),
-        }
+    let all = |is: &dyn Fn(CellKind) -> bool| (0..mesh.cell_count()).all(|cell| is(mesh.kind(cell)));
+    let linear = kind.of_order(1);
+    let from_linear = kind.order() == 2 && all(&|own| own.order() == 1);
+    all(&|own| own == kind)
+        || kind == TET
+        || from_linear && (linear == Some(TET) || all(&|own| Some(own) == linear))
 }
 
 /// Converts a mesh to cells of `kind`, or returns `None` if a cell cannot be converted ([`is_convertible`]).
@@ -26,16 +22,16 @@ pub fn is_convertible(mesh: &Mesh, kind: CellKind) -> bool {
 pub fn converted(mesh: Mesh, kind: CellKind) -> Option<Mesh> {
     is_convertible(&mesh, kind).then(|| match kind {
         _ if mesh.uniform_kind() == Some(kind) => mesh,
-        CellKind::Tet4 => to_tets(&mesh),
-        CellKind::Tet10 => raise_order(&to_tets(&mesh)),
-        CellKind::Hex8 | CellKind::Hex20 => raise_order(&mesh),
+        TET => to_tets(&mesh),
+        _ if kind.of_order(1) == Some(TET) => raise_order(&to_tets(&mesh)),
+        _ => raise_order(&mesh),
     })
 }
 
 /// Divides a mesh into linear tetrahedra. Every hexahedron becomes six; tetrahedra keep their corners.
 /// Regions and groups are kept; nodes that only quadratic cells used are dropped.
 ///
-/// Each hexahedron is a cone from its lowest-numbered node over the three opposite faces. Every face is cut
+/// Each other cell is a cone from its lowest-numbered node over the opposite faces. Every face is cut
 /// through its lowest-numbered node (Dompierre et al. 1999), so neighbours agree on the cut and the mesh is
 /// conforming for any arrangement. In a box numbered along its axes this is Kuhn's subdivision.
 pub fn to_tets(mesh: &Mesh) -> Mesh {
@@ -44,12 +40,7 @@ pub fn to_tets(mesh: &Mesh) -> Mesh {
     let mut first = Vec::with_capacity(mesh.cell_count() + 1);
     for cell in 0..mesh.cell_count() {
         first.push(cells.len());
-        let nodes = mesh.cell(cell);
-        if mesh.kind(cell).is_tet() {
-            cells.push([nodes[0], nodes[1], nodes[2], nodes[3]]);
-        } else {
-            cut_hexahedron(&nodes[..8], &mut cells);
-        }
+        cut(mesh.kind(cell), mesh.cell(cell), &mut cells);
         regions.resize(cells.len(), mesh.region(cell));
     }
     first.push(cells.len());
@@ -84,29 +75,30 @@ pub fn to_tets(mesh: &Mesh) -> Mesh {
     })
 }
 
-fn cut_hexahedron(nodes: &[u32], cells: &mut Vec<[u32; 4]>) {
-    let lowest = *nodes.iter().min().unwrap_or(&0);
-    for face in HEX.faces() {
-        let n: [u32; 4] = std::array::from_fn(|i| nodes[face[i]]);
+fn cut(kind: CellKind, nodes: &[u32], cells: &mut Vec<[u32; 4]>) {
+    let corners = &nodes[..kind.corner_count()];
+    if let &[a, b, c, d] = corners {
+        cells.push([a, b, c, d]);
+        return;
+    }
+    let lowest = *corners.iter().min().unwrap_or(&0);
+    for face in 0..kind.faces().len() {
+        let n: Vec<u32> = kind.face_corners(face).iter().map(|&corner| nodes[corner]).collect();
         if n.contains(&lowest) {
             continue;
         }
-        let start = (0..4).min_by_key(|&i| n[i]).unwrap_or(0);
-        let around = |i: usize| n[(start + i) % 4];
+        let start = (0..n.len()).min_by_key(|&i| n[i]).unwrap_or(0);
+        let around = |i: usize| n[(start + i) % n.len()];
         // Seen from outside, the face is counter-clockwise. From the apex inside it is clockwise: the
         // reversed face gives a positive volume.
-        cells.push([around(0), around(2), around(1), lowest]);
-        cells.push([around(0), around(3), around(2), lowest]);
+        cells.extend((2..n.len()).map(|i| [around(0), around(i), around(i - 1), lowest]));
     }
 }
 
 /// The faces of a cell's tetrahedra that lie in one face of the cell.
 fn facets_within(mesh: &Mesh, facet: Facet, cells: &[[u32; 4]], first: &[usize]) -> Vec<Facet> {
-    let corners: Vec<u32> = mesh.facet_nodes(facet).take(4).collect();
+    let corners: Vec<u32> = mesh.facet_corners(facet).collect();
     let cell = facet.cell as usize;
-    if mesh.kind(cell).is_tet() {
-        return vec![Facet { cell: first[cell] as u32, face: facet.face }];
-    }
     let mut found = Vec::new();
     for tet in first[cell]..first[cell + 1] {
         for (face, local) in TET.faces().iter().enumerate() {
@@ -118,8 +110,7 @@ fn facets_within(mesh: &Mesh, facet: Facet, cells: &[[u32; 4]], first: &[usize])
     found
 }
 
-/// Raises cells to quadratic order with the same corners: tet4 becomes tet10, hex8 becomes hex20, quadratic
-/// cells are unchanged. New nodes lie halfway along their edges. They are numbered after the existing nodes,
+/// Raises cells to the quadratic kind of the same shape; quadratic cells are unchanged. New nodes lie halfway along their edges. They are numbered after the existing nodes,
 /// in the order in which cells first use them.
 pub fn raise_order(mesh: &Mesh) -> Mesh {
     let mut points = mesh.points().to_vec();
@@ -136,11 +127,7 @@ pub fn raise_order(mesh: &Mesh) -> Mesh {
     for cell in 0..mesh.cell_count() {
         let (kind, list) = (mesh.kind(cell), mesh.cell(cell));
         nodes.extend_from_slice(list);
-        kinds.push(match kind {
-            CellKind::Tet4 => CellKind::Tet10,
-            CellKind::Hex8 => CellKind::Hex20,
-            quadratic => quadratic,
-        });
+        kinds.push(kind.of_order(2).expect("every shape has a quadratic kind"));
         if kind.order() == 2 {
             continue;
         }
@@ -168,36 +155,27 @@ fn with_cell_groups(mesh: Mesh, of: &Mesh) -> Mesh {
 /// Returns the mesh with the corners of each cell in mirrored order, which corrects the orientation of a
 /// mirrored mesh.
 pub fn turned(mesh: &Mesh) -> Mesh {
-    let (mut kinds, mut nodes, mut faces) = (Vec::new(), Vec::new(), HashMap::new());
+    let (mut kinds, mut nodes) = (Vec::new(), Vec::new());
+    // Mirrored node order of each kind, and the new face with the corners of each old face.
+    let mut orders = HashMap::new();
     for cell in 0..mesh.cell_count() {
         let (kind, own) = (mesh.kind(cell), mesh.cell(cell));
-        let corners: &[usize] = if kind.is_tet() { &[0, 2, 1, 3] } else { &[0, 3, 2, 1, 4, 7, 6, 5] };
-        kinds.push(kind);
-        nodes.extend(corners.iter().map(|&corner| own[corner]));
-        if kind.order() == 2 {
-            // A mid-edge node keeps its edge.
-            nodes.extend(kind.edges().iter().map(|&[a, b]| {
-                let ends = [corners[a], corners[b]];
-                let edge = kind.edges().iter().position(|edge| ends.iter().all(|end| edge.contains(end)));
-                own[kind.corner_count() + edge.unwrap_or(0)]
-            }));
-        }
-        // Maps each old face to the new face with the same corners.
-        let count = kind.face_kind().corner_count();
-        faces.entry(kind.is_tet()).or_insert_with(|| {
-            kind.faces()
-                .iter()
-                .map(|face| {
-                    let same =
-                        |new: &&[usize]| new[..count].iter().all(|&c| face[..count].contains(&corners[c]));
-                    kind.faces().iter().position(|new| same(&&new[..])).unwrap_or(0) as u8
-                })
-                .collect::<Vec<u8>>()
+        let (order, _): &(Vec<usize>, Vec<u8>) = orders.entry(kind).or_insert_with(|| {
+            let order = kind.mirrored();
+            let count = kind.faces().len();
+            let is = |old: usize, new: usize| {
+                let (old, new) = (kind.face_corners(old), kind.face_corners(new));
+                old.len() == new.len() && new.iter().all(|&corner| old.contains(&order[corner]))
+            };
+            let new = |old| (0..count).find(|&new| is(old, new)).unwrap_or(0) as u8;
+            let faces = (0..count).map(new).collect();
+            (order, faces)
         });
+        kinds.push(kind);
+        nodes.extend(order.iter().map(|&node| own[node]));
     }
     let regions = (0..mesh.cell_count()).map(|cell| mesh.region(cell)).collect();
-    let moved =
-        |f: &Facet| Facet { face: faces[&mesh.kind(f.cell as usize).is_tet()][f.face as usize], ..*f };
+    let moved = |f: &Facet| Facet { face: orders[&mesh.kind(f.cell as usize)].1[f.face as usize], ..*f };
     let groups = mesh
         .group_names()
         .map(|name| (name.to_string(), mesh.group(name).unwrap_or_default().iter().map(moved).collect()));

@@ -39,7 +39,7 @@ pub fn fit(surface: &Surface, mesh: &Mesh) -> Fit {
     let boundary: Vec<[u32; 3]> = (mesh.boundary().iter())
         .flat_map(|&facet| {
             let nodes: Vec<u32> = mesh.facet_nodes(facet).collect();
-            triangles_of(mesh.kind(facet.cell as usize).face_kind(), &nodes)
+            triangles_of(mesh.facet_kind(facet), &nodes)
         })
         .collect();
     let tree = Tree::new(mesh.points(), &boundary);

@@ -24,7 +24,7 @@ impl BoundaryFaces {
         let mut faces = Vec::new();
         for (at, &facet) in boundary.iter().enumerate() {
             let nodes: Vec<u32> = mesh.facet_nodes(facet).collect();
-            let kind = mesh.kind(facet.cell as usize).face_kind();
+            let kind = mesh.facet_kind(facet);
             for triangle in triangles_of(kind, &nodes) {
                 soup.triangles.push(triangle);
                 soup.faces.push(at as u32 + 1);

@@ -5,7 +5,6 @@ use std::collections::HashMap;
 use super::super::content::Content;
 use super::super::error::{Parsed, Place, Problem};
 use super::cards::{Card, split, unquoted};
-use super::kinds::faces;
 use super::ranges::Range;
 use super::scope::Scope;
 use crate::CellKind;
@@ -211,7 +210,7 @@ impl Sets<'_> {
             let face = label.strip_prefix('S').and_then(|face| face.parse::<usize>().ok());
             for cell in found {
                 let kind: CellKind = whole.kind(cell);
-                let corners = face.and_then(|face| faces(kind).get(face.checked_sub(1)?));
+                let corners = face.and_then(|face| kind.entry().cell.abaqus_faces.get(face.checked_sub(1)?));
                 if !corners.is_some_and(|corners| whole.facet(group, cell, corners)) {
                     let expected = "a face that the elements have, such as S1";
                     return Err((*place, Problem::Expected { expected, found: label }));

@@ -3,8 +3,12 @@
 use crate::CellKind;
 
 /// Element types that are read, for the message about other types.
-pub(super) const KNOWN: &str = "supported types: C3D4, C3D10, C3D8 and C3D20 with their variants (R, I, H, \
-                                M), and shells as faces; beams and others are skipped";
+pub(super) fn known() -> String {
+    let solids = CellKind::ALL.map(|kind| kind.entry().files.abaqus).join(", ");
+    format!(
+        "supported types: {solids} with their variants (R, I, H, M), and shells as faces; beams and others are skipped"
+    )
+}
 
 /// Class of an element type.
 pub(super) enum Type {
@@ -23,13 +27,8 @@ pub(super) fn element_type(name: &str) -> Option<Type> {
         if !variant.chars().all(|c| "RIHMS".contains(c)) {
             return None;
         }
-        return Some(Type::Cell(match count {
-            "4" => CellKind::Tet4,
-            "8" => CellKind::Hex8,
-            "10" => CellKind::Tet10,
-            "20" => CellKind::Hex20,
-            _ => return None,
-        }));
+        let is = |kind: &CellKind| kind.entry().files.abaqus.strip_prefix("C3D") == Some(count);
+        return CellKind::ALL.into_iter().find(is).map(Type::Cell);
     }
     let flat = ["STRI", "SFM3D", "M3D", "R3D", "CPS", "CPE", "CAX", "S"];
     if let Some(rest) = flat.iter().find_map(|prefix| name.strip_prefix(prefix)) {
@@ -46,23 +45,4 @@ pub(super) fn element_type(name: &str) -> Option<Type> {
         "SAX",
     ];
     thin.iter().any(|prefix| name.starts_with(prefix)).then_some(Type::Other)
-}
-
-/// Name of the element type of a cell kind.
-pub(super) fn name(kind: CellKind) -> &'static str {
-    match kind {
-        CellKind::Tet4 => "C3D4",
-        CellKind::Tet10 => "C3D10",
-        CellKind::Hex8 => "C3D8",
-        CellKind::Hex20 => "C3D20",
-    }
-}
-
-/// Corners of the faces S1, S2, ...
-pub(super) fn faces(kind: CellKind) -> &'static [&'static [usize]] {
-    if kind.is_tet() {
-        &[&[0, 1, 2], &[0, 3, 1], &[1, 3, 2], &[2, 3, 0]]
-    } else {
-        &[&[0, 1, 2, 3], &[4, 7, 6, 5], &[0, 4, 5, 1], &[1, 5, 6, 2], &[2, 6, 7, 3], &[3, 7, 4, 0]]
-    }
 }

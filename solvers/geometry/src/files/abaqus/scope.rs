@@ -6,7 +6,7 @@ use super::super::content::{Content, NO_REGION};
 use super::super::error::{Parsed, Place, Problem};
 use super::super::rows::Row;
 use super::cards::{Card, real, split, unquoted, whole};
-use super::kinds::{KNOWN, Type, element_type, faces};
+use super::kinds::{Type, element_type, known};
 use super::ranges::Range;
 use crate::{CellKind, Point3};
 
@@ -89,7 +89,7 @@ impl Scope {
             let number = whole(place, &words[0], "an element number")?;
             let Some(of_type) = element_type(name) else {
                 let kind = name.to_string();
-                return Err((place, Problem::UnknownType { element: number, kind, known: KNOWN }));
+                return Err((place, Problem::UnknownType { element: number, kind, known: known() }));
             };
             let wanted = match of_type {
                 Type::Cell(kind) => Some(kind.node_count()),
@@ -131,7 +131,7 @@ impl Scope {
                 continue;
             };
             let row = Row { place, tag: number };
-            self.content.cell(row, kind, NO_REGION, &list, &ORDER[..list.len()])?;
+            self.content.cell(row, kind, NO_REGION, &list, kind.entry().files.abaqus_order)?;
             self.kinds.push(kind);
         }
         if let Some(set) = set {
@@ -269,7 +269,7 @@ impl Scope {
         let group = self.content.group(name);
         for &number in numbers {
             let Some(cell) = self.content.cell_of(number) else { continue };
-            let corners = faces(self.kinds[cell as usize]).get(face - 1);
+            let corners = self.kinds[cell as usize].entry().cell.abaqus_faces.get(face - 1);
             if !corners.is_some_and(|corners| self.content.facet(group, cell, corners)) {
                 let (expected, found) =
                     ("a face that the element has", format!("S{face} of element {number}"));
@@ -344,6 +344,3 @@ fn has_inner_nodes(name: &str, corners: usize, nodes: usize) -> bool {
 
 /// Largest number of members of all sets, and of numbers in all ranges.
 const MOST: u64 = 20_000_000;
-
-/// Node order of the decks, which is that of [`CellKind`].
-const ORDER: [usize; 20] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19];

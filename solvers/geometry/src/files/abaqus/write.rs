@@ -3,7 +3,6 @@
 
 use std::fmt::Write;
 
-use super::kinds::{faces, name};
 use crate::{CellKind, Mesh};
 
 /// Returns the text of the file with lengths in units of `unit` metres.
@@ -40,9 +39,14 @@ pub(in crate::files) fn text(mesh: &Mesh, unit: f64) -> Result<String, String> {
     for cell in 0..mesh.cell_count() {
         let (kind, region) = key(cell);
         if cell == 0 || key(cell - 1) != (kind, region) {
-            line!("*ELEMENT, TYPE={}, ELSET=\"{}\"", name(kind), mesh.region_names()[region as usize]);
+            line!(
+                "*ELEMENT, TYPE={}, ELSET=\"{}\"",
+                kind.entry().files.abaqus,
+                mesh.region_names()[region as usize]
+            );
         }
-        let nodes: Vec<String> = mesh.cell(cell).iter().map(|node| (node + 1).to_string()).collect();
+        let order = kind.entry().files.abaqus_order.iter();
+        let nodes: Vec<String> = order.map(|&node| (mesh.cell(cell)[node] + 1).to_string()).collect();
         // A line holds at most 16 numbers.
         let lines: Vec<String> =
             [vec![(cell + 1).to_string()], nodes].concat().chunks(15).map(|chunk| chunk.join(", ")).collect();
@@ -73,7 +77,9 @@ pub(in crate::files) fn text(mesh: &Mesh, unit: f64) -> Result<String, String> {
 
 /// Face number in a deck of a face index of [`CellKind::faces`].
 fn number(kind: CellKind, face: usize) -> usize {
-    let corners = &kind.faces()[face][..kind.face_kind().corner_count()];
-    let same = |theirs: &&[usize]| theirs.iter().all(|corner| corners.contains(corner));
-    1 + faces(kind).iter().position(same).expect("every face has a number")
+    let corners = kind.face_corners(face);
+    let same = |theirs: &&[usize]| {
+        theirs.len() == corners.len() && theirs.iter().all(|corner| corners.contains(corner))
+    };
+    1 + kind.entry().cell.abaqus_faces.iter().position(same).expect("every face has a number")
 }

@@ -19,9 +19,6 @@ pub(super) use write::text;
 use super::content::Content;
 use super::error::{Parsed, Place, Problem};
 
-/// Element types that are read, for the message about other types.
-const KNOWN: &str = "supported types: 4, 5, 11, 17 (solids), 2, 3, 9, 16 (faces), lines and points";
-
 /// Parses a file of any version. Version 2 in text is read line by line, so that hand-edited files keep line
 /// numbers in errors; all other versions are read number by number.
 pub(super) fn parse(bytes: &[u8]) -> Parsed<Content> {

@@ -6,9 +6,8 @@ use super::super::content::Content;
 use super::super::error::{Parsed, Place, Problem};
 use super::super::lines::Lines;
 use super::super::rows::Row;
-use super::KNOWN;
 use super::groups::{Names, named};
-use super::order::{Element, element};
+use super::order::{Element, element, known};
 use super::scanner::Scanner;
 use super::text2::add;
 use crate::Point3;
@@ -353,7 +352,7 @@ impl Reader<'_> {
         let row = Row { place: self.scanner.place(), tag: number };
         let Some(element) = u64::try_from(kind).ok().and_then(element) else {
             let kind = kind.to_string();
-            return self.scanner.fail(Problem::UnknownType { element: number, kind, known: KNOWN });
+            return self.scanner.fail(Problem::UnknownType { element: number, kind, known: known() });
         };
         let mut list = [0; 20];
         let list = &mut list[..Element::node_count(element)];

@@ -4,9 +4,8 @@ use super::super::content::Content;
 use super::super::error::{Parsed, Problem};
 use super::super::lines::Lines;
 use super::super::rows::Row;
-use super::KNOWN;
 use super::groups::Names;
-use super::order::element;
+use super::order::{element, known};
 use super::text2::{add, begin, count, read_nodes};
 
 pub(super) fn parse(text: &str) -> Parsed<Content> {
@@ -28,7 +27,7 @@ pub(super) fn parse(text: &str) -> Parsed<Content> {
         let nodes: usize = lines.number(tokens.next(), "a number of nodes")?;
         let Some(element) = element(kind) else {
             let kind = kind.to_string();
-            return lines.fail(Problem::UnknownType { element: number, kind, known: KNOWN });
+            return lines.fail(Problem::UnknownType { element: number, kind, known: known() });
         };
         let (found, expected) = (line.split_whitespace().count(), 5 + element.node_count());
         if found != expected || nodes != element.node_count() {

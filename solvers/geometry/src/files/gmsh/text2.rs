@@ -4,9 +4,8 @@ use super::super::content::Content;
 use super::super::error::{Parsed, Problem};
 use super::super::lines::Lines;
 use super::super::rows::Row;
-use super::KNOWN;
 use super::groups::{Names, named};
-use super::order::{Element, element, order};
+use super::order::{Element, element, known};
 use crate::Point3;
 
 pub(super) fn parse(text: &str) -> Parsed<Content> {
@@ -104,7 +103,7 @@ fn read_elements(lines: &mut Lines, names: &Names, content: &mut Content) -> Par
         let tags: usize = lines.number(tokens.next(), "a number of tags")?;
         let Some(element) = element(kind) else {
             let kind = kind.to_string();
-            return lines.fail(Problem::UnknownType { element: number, kind, known: KNOWN });
+            return lines.fail(Problem::UnknownType { element: number, kind, known: known() });
         };
         let (found, expected) =
             (line.split_whitespace().count(), tags.saturating_add(3 + element.node_count()));
@@ -143,7 +142,7 @@ pub(super) fn add(
         Element::Cell(kind) => {
             let group = groups.first().copied().unwrap_or(0);
             let region = names.region(content, row.place, group)?;
-            content.cell(row, kind, region, list, order(kind))?;
+            content.cell(row, kind, region, list, kind.entry().files.gmsh_order)?;
             let cell = content.cell_count() as u32 - 1;
             for &group in groups.iter().skip(1).filter(|&&group| group != 0) {
                 let region = names.region(content, row.place, group)?;

@@ -139,7 +139,7 @@ pub(in super::super) fn write(mesh: &Mesh, unit: f64) -> Vec<u8> {
     let mut triangles = Vec::new();
     for facet in mesh.boundary() {
         let nodes: Vec<u32> = mesh.facet_nodes(facet).collect();
-        triangles.extend(triangles_of(mesh.kind(facet.cell as usize).face_kind(), &nodes));
+        triangles.extend(triangles_of(mesh.facet_kind(facet), &nodes));
     }
     let mut bytes = vec![b' '; HEAD - 4];
     let comment = b"boundary of a mesh, written by tissuebench";

@@ -6,7 +6,7 @@ use flate2::Compression;
 use flate2::write::ZlibEncoder;
 
 use super::grid::GROUP;
-use crate::{CellKind, FaceKind, Mesh, Point3};
+use crate::{FaceKind, Mesh, Point3};
 
 /// Size of an uncompressed block in bytes, as in VTK.
 const BLOCK: usize = 1 << 15;
@@ -67,7 +67,8 @@ impl Cells {
     fn of(mesh: &Mesh) -> Cells {
         let mut cells = Cells::default();
         for cell in 0..mesh.cell_count() {
-            cells.push(mesh.cell(cell).iter().copied(), type_number(mesh.kind(cell)));
+            let (nodes, files) = (mesh.cell(cell), &mesh.kind(cell).entry().files);
+            cells.push(files.vtk_order.iter().map(|&node| nodes[node]), files.vtk);
         }
         cells
     }
@@ -109,7 +110,7 @@ pub(in crate::files) fn bytes(mesh: &Mesh, unit: f64) -> Result<Vec<u8>, String>
     let mut surfaces = vec![-1; mesh.cell_count()];
     for (surface, name) in groups.iter().enumerate() {
         for &facet in mesh.group(name).unwrap_or_default() {
-            cells.push(mesh.facet_nodes(facet), face_number(mesh.kind(facet.cell as usize).face_kind()));
+            cells.push(mesh.facet_nodes(facet), mesh.facet_kind(facet).vtk());
             regions.push(-1);
             surfaces.push(surface as i32);
         }
@@ -149,7 +150,7 @@ pub fn surface_vtu(
     at_points: &[Values],
 ) -> Vec<u8> {
     let mut cells = Cells::default();
-    quads.iter().for_each(|quad| cells.push(quad.iter().copied(), face_number(FaceKind::Quad4)));
+    quads.iter().for_each(|quad| cells.push(quad.iter().copied(), FaceKind::Quad4.vtk()));
     let at_points: Vec<Data> = at_points.iter().map(Data::Real).collect();
     let bodies = bodies.iter().map(|&body| body as i32).collect();
     file(&time_array(time), (points, 1.0), &cells, &at_points, &[Data::Whole("body", bodies)])
@@ -210,22 +211,4 @@ fn text_array<'a>(name: &str, texts: impl Iterator<Item = &'a str>) -> String {
     format!(
         "<DataArray type=\"UInt8\" Name=\"{name}\" NumberOfTuples=\"{count}\" format=\"ascii\">\n{codes}\n</DataArray>\n"
     )
-}
-
-fn type_number(kind: CellKind) -> u8 {
-    match kind {
-        CellKind::Tet4 => 10,
-        CellKind::Hex8 => 12,
-        CellKind::Tet10 => 24,
-        CellKind::Hex20 => 25,
-    }
-}
-
-fn face_number(kind: FaceKind) -> u8 {
-    match kind {
-        FaceKind::Tri3 => 5,
-        FaceKind::Quad4 => 9,
-        FaceKind::Tri6 => 22,
-        FaceKind::Quad8 => 23,
-    }
 }

@@ -6,7 +6,6 @@ mod text4;
 
 use std::fmt::Write;
 
-use super::order::order;
 use crate::{Facet, Mesh};
 
 /// An output version of Gmsh's format.
@@ -97,7 +96,7 @@ fn face_nodes(out: &mut String, mesh: &Mesh, facet: Facet) {
 /// Writes the nodes of a cell in Gmsh's order and a line break.
 fn cell_nodes(out: &mut String, mesh: &Mesh, cell: usize) {
     let nodes = mesh.cell(cell);
-    for &local in order(mesh.kind(cell)) {
+    for &local in mesh.kind(cell).entry().files.gmsh_order {
         let _ = write!(out, " {}", nodes[local] + 1);
     }
     out.push('\n');

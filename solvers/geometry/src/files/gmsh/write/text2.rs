@@ -3,7 +3,6 @@
 
 use std::fmt::Write;
 
-use super::super::order::type_numbers;
 use super::{cell_nodes, cell_tags, face_nodes, group_tag, physical_names};
 use crate::Mesh;
 
@@ -27,13 +26,13 @@ pub(super) fn text(mesh: &Mesh, unit: f64) -> String {
         let tag = group_tag(mesh, at);
         for &facet in group(name) {
             number += 1;
-            let kind = type_numbers(mesh.kind(facet.cell as usize)).1;
+            let kind = mesh.facet_kind(facet).gmsh();
             let _ = write!(out, "{number} {kind} 2 {tag} {tag}");
             face_nodes(&mut out, mesh, facet);
         }
     }
     for (cell, tags) in tags.iter().enumerate() {
-        let (kind, entity) = (type_numbers(mesh.kind(cell)).0, tags[0]);
+        let (kind, entity) = (mesh.kind(cell).entry().files.gmsh, tags[0]);
         for tag in tags {
             number += 1;
             let _ = write!(out, "{number} {kind} 2 {tag} {entity}");

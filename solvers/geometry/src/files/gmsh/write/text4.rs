@@ -7,7 +7,6 @@
 use std::collections::BTreeMap;
 use std::fmt::{self, Write};
 
-use super::super::order::type_numbers;
 use super::{cell_nodes, cell_tags, face_nodes, group_tag, physical_names};
 use crate::{Facet, Mesh, Point3};
 
@@ -64,7 +63,7 @@ fn surfaces(mesh: &Mesh) -> Surfaces {
     }
     let mut surfaces = Surfaces::new();
     for (facet, tags) in of_facet {
-        let kind = type_numbers(mesh.kind(facet.cell as usize)).1;
+        let kind = mesh.facet_kind(facet).gmsh();
         surfaces.entry(tags).or_default().entry(kind).or_default().push(facet);
     }
     surfaces
@@ -152,7 +151,7 @@ fn elements(out: &mut String, mesh: &Mesh, surfaces: &Surfaces, volumes: &Volume
     // Cells keep their order: a block ends at a change of entity or type.
     let mut cells: Vec<Block<usize>> = Vec::new();
     for cell in 0..mesh.cell_count() {
-        let (entity, kind) = (volumes.of_cell[cell], type_numbers(mesh.kind(cell)).0);
+        let (entity, kind) = (volumes.of_cell[cell], mesh.kind(cell).entry().files.gmsh);
         match cells.last_mut().filter(|block| (block.entity, block.kind) == (entity, kind)) {
             Some(block) => block.elements.push(cell),
             None => cells.push(Block { dimension: 3, entity, kind, elements: vec![cell] }),
