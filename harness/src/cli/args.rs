@@ -362,7 +362,7 @@ pub struct ConvertArgs {
     /// File to write, other than FROM. The suffix selects the format: Gmsh (.msh), Abaqus (.inp), VTK (.vtu),
     /// or the boundary alone (.stl)
     pub to: PathBuf,
-    /// Kind of cells to write: tet4, tet10, hex8 or hex20 (default: that of the file)
+    /// Kind of cells to write: tet4, tet10, hex8, hex20, wedge6 or wedge15 (default: that of the file)
     #[arg(long)]
     pub element: Option<String>,
     /// Drop nodes that belong to no element and no set; by default such a mesh is refused

@@ -24,7 +24,46 @@ function hexahedron(nodes: number, at: number[]): number[] {
   return [...CORNERS.map((c) => corner(c) * (c.reduce((sum, x, k) => sum + x * at[k], 0) - 2)), ...EDGES.map(middle)];
 }
 
+/** Shape functions of a wedge at a place in its triangle and between -1 and 1 along it. */
+function wedge(nodes: number, [x, y, z]: number[]): number[] {
+  const l = [1 - x - y, x, y];
+  const sides = [1 - z, 1 + z];
+  if (nodes === 6) return sides.flatMap((side) => l.map((a) => (a * side) / 2));
+  const bubble = 1 - z * z;
+  return [
+    ...sides.flatMap((side) => l.map((a) => (a * ((2 * a - 1) * side - bubble)) / 2)),
+    ...sides.flatMap((side) => l.map((a, k) => 2 * a * l[(k + 1) % 3] * side)),
+    ...l.map((a) => a * bubble),
+  ];
+}
+
+function ofWedge(nodes: number): Pattern {
+  const n = nodes === 6 ? 1 : PIECES;
+  const out: Pattern = { weights: [], tetrahedra: [] };
+  const at = new Map<string, number>();
+  for (let k = 0; k <= n; k++)
+    for (let j = 0; j <= n; j++)
+      for (let i = 0; i <= n - j; i++) {
+        at.set(`${i},${j},${k}`, out.weights.length);
+        out.weights.push(wedge(nodes, [i / n, j / n, (2 * k) / n - 1]));
+      }
+  const triangles: number[][][] = [];
+  for (let j = 0; j < n; j++)
+    for (let i = 0; i < n - j; i++) {
+      triangles.push([[i, j], [i + 1, j], [i, j + 1]]);
+      if (i + j + 1 < n) triangles.push([[i + 1, j], [i, j + 1], [i + 1, j + 1]]);
+    }
+  // Corners in one order everywhere, so that neighbours cut their common quadrilateral alike.
+  for (let k = 0; k < n; k++)
+    for (const [a, b, c] of triangles) {
+      const [low, high] = [k, k + 1].map((z) => [a, b, c].map(([i, j]) => at.get(`${i},${j},${z}`)!));
+      out.tetrahedra.push([low[0], low[1], low[2], high[2]], [low[0], low[1], high[1], high[2]], [low[0], high[0], high[1], high[2]]);
+    }
+  return out;
+}
+
 function pattern(nodes: number): Pattern {
+  if (nodes === 6 || nodes === 15) return ofWedge(nodes);
   if (nodes === 4 || nodes === 10) {
     const own = Array.from({ length: nodes }, (_, i) => Array.from({ length: nodes }, (_, k) => Number(i === k)));
     return { weights: own, tetrahedra: nodes === 4 ? [[0, 1, 2, 3]] : TEN };

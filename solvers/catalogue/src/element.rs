@@ -20,9 +20,15 @@ pub static HEX8: Element = Element { name: "hex8", meaning: "Trilinear hexahedro
 /// 20-node hexahedron.
 pub static HEX20: Element =
     Element { name: "hex20", meaning: "Quadratic serendipity hexahedron.", degree: 2 };
+/// 6-node wedge.
+pub static WEDGE6: Element =
+    Element { name: "wedge6", meaning: "Linear wedge (triangular prism).", degree: 1 };
+/// 15-node wedge.
+pub static WEDGE15: Element =
+    Element { name: "wedge15", meaning: "Quadratic serendipity wedge (triangular prism).", degree: 2 };
 
 /// All elements, in the order tables list them.
-pub static ELEMENTS: [&Element; 4] = [&TET4, &TET10, &HEX8, &HEX20];
+pub static ELEMENTS: [&Element; 6] = [&TET4, &TET10, &HEX8, &HEX20, &WEDGE6, &WEDGE15];
 
 /// Returns the element with that name.
 pub fn find(name: &str) -> Option<&'static Element> {

@@ -12,6 +12,7 @@ mod cylinder;
 mod lattice;
 mod shell;
 pub mod surfaces;
+mod wedges;
 
 pub use ball::{Drawn, ball_mesh, half_kidney_mesh, kidney_mesh};
 pub use boxes::{Jitter, box_mesh};

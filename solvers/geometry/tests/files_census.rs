@@ -105,7 +105,7 @@ const TEXT_2: [Edit; 10] = [
     (|l| at(l, "$Nodes").and_then(|n| raised(&mut l[n + 1], 0)), "expected a node number, found '$EndNodes'"),
     (|l| before(l, "$EndElements", None, "999999"), "names node 999999, which the file does not have"),
     (|l| before(l, "$EndElements", Some(0), "1"), "element 1 occurs a second time"),
-    (|l| before(l, "$EndElements", Some(1), "6"), "has type 6"),
+    (|l| before(l, "$EndElements", Some(1), "7"), "has type 7"),
     (
         |l| {
             let (start, end) = (at(l, "$Elements")?, at(l, "$EndElements")?);
@@ -166,7 +166,7 @@ const DECK: [Edit; 6] = [
             l[line] = l[line].replace("C3D", "C3D1");
             Some(())
         },
-        "C3D4, C3D10, C3D8, C3D20",
+        "C3D4, C3D10, C3D8, C3D20, C3D6, C3D15",
     ),
     (
         |l| {

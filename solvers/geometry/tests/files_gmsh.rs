@@ -67,7 +67,13 @@ fn quadratic_nodes_are_put_where_gmsh_means_them() {
         [0., 1., 1.],
     ];
     type Case<'a> = (u64, CellKind, &'a [[f64; 3]], &'a [[usize; 2]]);
-    let cases: [Case; 2] = [(11, CellKind::Tet10, &tet, &tet_edges), (17, CellKind::Hex20, &hex, &hex_edges)];
+    let wedge = [[0., 0., 0.], [1., 0., 0.], [0., 1., 0.], [0., 0., 1.], [1., 0., 1.], [0., 1., 1.]];
+    let wedge_edges = [[0, 1], [0, 2], [0, 3], [1, 2], [1, 4], [2, 5], [3, 4], [3, 5], [4, 5]];
+    let cases: [Case; 3] = [
+        (11, CellKind::Tet10, &tet, &tet_edges),
+        (17, CellKind::Hex20, &hex, &hex_edges),
+        (18, CellKind::Wedge15, &wedge, &wedge_edges),
+    ];
     for (number, kind, corners, edges) in cases {
         let mut points = corners.to_vec();
         points.extend(
@@ -185,9 +191,9 @@ fn broken_files_name_the_line() {
         ),
         ("4 4 3 9 1 0 10 20 30 40", "4 4 3 9 1 0 10 20 30 30", 25, "element 4 names node 30 twice"),
         ("4 4 3 9 1 0 10 20 30 40", "4 4 3 nine 1 0 10 20 30 40", 25, "expected a tag, found 'nine'"),
-        ("4 4 3 9 1 0 10 20 30 40", "4 6 3 9 1 0 10 20 30 40", 25, "element 4 has type 6"),
+        ("4 4 3 9 1 0 10 20 30 40", "4 7 3 9 1 0 10 20 30 40", 25, "element 4 has type 7"),
         ("4 4 3 9 1 0 10 20 30 40", "3 4 3 9 1 0 10 20 30 40", 25, "element 3 occurs a second time"),
-        ("4 4 3 9 1 0 10 20 30 40", "4 2 2 0 0 10 20 30", 26, "no tetrahedra or hexahedra"),
+        ("4 4 3 9 1 0 10 20 30 40", "4 2 2 0 0 10 20 30", 26, "no solid elements"),
         ("3 2 2 7 1 10 30 20", "3 2 2 7 1 10 30 99", 24, "surface element 3 is not a face of any cell"),
         ("\n$EndElements", "", 26, "file ends before $EndElements"),
     ];

@@ -251,7 +251,7 @@ fn the_first_format_of_gmsh_is_read() {
         ),
         ("3 4 7 1 4 2 3 4 9", "3 4 7 1 5 2 3 4 9", "m:13: element 3 of type 4 has 9 numbers"),
         ("3 4 7 1 4 2 3 4 9", "2 4 7 1 4 2 3 4 9", "m:13: element 2 occurs a second time"),
-        ("3 4 7 1 4 2 3 4 9", "3 6 7 1 4 2 3 4 9", "m:13: element 3 has type 6"),
+        ("3 4 7 1 4 2 3 4 9", "3 7 7 1 4 2 3 4 9", "m:13: element 3 has type 7"),
         ("9 1 1 1", "4 1 1 1", "m:7: node 4 occurs a second time"),
         ("9 1 1 1", "9 1 nan 1", "m:7: node 9 has a coordinate that is not finite"),
         ("$ENDNOD\n", "", "m:8: expected $ENDNOD, found '$ELM'"),

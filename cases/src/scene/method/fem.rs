@@ -13,7 +13,7 @@ use crate::scene::report::Report;
 pub(crate) struct FemKeys {
     element: Element,
     dilation: Option<Dilation>,
-    /// Whether hex20 has 2 x 2 x 2 integration points instead of 3 x 3 x 3
+    /// Reduced integration: 2 x 2 x 2 points in hex20, 3 x 3 in wedge15
     #[serde(default)]
     reduced: bool,
     size: SizeKeys,

@@ -5,15 +5,20 @@ mod cube;
 mod entry;
 mod hex20;
 mod hex8;
+mod prism;
 mod tet10;
 mod tet4;
 mod tetrahedron;
+mod wedge15;
+mod wedge6;
 
 pub use entry::{Entry, FileCodes, Points, ReferenceCell};
 pub use hex8::Hex8;
 pub use hex20::Hex20;
 pub use tet4::Tet4;
 pub use tet10::Tet10;
+pub use wedge6::Wedge6;
+pub use wedge15::Wedge15;
 
 use crate::{Matrix3, Point3, Vector3};
 
@@ -49,10 +54,14 @@ elements! {
     Hex8 = 8,
     /// 20-node hexahedron: corners, then mid-edges 01 12 23 30, 45 56 67 74, 04 15 26 37.
     Hex20 = 20,
+    /// 6-node wedge: bottom 012 counter-clockwise seen from above, top 345 above them.
+    Wedge6 = 6,
+    /// 15-node wedge: corners, then mid-edges 01 12 20, 34 45 53, 03 14 25.
+    Wedge15 = 15,
 }
 
-/// A Lagrange element of `N` nodes on its reference cell: the tetrahedron (0,0,0), (1,0,0), (0,1,0), (0,0,1)
-/// or the cube `[-1, 1]^3`. The same functions map the reference cell to space: `x(xi) = sum_a N_a(xi) x_a`.
+/// A Lagrange element of `N` nodes on its reference cell: the tetrahedron (0,0,0), (1,0,0), (0,1,0),
+/// (0,0,1), the cube `[-1, 1]^3`, or the triangle (0,0), (1,0), (0,1) between z = -1 and z = 1. The same functions map the reference cell to space: `x(xi) = sum_a N_a(xi) x_a`.
 pub trait Element<const N: usize> {
     /// Kind of mesh cell, which also defines the node order.
     const KIND: CellKind;
@@ -90,6 +99,8 @@ macro_rules! with_element {
             $crate::CellKind::Tet10 => $crate::with_element!(@ $crate::element::Tet10, 10, $E, $N, $body),
             $crate::CellKind::Hex8 => $crate::with_element!(@ $crate::element::Hex8, 8, $E, $N, $body),
             $crate::CellKind::Hex20 => $crate::with_element!(@ $crate::element::Hex20, 20, $E, $N, $body),
+            $crate::CellKind::Wedge6 => $crate::with_element!(@ $crate::element::Wedge6, 6, $E, $N, $body),
+            $crate::CellKind::Wedge15 => $crate::with_element!(@ $crate::element::Wedge15, 15, $E, $N, $body),
         }
     };
     (@ $type:ty, $count:literal, $E:ident, $N:ident, $body:expr) => {{

@@ -412,7 +412,7 @@ pub enum Problem {
         problem: Box<Problem>,
     },
     /// A file without cells.
-    #[error("the file has no tetrahedra or hexahedra")]
+    #[error("the file has no solid elements")]
     NoCells,
     /// More items than can be indexed, or than the file has bytes for.
     #[error("too many {what}: {count}")]

@@ -1,31 +1,35 @@
-//! Converts hexahedra to tetrahedra, and linear to quadratic cells.
+//! Converts cells to cells of other shapes, and linear to quadratic cells.
 
 use std::collections::HashMap;
 
+use super::wedges::to_wedges;
 use crate::{CellKind, Facet, Mesh};
 
 const TET: CellKind = CellKind::Tet4;
+const WEDGE: CellKind = CellKind::Wedge6;
 
-/// Whether every cell can be converted to `kind`. Any cell can become straight-edged tet4, linear cells can
-/// become tet10, and a linear cell can become the quadratic cell of the same shape.
+/// Whether [`converted`] returns a mesh.
 pub fn is_convertible(mesh: &Mesh, kind: CellKind) -> bool {
-    let all = |is: &dyn Fn(CellKind) -> bool| (0..mesh.cell_count()).all(|cell| is(mesh.kind(cell)));
-    let linear = kind.of_order(1);
-    let from_linear = kind.order() == 2 && all(&|own| own.order() == 1);
-    all(&|own| own == kind)
-        || kind == TET
-        || from_linear && (linear == Some(TET) || all(&|own| Some(own) == linear))
+    converted(mesh.clone(), kind).is_some()
 }
 
-/// Converts a mesh to cells of `kind`, or returns `None` if a cell cannot be converted ([`is_convertible`]).
-/// New nodes lie halfway along their edges.
+/// Converts a mesh to cells of `kind`, or returns `None` if a cell cannot be converted. Any cell can become
+/// straight-edged tet4, most meshes of hex8 can become wedge6, and cells that can become linear cells can become
+/// the quadratic cells of the same shape unless they are quadratic. New nodes lie halfway along their edges.
 pub fn converted(mesh: Mesh, kind: CellKind) -> Option<Mesh> {
-    is_convertible(&mesh, kind).then(|| match kind {
-        _ if mesh.uniform_kind() == Some(kind) => mesh,
-        TET => to_tets(&mesh),
-        _ if kind.of_order(1) == Some(TET) => raise_order(&to_tets(&mesh)),
-        _ => raise_order(&mesh),
-    })
+    if mesh.uniform_kind() == Some(kind) {
+        return Some(mesh);
+    }
+    if kind.order() == 2 {
+        let linear =
+            kind.of_order(1).filter(|_| (0..mesh.cell_count()).all(|c| mesh.kind(c).order() == 1))?;
+        return converted(mesh, linear).map(|mesh| raise_order(&mesh));
+    }
+    match kind {
+        TET => Some(to_tets(&mesh)),
+        WEDGE => to_wedges(&mesh),
+        _ => None,
+    }
 }
 
 /// Divides a mesh into linear tetrahedra. Every hexahedron becomes six; tetrahedra keep their corners.
@@ -35,27 +39,33 @@ pub fn converted(mesh: Mesh, kind: CellKind) -> Option<Mesh> {
 /// through its lowest-numbered node (Dompierre et al. 1999), so neighbours agree on the cut and the mesh is
 /// conforming for any arrangement. In a box numbered along its axes this is Kuhn's subdivision.
 pub fn to_tets(mesh: &Mesh) -> Mesh {
-    let mut cells: Vec<[u32; 4]> = Vec::new();
-    let mut regions = Vec::new();
-    let mut first = Vec::with_capacity(mesh.cell_count() + 1);
+    let (mut nodes, mut first) = (Vec::new(), vec![0]);
     for cell in 0..mesh.cell_count() {
-        first.push(cells.len());
-        cut(mesh.kind(cell), mesh.cell(cell), &mut cells);
-        regions.resize(cells.len(), mesh.region(cell));
+        cut(mesh.kind(cell), mesh.cell(cell), &mut nodes);
+        first.push(nodes.len() / 4);
     }
-    first.push(cells.len());
+    divided(mesh, TET, nodes, &first)
+}
 
+/// Mesh of the parts of the cells of a mesh, all of one kind. `nodes` has the nodes of all parts; cell `c` has
+/// the parts `first[c]..first[c + 1]`. Regions and groups are kept, unused nodes are dropped.
+pub(super) fn divided(mesh: &Mesh, kind: CellKind, mut nodes: Vec<u32>, first: &[usize]) -> Mesh {
+    let parts = nodes.len() / kind.node_count();
+    let mut regions = Vec::with_capacity(parts);
+    for cell in 0..mesh.cell_count() {
+        regions.resize(first[cell + 1], mesh.region(cell));
+    }
     let groups: Vec<(String, Vec<Facet>)> = mesh
         .group_names()
         .map(|name| {
             let facets = mesh.group(name).unwrap_or_default();
-            let tets = facets.iter().flat_map(|&f| facets_within(mesh, f, &cells, &first)).collect();
-            (name.to_string(), tets)
+            let within = facets.iter().flat_map(|&f| facets_within(mesh, f, kind, &nodes, first)).collect();
+            (name.to_string(), within)
         })
         .collect();
 
     let mut number = vec![u32::MAX; mesh.points().len()];
-    for &node in cells.iter().flatten() {
+    for &node in &nodes {
         number[node as usize] = 0;
     }
     let mut points = Vec::new();
@@ -63,22 +73,18 @@ pub fn to_tets(mesh: &Mesh) -> Mesh {
         *slot = points.len() as u32;
         points.push(mesh.points()[node]);
     }
-    let nodes = cells.iter().flatten().map(|&n| number[n as usize]).collect();
-    let tets = rebuilt(mesh, points, vec![TET; cells.len()], nodes, regions, groups);
-    mesh.cell_groups().fold(tets, |tets, (name, of)| {
-        tets.with_cell_group(
-            name,
-            of.iter()
-                .flat_map(|&cell| first[cell as usize] as u32..first[cell as usize + 1] as u32)
-                .collect(),
-        )
+    nodes.iter_mut().for_each(|node| *node = number[*node as usize]);
+    let whole = rebuilt(mesh, points, vec![kind; parts], nodes, regions, groups);
+    mesh.cell_groups().fold(whole, |whole, (name, of)| {
+        let parts = of.iter().flat_map(|&cell| first[cell as usize] as u32..first[cell as usize + 1] as u32);
+        whole.with_cell_group(name, parts.collect())
     })
 }
 
-fn cut(kind: CellKind, nodes: &[u32], cells: &mut Vec<[u32; 4]>) {
+fn cut(kind: CellKind, nodes: &[u32], tets: &mut Vec<u32>) {
     let corners = &nodes[..kind.corner_count()];
-    if let &[a, b, c, d] = corners {
-        cells.push([a, b, c, d]);
+    if corners.len() == 4 {
+        tets.extend(corners);
         return;
     }
     let lowest = *corners.iter().min().unwrap_or(&0);
@@ -91,19 +97,20 @@ fn cut(kind: CellKind, nodes: &[u32], cells: &mut Vec<[u32; 4]>) {
         let around = |i: usize| n[(start + i) % n.len()];
         // Seen from outside, the face is counter-clockwise. From the apex inside it is clockwise: the
         // reversed face gives a positive volume.
-        cells.extend((2..n.len()).map(|i| [around(0), around(i), around(i - 1), lowest]));
+        tets.extend((2..n.len()).flat_map(|i| [around(0), around(i), around(i - 1), lowest]));
     }
 }
 
-/// The faces of a cell's tetrahedra that lie in one face of the cell.
-fn facets_within(mesh: &Mesh, facet: Facet, cells: &[[u32; 4]], first: &[usize]) -> Vec<Facet> {
+/// The faces of a cell's parts that lie in one face of the cell.
+fn facets_within(mesh: &Mesh, facet: Facet, kind: CellKind, nodes: &[u32], first: &[usize]) -> Vec<Facet> {
     let corners: Vec<u32> = mesh.facet_corners(facet).collect();
     let cell = facet.cell as usize;
     let mut found = Vec::new();
-    for tet in first[cell]..first[cell + 1] {
-        for (face, local) in TET.faces().iter().enumerate() {
-            if local.iter().all(|&l| corners.contains(&cells[tet][l])) {
-                found.push(Facet { cell: tet as u32, face: face as u8 });
+    for part in first[cell]..first[cell + 1] {
+        let own = &nodes[part * kind.node_count()..];
+        for (face, local) in kind.faces().iter().enumerate() {
+            if local.iter().all(|&l| corners.contains(&own[l])) {
+                found.push(Facet { cell: part as u32, face: face as u8 });
             }
         }
     }

@@ -7,6 +7,11 @@ import meshio
 import vtk
 
 
+# Missing in meshio 5.3.5.
+meshio._mesh.topological_dimension.setdefault("wedge15", 3)
+SOLIDS = ("tetra", "tetra10", "hexahedron", "hexahedron20", "wedge", "wedge15")
+
+
 def model(kind):
     gmsh.clear()
     gmsh.model.add(kind)
@@ -18,9 +23,12 @@ def model(kind):
         gmsh.model.mesh.setTransfiniteCurve(curve[1], 3)
     for surface in gmsh.model.getEntities(2):
         gmsh.model.mesh.setTransfiniteSurface(surface[1])
-        if kind.startswith("hex"):
+        # The surfaces below and above wedges are triangles. Mixed boxes have hexahedra on the left.
+        x, _, z = occ.getCenterOfMass(*surface)
+        on_left = x < 1 - 1e-6
+        if kind.startswith("hex") or not kind.startswith("tet") and (abs(z - 0.5) < 1e-6 or kind.startswith("mixed") and on_left):
             gmsh.model.mesh.setRecombine(*surface)
-    if kind.startswith("hex"):
+    if not kind.startswith("tet"):
         for volume in gmsh.model.getEntities(3):
             gmsh.model.mesh.setTransfiniteVolume(volume[1])
 
@@ -34,7 +42,7 @@ def model(kind):
     gmsh.model.addPhysicalGroup(2, at(2, 2.0), 22, "pressed")
     gmsh.option.setNumber("Mesh.SecondOrderIncomplete", 1)
     gmsh.model.mesh.generate(3)
-    if kind in ("tet10", "hex20"):
+    if kind in ("tet10", "hex20", "wedge15", "mixed2"):
         gmsh.model.mesh.setOrder(2)
 
 
@@ -69,7 +77,7 @@ def vtus(kind):
 
 gmsh.initialize()
 gmsh.option.setNumber("General.Terminal", 0)
-for kind in ("tet4", "tet10", "hex8", "hex20"):
+for kind in ("tet4", "tet10", "hex8", "hex20", "wedge6", "wedge15", "mixed1", "mixed2"):
     model(kind)
     for version in (2.2, 4.0, 4.1):
         # Gmsh writes 4.0 in text only; meshio writes it in binary.
@@ -82,10 +90,10 @@ for kind in ("tet4", "tet10", "hex8", "hex20"):
     mesh = meshio.read(f"{kind}-4.1-binary.msh")
     mesh.point_data = {}
     meshio.gmsh.write(f"{kind}-4.0-binary.msh", mesh, fmt_version="4.0", binary=True)
-    solid = [block for block in mesh.cells if block.type in ("tetra", "tetra10", "hexahedron", "hexahedron20")]
+    solid = [block for block in mesh.cells if block.type in SOLIDS]
     plain = meshio.Mesh(mesh.points, [(b.type, b.data) for b in solid])
     plain.write(f"{kind}-meshio.inp")
-    kinds = ("tetra", "tetra10", "hexahedron", "hexahedron20", "triangle", "triangle6", "quad", "quad8")
+    kinds = SOLIDS + ("triangle", "triangle6", "quad", "quad8")
     kept = [at for at, block in enumerate(mesh.cells) if block.type in kinds]
     groups = {"gmsh:physical": [mesh.cell_data["gmsh:physical"][at] for at in kept]}
     whole = meshio.Mesh(mesh.points, [(mesh.cells[at].type, mesh.cells[at].data) for at in kept], cell_data=groups)
