@@ -30,7 +30,7 @@ fn methods_keep_every_setting() {
     let scene = scene();
     let Family::Fem(fem) = &scene.methods[0].family else { panic!("fem") };
     assert_eq!(fem.size, Size::Cells { cells: [4, 4, 2], grading: [1.0, 1.0, 2.0] });
-    assert_eq!((fem.element, fem.dilation), (Element(CellKind::Tet4), Dilation::NodalMean));
+    assert_eq!((fem.element, fem.dilation), (CellKind::Tet4.into(), Dilation::NodalMean));
     assert_eq!(fem.jitter, Some(Jitter { fraction: 0.2, seed: 7 }));
     let Family::Efg(efg) = &scene.methods[1].family else { panic!("efg") };
     assert_eq!(efg.cloud, Cloud::Uniform { nodes: 83, seed: 1 });

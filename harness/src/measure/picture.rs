@@ -77,7 +77,7 @@ fn hull(set: &PlacedTool, closure: f64, mesh: &Mesh) -> ToolHull {
 fn section(tool: &PlacedTool, run: &Solved, of_mesh: &[Vector3]) -> Option<Section> {
     let Solved { method, setup, prepared, solution } = *run;
     let (mesh, weights) = (method.mesh(), prepared.volume.rows.weights());
-    let each = prepared.source.points_per_cell()?;
+    let starts = prepared.source.cell_points()?;
     let right = tool.tool.along();
     let extent = extent(mesh);
     let across = |axis: &usize| extent[*axis] * (1.0 - right[*axis].powi(2));
@@ -91,7 +91,7 @@ fn section(tool: &PlacedTool, run: &Solved, of_mesh: &[Vector3]) -> Option<Secti
     let side: Vec<f64> = mesh.points().iter().map(|x| normal.dot(&(x - from))).collect();
     let cells = (0..mesh.cell_count()).filter_map(|cell| {
         let corners = cut(mesh, cell, &side, of_mesh, (&right, &up))?;
-        let points = each * cell..each * (cell + 1);
+        let points = starts[cell]..starts[cell + 1];
         let volume: f64 = weights[points.clone()].iter().sum();
         let sum: f64 = points.map(|q| weights[q] * pressure[q]).sum();
         Some(SectionCell { corners, pressure: sum / volume })

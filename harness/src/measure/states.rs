@@ -73,7 +73,7 @@ pub(crate) fn states(run: &Solved, most: usize) -> Result<States, Failure> {
     let to_mesh = at_mesh(run)?;
     let at_nodes = |u: &[Vector3]| to_mesh.as_ref().map_or_else(|| u.to_vec(), |rows| rows.rows().apply(u));
     let cells = (solution.vibration.is_none() && !setup.relaxes())
-        .then(|| Averages::new(mesh, &prepared.volume, prepared.source.points_per_cell()));
+        .then(|| Averages::new(mesh, &prepared.volume, prepared.source.cell_points()));
     let contact = prepared.contact();
     let state = |at: Recorded| {
         let Recorded { time, u, parameters, step } = at;
@@ -141,15 +141,16 @@ fn tensors(run: &Solved, cells: &Averages, u: &[Vector3], parameters: &[f64]) ->
 /// Quadrature points that represent each cell of the mesh, with their volumes.
 struct Averages<'a> {
     weights: &'a [f64],
-    /// Number of quadrature points per cell, or the point nearest to the centre of each cell.
-    points: Result<usize, Vec<usize>>,
+    /// First quadrature point of each cell and the number of all, or the point nearest to the centre of each
+    /// cell.
+    points: Result<Vec<usize>, Vec<usize>>,
     count: usize,
 }
 
 impl<'a> Averages<'a> {
-    fn new(mesh: &Mesh, volume: &'a Volume, per_cell: Option<usize>) -> Averages<'a> {
+    fn new(mesh: &Mesh, volume: &'a Volume, starts: Option<Vec<usize>>) -> Averages<'a> {
         let at = volume.rows.at().points();
-        let points = per_cell.ok_or_else(|| {
+        let points = starts.ok_or_else(|| {
             let search = Search::new(at).expect("quadrature points are finite");
             let middle = |cell| {
                 let corners: Vec<&Point3> = mesh.cell_points(cell).collect();
@@ -164,8 +165,8 @@ impl<'a> Averages<'a> {
     fn of(&self, value: impl Fn(usize) -> Matrix3) -> Vec<Matrix3> {
         let mean = |cell: usize| match &self.points {
             Err(nearest) => value(nearest[cell]),
-            Ok(each) => {
-                let points = each * cell..each * (cell + 1);
+            Ok(starts) => {
+                let points = starts[cell]..starts[cell + 1];
                 let volume: f64 = self.weights[points.clone()].iter().sum();
                 points.map(|q| value(q) * self.weights[q]).sum::<Matrix3>() / volume
             }

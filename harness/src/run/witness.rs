@@ -86,11 +86,10 @@ fn is_error(metric: &Metric) -> bool {
 fn witnesses(reference: &Method, nodes: usize) -> Result<Vec<Method>, String> {
     let size = fineness(reference);
     let second = is_first_order(&reference.family).then(|| match elements(&reference.family) {
-        Some(fem) => fem.element.0.of_order(2).unwrap_or(CellKind::Tet10),
-        None => CellKind::Tet10,
+        Some(fem) => fem.element.second_order(),
+        None => CellKind::Tet10.into(),
     });
-    let of_second = |kind: CellKind, size: Size| {
-        let element = Element(kind);
+    let of_second = |element: Element, size: Size| {
         let fem = Fem { element, dilation: Dilation::Standard, reduced: false, size, jitter: None };
         let (id, family) = (element.name().to_string(), Family::Fem(fem));
         Method { series: id.clone(), id, family, mass: reference.mass }

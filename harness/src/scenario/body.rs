@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use cases::scene::{Body, ErrorKind, Jitter, MeshFile, Size};
+use cases::scene::{Body, Element, ErrorKind, Jitter, MeshFile, Size};
 use geometry::generate::{
     self, Drawn, GenerateError, ShellExtent, ball_mesh, box_mesh, cylinder_mesh, half_kidney_mesh,
     is_convertible, kidney_mesh, raise_order, sphere_shell_mesh,
@@ -26,7 +26,11 @@ pub(super) const MOST_NODES: usize = 3_000_000;
 /// Returns an error if the size or jitter does not apply to the body, if the mesh has too many nodes or
 /// inverted cells, or if a mesh file is of another body.
 pub fn mesh(body: &Body, kind: CellKind, size: &Size, jitter: Option<Jitter>) -> Result<Mesh, Failure> {
-    let mesh = unchecked(body, kind, size, jitter)?;
+    sound(body, unchecked(body, kind, size, jitter)?, size, jitter)
+}
+
+/// Checks a mesh for inversion, and that a mesh file is of the body.
+fn sound(body: &Body, mesh: Mesh, size: &Size, jitter: Option<Jitter>) -> Result<Mesh, Failure> {
     quality::check(&mesh).map_err(|bad| inverted(bad, size, jitter))?;
     if let Size::File(file) = size {
         same_body::check(body, file, &mesh)?;
@@ -132,11 +136,14 @@ pub(super) fn unchecked(
                 Err(Failure::input(Key::Size("cells"), problem, "give level, nodes or spacing"))
             }
         },
-        Size::File(ref file) => {
-            let join = matches!(body, Body::File(of_body) if of_body.join);
-            from_file(&MeshFile { join, ..file.clone() }, kind)
-        }
+        Size::File(ref file) => from_file(&joined(body, file), kind),
     }
+}
+
+/// The mesh file of a method, whose pieces are joined if the scene requests it of the body.
+fn joined(body: &Body, file: &MeshFile) -> MeshFile {
+    let join = matches!(body, Body::File(of_body) if of_body.join);
+    MeshFile { join, ..file.clone() }
 }
 
 /// Size of the tetrahedra inside a surface.
@@ -261,6 +268,39 @@ pub(super) fn read(file: &MeshFile, key: Key) -> Result<Mesh, Failure> {
     })
 }
 
+/// Meshes the body in cells of one kind, or takes the cells of a file as they are.
+///
+/// # Errors
+/// As for [`mesh`], or if cells of several kinds are not of a file or not of one order.
+pub(super) fn mesh_of(
+    body: &Body,
+    element: Element,
+    size: &Size,
+    jitter: Option<Jitter>,
+) -> Result<Mesh, Failure> {
+    if let Some(kind) = element.kind() {
+        return mesh(body, kind, size, jitter);
+    }
+    let Size::File(file) = size else {
+        let problem = format!("makes cells of one kind, not {}", element.name());
+        return Err(Failure::input(Key::Size(""), problem, "take a mesh: size = { file = \"...\" }"));
+    };
+    let read = read(&joined(body, file), Key::Size("file"))?;
+    let of_order = |order| (0..read.cell_count()).all(|cell| read.kind(cell).order() == order);
+    let mesh = match element.order() {
+        order if of_order(order) => read,
+        2 if of_order(1) => raise_order(&read),
+        order => {
+            let (found, other) =
+                (if of_order(2) { "quadratic cells" } else { "cells of both orders" }, 3 - order);
+            let problem = format!("holds {found}, not {}", element.name());
+            let help = format!("take element = \"{}\", or cells of one order", Element::mixed(other).name());
+            return Err(Failure::input(Key::Size("file"), problem, &help));
+        }
+    };
+    sound(body, mesh, size, jitter)
+}
+
 /// Reads a mesh file in cells of one kind. Linear cells are raised to their quadratic kind with straight
 /// edges.
 fn from_file(file: &MeshFile, kind: CellKind) -> Result<Mesh, Failure> {
@@ -276,6 +316,12 @@ fn from_file(file: &MeshFile, kind: CellKind) -> Result<Mesh, Failure> {
     let becomes: Vec<&str> =
         CellKind::ALL.into_iter().filter(|k| is_convertible(&mesh, *k)).map(CellKind::name).collect();
     let help = match is_convertible(&mesh, kind) {
+        _ if found.is_none() => {
+            format!(
+                "take element = \"{}\", which takes the cells as they are",
+                Element::mixed(kind.order()).name()
+            )
+        }
         true => format!("tissuebench mesh convert ... --element {}", kind.name()),
         false => format!(
             "the cells can't be converted to {}; take a method of {}",

@@ -30,7 +30,7 @@ impl Scenario<'_> {
     }
 
     pub(super) fn elements(&self, fem: &scene::Fem) -> Result<Discretisation, Failure> {
-        let mesh = body::mesh(&self.scene.body, fem.element.0, &fem.size, fem.jitter)?;
+        let mesh = body::mesh_of(&self.scene.body, fem.element, &fem.size, fem.jitter)?;
         let rule = if fem.reduced { VolumeRule::reduced() } else { VolumeRule::STANDARD };
         let mesh = Arc::new(self.with_regions(mesh)?);
         Ok(Discretisation {

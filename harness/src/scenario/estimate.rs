@@ -150,10 +150,12 @@ fn size(scene: &Scene, family: &Family) -> (f64, f64, f64) {
     let over_mesh = |cells, size: &Size| (nodes(body, cells, size), across(body, size), CLOUD);
     match family {
         Family::Fem(fem) | Family::External(External { elements: fem, .. }) => {
-            let (kind, across) = (fem.element.0, across(body, &fem.size));
+            // Cells of several kinds are of a file, whose size does not depend on a kind.
+            let kind = fem.element.kind().unwrap_or(CellKind::Hex8);
+            let across = across(body, &fem.size);
             // The midpoints of the edges of tetrahedra are those of a lattice of half the spacing.
             let fills = kind.entry().cell.diagonals == [1; 4];
-            let (across, rows) = match kind.order() {
+            let (across, rows) = match fem.element.order() {
                 1 => (across, 1.0),
                 _ if fills => (2.0 * across, 1.0),
                 _ => (across, 2.0),

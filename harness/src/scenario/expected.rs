@@ -14,8 +14,8 @@ impl Scenario<'_> {
     pub fn expected_nodes(&self) -> f64 {
         let body = &self.scene.body;
         match &self.method.family {
-            Family::Fem(fem) => nodes(body, fem.element.0, &fem.size),
-            Family::External(external) => nodes(body, external.elements.element.0, &external.elements.size),
+            Family::Fem(fem) => of_elements(body, fem),
+            Family::External(external) => of_elements(body, &external.elements),
             Family::OverMesh(over) => nodes(body, over.family.cells, &over.size),
             Family::Efg(efg) => {
                 let background =
@@ -24,6 +24,11 @@ impl Scenario<'_> {
             }
         }
     }
+}
+
+/// Returns the number of nodes of finite elements; 0 for cells of several kinds, which a file has.
+fn of_elements(body: &Body, fem: &scene::Fem) -> f64 {
+    fem.element.kind().map_or(0.0, |kind| nodes(body, kind, &fem.size))
 }
 
 fn cloud(body: &Body, cloud: &scene::Cloud) -> f64 {

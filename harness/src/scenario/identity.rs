@@ -53,7 +53,7 @@ fn of_elements(fem: &scene::Fem, identity: Identity) -> Identity {
         family: records::Family::Fem,
         variant: fem.element.name().into(),
         dilation: Some(fem.dilation.name().into()),
-        integration: fem.element.0.entry().points.reduced.filter(|_| fem.reduced).map(|rule| rule.1.into()),
+        integration: fem.element.reduced().filter(|_| fem.reduced).map(Into::into),
         seed: fem.jitter.map_or(0, |j| j.seed),
         ..identity
     }

@@ -27,8 +27,22 @@ pub static WEDGE6: Element =
 pub static WEDGE15: Element =
     Element { name: "wedge15", meaning: "Quadratic serendipity wedge (triangular prism).", degree: 2 };
 
+/// Linear cells of several shapes.
+pub static MIXED_LINEAR: Element = Element {
+    name: "mixed-linear",
+    meaning: "Linear cells of any shapes, as a mesh file has them.",
+    degree: 1,
+};
+/// Quadratic cells of several shapes.
+pub static MIXED_QUADRATIC: Element = Element {
+    name: "mixed-quadratic",
+    meaning: "Quadratic cells of any shapes, as a mesh file has them or raised from its linear cells.",
+    degree: 2,
+};
+
 /// All elements, in the order tables list them.
-pub static ELEMENTS: [&Element; 6] = [&TET4, &TET10, &HEX8, &HEX20, &WEDGE6, &WEDGE15];
+pub static ELEMENTS: [&Element; 8] =
+    [&TET4, &TET10, &HEX8, &HEX20, &WEDGE6, &WEDGE15, &MIXED_LINEAR, &MIXED_QUADRATIC];
 
 /// Returns the element with that name.
 pub fn find(name: &str) -> Option<&'static Element> {

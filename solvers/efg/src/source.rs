@@ -247,14 +247,15 @@ impl RowSource for CloudSource {
         }
     }
 
-    fn points_per_cell(&self) -> Option<usize> {
-        self.integration.points_per_cell()
+    fn cell_points(&self) -> Option<Vec<usize>> {
+        let each = self.integration.points_per_cell()?;
+        Some((0..=self.background.cell_count()).map(|cell| each * cell).collect())
     }
 
     fn cell_dilation(&self) -> Result<Option<DilationGroups>, SourceError> {
         let cells = self.background.cell_count();
         let of_cells = |each| DilationGroups::of_cells(std::iter::repeat_n(each, cells));
-        Ok(self.points_per_cell().map(of_cells).transpose()?)
+        Ok(self.integration.points_per_cell().map(of_cells).transpose()?)
     }
 
     fn pressure(&self, _alike: &[u16]) -> Result<Option<Rows>, SourceError> {

@@ -53,9 +53,9 @@ pub trait RowSource: Send + Sync {
     /// Returns the region of each point of the method's own quadrature.
     fn regions(&self) -> Vec<u16>;
 
-    /// Returns the number of points per cell of the method's own quadrature if all cells have the same number
-    /// of points in sequence, `None` otherwise.
-    fn points_per_cell(&self) -> Option<usize>;
+    /// Returns the first point of each cell in the method's own quadrature, and at the end the number of all
+    /// points; `None` if the points of a cell are not in sequence.
+    fn cell_points(&self) -> Option<Vec<usize>>;
 
     /// Returns one group of points for each cell; `None` if the quadrature is not based on cells.
     fn cell_dilation(&self) -> Result<Option<DilationGroups>, SourceError>;

@@ -1,7 +1,6 @@
 //! Finite elements.
 
 use catalogue::Problem;
-use geometry::CellKind;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
@@ -42,10 +41,10 @@ impl FemKeys {
     pub fn read(self, report: &Report) -> Option<Fem> {
         let (element, reduced) = (self.element, self.reduced);
         let size = self.size.read(&report.at("size"));
-        let has = |kind: CellKind| kind.entry().points.reduced.is_some();
+        let has = |element: Element| element.reduced().is_some();
         let problem = format!("applies to {} only", Element::named(has));
         report.require(
-            !reduced || has(element.0),
+            !reduced || has(element),
             "reduced",
             &problem,
             "leave it out, or take another element",
@@ -68,7 +67,7 @@ impl Fem {
                 format!("has no stable pressure field with {name}"),
                 format!(
                     "take {}, or \"nodal-mean\" (tet4) or \"element-mean\" (hex8)",
-                    Element::named(|kind| kind.order() == 2)
+                    Element::named(|element| element.order() == 2)
                 ),
             ),
             Dilation::NodalMean if !linear => (

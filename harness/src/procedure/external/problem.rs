@@ -6,7 +6,7 @@ use std::path::Path;
 
 use cases::scene::{Procedure, Setting};
 use contact::ToolShape;
-use geometry::{CellKind, Point3, files};
+use geometry::{Point3, files};
 use material::{Law, Material as _};
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
@@ -134,7 +134,7 @@ fn arrays(problem: &Problem, folder: &Path) -> Result<(), String> {
     };
     points("nodes.npy", method.nodes())?;
     points("probes.npy", problem.probes)?;
-    let kind = mesh.uniform_kind().unwrap_or(CellKind::Tet4);
+    let kind = mesh.uniform_kind().ok_or("cells of several kinds do not fit in one array of nodes")?;
     let nodes = (0..mesh.cell_count()).flat_map(|cell| mesh.cell(cell)).map(|&node| i64::from(node));
     npy::write_integers(&folder.join("cells.npy"), kind.node_count(), nodes)?;
     let regions = (0..mesh.cell_count()).map(|cell| i64::from(mesh.region(cell)));
@@ -167,7 +167,7 @@ fn text(problem: &Problem, about: &About) -> Text {
         case: about.case.clone(),
         method: about.method.clone(),
         element: about.element.into(),
-        points_per_cell: prepared.source.points_per_cell().unwrap_or(0),
+        points_per_cell: prepared.source.cell_points().map_or(0, |starts| starts[1]),
         materials: materials
             .map(|(region, ((law, linear), &density))| MaterialText {
                 region: method.mesh().region_names()[region].clone(),
