@@ -1,7 +1,7 @@
 //! Cases: exact solutions, and the scene and study files that name them.
 //!
 //! ```
-//! use cases::scene;
+//! use tissuebench_cases::scene;
 //! let text = r#"
 //! title = "A soft block under its own weight"
 //! body = { shape = "box", size = ["40 mm", "40 mm", "20 mm"] }

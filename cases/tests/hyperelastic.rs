@@ -1,6 +1,6 @@
 //! Laws in principal stretches and homogeneous states: properties of every isotropic law.
 
-use cases::exact::{
+use tissuebench_cases::exact::{
     Elastic, Exact as _, FiniteBending, Hertz, Homogeneous, Hyperelastic, Matrix3, Point3, Vector3,
 };
 

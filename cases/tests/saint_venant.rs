@@ -1,6 +1,5 @@
 //! The three-dimensional flexure of a bar: its boundary conditions, and the errors of a finite element mesh.
 
-use cases::exact::{Elastic, Exact, Point3, SaintVenantFlexure, Vector3};
 use fem::{SurfaceRule, VolumeRule, surface_rows, volume_rows};
 use geometry::CellKind;
 use geometry::generate::box_mesh;
@@ -8,6 +7,7 @@ use geometry::quadrature::gauss_legendre;
 use material::LinearElastic;
 use shape::FixedDof;
 use statics::{Body, LinearProblem, Load, assemble};
+use tissuebench_cases::exact::{Elastic, Exact, Point3, SaintVenantFlexure, Vector3};
 
 const LENGTH: f64 = 5.0;
 

@@ -13,7 +13,7 @@
 //!
 //! ```
 //! use cases::scene;
-//! use harness::run::{Group, Repeats, RunOptions};
+//! use tissuebench_harness::run::{Group, Repeats, RunOptions};
 //! // A cube between frictionless walls under a pressure p: at nu = 0 its top moves down by p h / E.
 //! let text = r#"
 //! title = "A cube between walls"
@@ -33,7 +33,7 @@
 //!     group.run(&group.scenario(scene.methods[0].clone(), 0), RunOptions::default()).expect("runs");
 //! let down = outcome.metric("max-z").expect("recorded");
 //! assert!((down - 1e3 / 20e3 * 0.01).abs() < 1e-12);
-//! # Ok::<(), harness::Failure>(())
+//! # Ok::<(), tissuebench_harness::Failure>(())
 //! ```
 
 #[macro_use]

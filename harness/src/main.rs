@@ -3,5 +3,5 @@
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    ExitCode::from(harness::cli::called())
+    ExitCode::from(tissuebench_harness::cli::called())
 }

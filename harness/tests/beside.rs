@@ -5,9 +5,9 @@ mod common;
 
 use cases::scene::{self, Scene};
 use common::BLOCK;
-use harness::outcome::{Metric, Outcome};
-use harness::run::Repeats;
-use harness::run::{Group, RunOptions};
+use tissuebench_harness::outcome::{Metric, Outcome};
+use tissuebench_harness::run::Repeats;
+use tissuebench_harness::run::{Group, RunOptions};
 
 const CLOUD: &str = r#", { id = "efg", family = "efg", size = { cells = [3, 3, 2] }, kernel = "cubic-spline", support_scale = 1.6, basis = "linear", integration = { rule = "gauss", points = 4 }, essential = "penalty" }]
 output = { transfer = { to = "reference-nodes", scheme = "inverse-distance" }, beside = "tet4" }

@@ -7,12 +7,12 @@ use std::path::Path;
 
 use cases::scene::{self, Scene};
 use common::{BLOCK, PRESSED, cases, inside, moving, write};
-use harness::outcome::Counters;
-use harness::outcome::Outcome;
-use harness::run::Repeats;
-use harness::run::{Group, RunOptions};
-use harness::study::Plan;
-use harness::study::VerifyArgs;
+use tissuebench_harness::outcome::Counters;
+use tissuebench_harness::outcome::Outcome;
+use tissuebench_harness::run::Repeats;
+use tissuebench_harness::run::{Group, RunOptions};
+use tissuebench_harness::study::Plan;
+use tissuebench_harness::study::VerifyArgs;
 
 fn runs(scene: &Scene, repeats: usize) -> Vec<Outcome> {
     let group = Group::new(scene, None, Repeats { most: repeats, seconds: 60.0 }).unwrap();

@@ -4,10 +4,10 @@ mod common;
 
 use cases::scene::{self, Scene};
 use common::BLOCK;
-use harness::outcome::{Metric, SchemeSettings, Transfer};
-use harness::run::Repeats;
-use harness::run::{Group, RunOptions};
 use interp::Scheme;
+use tissuebench_harness::outcome::{Metric, SchemeSettings, Transfer};
+use tissuebench_harness::run::Repeats;
+use tissuebench_harness::run::{Group, RunOptions};
 
 /// Transfers the displacement of a cloud on the nodes of a mesh to the given targets, by the given schemes.
 fn transfers(targets: &str, schemes: &[String]) -> Vec<Transfer> {

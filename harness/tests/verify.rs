@@ -333,7 +333,7 @@ fn the_program_knows_its_commit_without_asking_git() {
         .unwrap();
     assert!(done.status.success());
     let program = results(&out).provenance.program;
-    assert_eq!(program, harness::outcome::provenance::program());
+    assert_eq!(program, tissuebench_harness::outcome::provenance::program());
     let sound = program.commit.len() == 40 && program.commit.chars().all(|c| c.is_ascii_hexdigit());
     assert!(sound || program.commit == "unknown", "{program:?}");
     assert!(program.rustc.starts_with("rustc 1.") && !program.target.is_empty(), "{program:?}");

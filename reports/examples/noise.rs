@@ -8,7 +8,7 @@
 use std::path::PathBuf;
 
 use records::{RunSet, read_run};
-use reports::compare::{Comparison, Scope, Times};
+use tissuebench_reports::compare::{Comparison, Scope, Times};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let folders: Vec<PathBuf> = std::env::args_os().skip(1).map(PathBuf::from).collect();

@@ -6,7 +6,7 @@
 //!
 //! ```
 //! use records::{Family, Record, RunSet, read_run, write_run};
-//! use reports::render;
+//! use tissuebench_reports::render;
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
 //! // A record is one number of one run: its case and method, then its quantity, unit and value.
 //! let run = Record { case: "block".into(), method: "tet4".into(), family: Family::Fem, ..Record::default() };

@@ -7,7 +7,7 @@ use std::fs;
 use std::path::Path;
 
 use records::{RunSet, write_run};
-use reports::render;
+use tissuebench_reports::render;
 
 /// Hash of the sources, as computed by `page/build.mjs`: FNV-1a over their bytes, in the order of their
 /// names.

@@ -6,9 +6,9 @@ use std::fs;
 use std::path::Path;
 
 use records::{RunSet, write_run};
-use reports::commits::add;
-use reports::{ReportError, render, render_over_commits, write_with_report};
 use serde_json::Value;
+use tissuebench_reports::commits::add;
+use tissuebench_reports::{ReportError, render, render_over_commits, write_with_report};
 
 fn text(path: &Path) -> String {
     fs::read_to_string(path).unwrap()

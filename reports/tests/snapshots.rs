@@ -7,7 +7,7 @@ mod one_percent;
 
 use one_percent::{agree, within_one_percent};
 use records::write_run;
-use reports::render;
+use tissuebench_reports::render;
 
 #[test]
 fn the_comparator_can_fail() {

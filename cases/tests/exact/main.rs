@@ -2,13 +2,13 @@
 
 mod moving;
 
-use cases::exact::{
+use proptest::prelude::*;
+use tissuebench_cases::exact::{
     BarWave, CantileverPlaneStrain, Elastic, Exact, ExactError, Hyperelastic, LameCube, Matrix3, Medium,
     Point3, PureBending, RelaxingCompression, RollerBox, SOLUTIONS, ThickSphere, Torsion,
     UniaxialCompression, Vector3, VibratingCantilever, Vibrations, exact_by_name,
 };
-use cases::scene::{Bound, load};
-use proptest::prelude::*;
+use tissuebench_cases::scene::{Bound, load};
 
 /// A solution's name, its parameters, and the box from which its points are drawn (for the sphere outside of
 /// the hole).

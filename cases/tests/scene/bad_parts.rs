@@ -1,6 +1,6 @@
 //! Number of findings in a file, and messages about parts or files that are missing.
 
-use cases::scene::parse;
+use tissuebench_cases::scene::parse;
 
 use crate::{SCENE, edited};
 
@@ -61,13 +61,13 @@ fn parts_that_are_missing_altogether_are_told() {
 
 #[test]
 fn a_file_that_is_not_there_is_named() {
-    let errors = cases::scene::load(std::path::Path::new("no/such.toml")).expect_err("no file");
+    let errors = tissuebench_cases::scene::load(std::path::Path::new("no/such.toml")).expect_err("no file");
     assert_eq!(errors[0].to_string(), "no/such.toml: can't be read: there is no such file");
 }
 
 #[test]
 fn a_mesh_file_is_no_scene() {
     let mesh = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/kidney/kidney-1331.msh");
-    let errors = cases::scene::load(std::path::Path::new(mesh)).expect_err("a mesh");
+    let errors = tissuebench_cases::scene::load(std::path::Path::new(mesh)).expect_err("a mesh");
     assert!(errors[0].to_string().contains("is a mesh file, not a scene; a scene names it"), "{}", errors[0]);
 }

@@ -1,4 +1,4 @@
-use cases::scene::{ErrorKind, parse};
+use tissuebench_cases::scene::{ErrorKind, parse};
 
 use crate::bad_methods::METHODS;
 use crate::{edited, marked_line};

@@ -1,4 +1,4 @@
-use cases::scene::parse_study;
+use tissuebench_cases::scene::parse_study;
 
 use crate::marked_line;
 

@@ -1,6 +1,6 @@
 //! Contradictions between the parts of a scene.
 
-use cases::scene::parse;
+use tissuebench_cases::scene::parse;
 
 use crate::SCENE;
 use crate::good::{JAW, still};

@@ -1,6 +1,6 @@
 //! Expressions and units.
 
-use cases::scene::*;
+use tissuebench_cases::scene::*;
 
 use crate::edited;
 

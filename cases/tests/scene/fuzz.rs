@@ -1,5 +1,5 @@
-use cases::scene::{Expression, parse, parse_study};
 use proptest::prelude::*;
+use tissuebench_cases::scene::{Expression, parse, parse_study};
 
 use crate::{SCENE, edited};
 

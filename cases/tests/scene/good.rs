@@ -1,5 +1,5 @@
-use cases::scene::*;
 use geometry::CellKind;
+use tissuebench_cases::scene::*;
 
 use crate::{SCENE, edited};
 

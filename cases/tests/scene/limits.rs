@@ -1,10 +1,10 @@
 //! Files larger than any sensible use: each is refused at once, with the key, the number and the limit.
 
-use cases::scene::{parse, parse_study};
+use tissuebench_cases::scene::{parse, parse_study};
 
 use crate::{SCENE, edited};
 
-fn first(result: Result<impl Sized, Vec<cases::scene::SceneError>>) -> String {
+fn first(result: Result<impl Sized, Vec<tissuebench_cases::scene::SceneError>>) -> String {
     result.err().map(|errors| errors[0].to_string()).unwrap_or_default()
 }
 

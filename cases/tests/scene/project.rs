@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use cases::scene::{load, load_study};
+use tissuebench_cases::scene::{load, load_study};
 
 fn folder() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
@@ -72,8 +72,10 @@ fn no_two_scenes_write_out_the_same_method() {
 
 #[test]
 fn kinds_of_procedures_have_the_names_of_their_keys() {
-    use cases::scene::ProcedureKind::{self, Explicit, ImplicitDynamic, Linear, Modes, Prepare, Static};
-    let schema = cases::scene::schema();
+    use tissuebench_cases::scene::ProcedureKind::{
+        self, Explicit, ImplicitDynamic, Linear, Modes, Prepare, Static,
+    };
+    let schema = tissuebench_cases::scene::schema();
     let forms = &schema["properties"]["procedure"]["anyOf"][0]["oneOf"];
     let words: Vec<&str> = forms
         .as_array()

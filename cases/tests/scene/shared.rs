@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use cases::scene::{ErrorKind, Scene, SceneError, load};
+use tissuebench_cases::scene::{ErrorKind, Scene, SceneError, load};
 
 use crate::{SCENE, marked_line};
 
@@ -65,7 +65,7 @@ fn taken(name: &str, shared: &str, methods: &str) -> Scene {
 #[test]
 fn a_shared_method_is_what_it_is_written_out() {
     let scene = taken("same", SHARED, TAKEN);
-    let written = cases::scene::parse(SCENE, "block.toml").unwrap();
+    let written = tissuebench_cases::scene::parse(SCENE, "block.toml").unwrap();
     assert_eq!(scene.methods, written.methods);
 }
 
@@ -76,8 +76,10 @@ fn a_key_of_the_scene_replaces_the_shared_one() {
     let written = "[[method]]\nid = \"fine\"\nfamily = \"fem\"\nelement = \"tet4\"\ndilation = \"standard\"\nseries = \"s\"\n\
                    size = { level = 3 }\njitter = { fraction = 0.2, seed = 7 }\n";
     let scene = taken("replaced", SHARED, own);
-    let other =
-        cases::scene::parse(&SCENE.replacen("[[method]]", &format!("{written}[[method]]"), 1), "s.toml");
+    let other = tissuebench_cases::scene::parse(
+        &SCENE.replacen("[[method]]", &format!("{written}[[method]]"), 1),
+        "s.toml",
+    );
     let other = other.unwrap_or_else(|errors| panic!("{}", errors[0]));
     assert_eq!(scene.methods[0], other.methods[0]);
     assert_eq!(scene.methods[1].id, "tet4");
@@ -87,7 +89,7 @@ fn a_key_of_the_scene_replaces_the_shared_one() {
 #[test]
 fn the_text_of_a_scene_has_the_methods_it_takes_and_no_others() {
     let scene = taken("text", SHARED, TAKEN);
-    let written = cases::scene::parse(scene.text(), "block.toml").expect("a scene of its own");
+    let written = tissuebench_cases::scene::parse(scene.text(), "block.toml").expect("a scene of its own");
     assert_eq!(scene.methods, written.methods);
     let comment = taken("text-comment", &SHARED.replace("# Shared.", "# Another."), TAKEN);
     assert_eq!(comment.text(), scene.text());
@@ -95,7 +97,7 @@ fn the_text_of_a_scene_has_the_methods_it_takes_and_no_others() {
     assert_eq!(taken("text-third", &third, TAKEN).text(), scene.text());
     let other = taken("text-other", &SHARED.replace("seed = 7", "seed = 8"), TAKEN);
     assert_ne!(other.text(), scene.text());
-    let own = cases::scene::parse(SCENE, "block.toml").unwrap();
+    let own = tissuebench_cases::scene::parse(SCENE, "block.toml").unwrap();
     assert_eq!(own.text(), SCENE);
 }
 
@@ -105,8 +107,8 @@ fn paths_of_a_shared_method_start_from_its_own_folder() {
     std::fs::create_dir_all(folder("paths")).unwrap();
     std::fs::write(folder("paths").join("organ.msh"), "").unwrap();
     let scene = taken("paths", &shared, TAKEN);
-    let cases::scene::Family::Efg(efg) = &scene.methods[1].family else { panic!("a cloud") };
-    let Some(cases::scene::Size::File(file)) = &efg.background else { panic!("a file") };
+    let tissuebench_cases::scene::Family::Efg(efg) = &scene.methods[1].family else { panic!("a cloud") };
+    let Some(tissuebench_cases::scene::Size::File(file)) = &efg.background else { panic!("a file") };
     assert_eq!(file.path, folder("paths").join("organ.msh"));
 }
 

@@ -1,6 +1,6 @@
 //! Scenes of free vibrations: accepted settings, and parts without a meaning for them.
 
-use cases::scene::{Mass, Procedure, parse};
+use tissuebench_cases::scene::{Mass, Procedure, parse};
 
 const SCENE: &str = r#"title = "A box on rollers"
 body = { shape = "box", size = ["40 mm", "30 mm", "20 mm"] }

@@ -8,7 +8,7 @@
 //! eigenproblems. [`Cholesky`] factors full matrices for many right-hand sides.
 //!
 //! ```
-//! use algebra::{DENSE_LIMIT, FactorError, Symmetric, factor};
+//! use tissuebench_algebra::{DENSE_LIMIT, FactorError, Symmetric, factor};
 //! // [4 1; 1 3] by its upper triangle.
 //! let matrix = Symmetric {
 //!     offsets: vec![0, 1, 3],

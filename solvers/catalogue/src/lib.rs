@@ -10,7 +10,7 @@
 //! solvers record them and reports draw them.
 //!
 //! ```
-//! use catalogue::{Dimension, Entry, Parameter, Problem, Value, Values, find, metric};
+//! use tissuebench_catalogue::{Dimension, Entry, Parameter, Problem, Value, Values, find, metric};
 //! // A spring that a scene could name: `{ spring = "linear", stiffness = ... }`.
 //! type Spring = Entry<fn(&Values) -> Result<f64, Problem>>;
 //! static SPRINGS: [Spring; 1] = [Entry {

@@ -1,6 +1,6 @@
 //! Units, checked by their sizes.
 
-use catalogue::Quantity;
+use tissuebench_catalogue::Quantity;
 
 /// The power applies to the unit's factor as well as to its power of ten.
 #[test]

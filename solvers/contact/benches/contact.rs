@@ -2,13 +2,13 @@
 
 use std::hint::black_box;
 
-use contact::{
-    ContactCounts, ContactHistory, ContactLaw, ContactSurface, Plate, RoundedBox, Slip, Tool, ToolShape,
-};
 use criterion::{Criterion, criterion_group, criterion_main};
 use geometry::CellKind;
 use geometry::generate::box_mesh;
 use shape::{Matrix3, Point3, Vector3};
+use tissuebench_contact::{
+    ContactCounts, ContactHistory, ContactLaw, ContactSurface, Plate, RoundedBox, Slip, Tool, ToolShape,
+};
 
 fn benches(c: &mut Criterion) {
     let max = Point3::new(0.04, 0.03, 0.02);

@@ -13,9 +13,9 @@
 //! between its points.
 //!
 //! ```
-//! use contact::{ContactLaw, Slip, Sphere, Tool};
+//! use tissuebench_contact::{ContactLaw, Slip, Sphere, Tool};
 //! use shape::{Matrix3, Point3, Vector3};
-//! # fn main() -> Result<(), contact::ContactError> {
+//! # fn main() -> Result<(), tissuebench_contact::ContactError> {
 //! // A ball of 5 mm that comes down along -z, without friction; penalty 5e8 Pa/m.
 //! let (ball, law) = (Sphere { radius: 5e-3 }.into(), ContactLaw::frictionless(5e8)?);
 //! let tool = Tool::new(ball, Point3::new(0.0, 0.0, 5e-3), Matrix3::identity(), -Vector3::z(), law)?;

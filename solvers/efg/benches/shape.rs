@@ -30,14 +30,14 @@
 use std::hint::black_box;
 
 use criterion::{Bencher, Criterion, Throughput, criterion_group, criterion_main};
-use efg::{
-    Approximation, Basis, CubicSpline, Kernel, Smoothing, Support, gauss_rows, node_smoothed_rows,
-    smoothed_rows,
-};
 use geometry::generate::kidney_mesh;
 use geometry::{CellKind, Kidney, cloud};
 use nalgebra::{DMatrix, DVector};
 use shape::{Point3, Vector3};
+use tissuebench_efg::{
+    Approximation, Basis, CubicSpline, Kernel, Smoothing, Support, gauss_rows, node_smoothed_rows,
+    smoothed_rows,
+};
 
 const KERNEL: Kernel = Kernel::CubicSpline(CubicSpline);
 

@@ -4,7 +4,7 @@
 //! elements, so assembly, supports and output use the same code.
 //!
 //! ```
-//! use efg::{Approximation, Basis, CubicSpline, Kernel, Support};
+//! use tissuebench_efg::{Approximation, Basis, CubicSpline, Kernel, Support};
 //! use shape::Point3;
 //! let nodes: Vec<Point3> =
 //!     (0..27).map(|i| Point3::new((i % 3) as f64, (i / 3 % 3) as f64, (i / 9) as f64) * 1e-3).collect();
@@ -15,7 +15,7 @@
 //! let x: f64 =
 //!     rows.rows().row(0).0.iter().zip(rows.rows().row(0).1).map(|(&i, v)| (i % 3) as f64 * 1e-3 * v).sum();
 //! assert!((x - 0.9e-3).abs() < 1e-15); // linear fields are reproduced
-//! # Ok::<(), efg::EfgError>(())
+//! # Ok::<(), tissuebench_efg::EfgError>(())
 //! ```
 
 mod approximation;

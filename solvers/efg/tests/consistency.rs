@@ -4,12 +4,12 @@
 mod common;
 
 use common::{dilatation, jittered_box, on_mesh};
-use efg::{
+use geometry::{CellKind, Facet, Mesh};
+use shape::{Point3, SurfaceRows, Vector3, VolumeRows};
+use tissuebench_efg::{
     Approximation, Basis, CubicSpline, Kernel, Smoothing, WendlandC2, node_smoothed_rows, smoothed_rows,
     surface_rows,
 };
-use geometry::{CellKind, Facet, Mesh};
-use shape::{Point3, SurfaceRows, Vector3, VolumeRows};
 
 /// The box of the other tests, the same box in millimetres, and the same box a metre away.
 fn boxes() -> impl Iterator<Item = (&'static str, Mesh)> {

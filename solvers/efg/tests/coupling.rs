@@ -4,14 +4,14 @@
 mod common;
 
 use common::{field, jittered_box, on_cloud, on_mesh};
-use efg::{
-    Approximation, Basis, CubicSpline, EfgError, Kernel, QuarticSpline, Support, WendlandC2, border_vertices,
-    coupled_nodes, surface_rows,
-};
 use geometry::generate::box_mesh;
 use geometry::shapes::Cuboid;
 use geometry::{CellKind, Facet, Mesh, cloud};
 use shape::{GradRows, Point3, Vector3};
+use tissuebench_efg::{
+    Approximation, Basis, CubicSpline, EfgError, Kernel, QuarticSpline, Support, WendlandC2, border_vertices,
+    coupled_nodes, surface_rows,
+};
 
 const FACES: [&str; 6] = ["x-min", "x-max", "y-min", "y-max", "z-min", "z-max"];
 

@@ -3,11 +3,11 @@
 mod common;
 
 use common::{jittered_box, members};
-use efg::{Approximation, Basis, CubicSpline, EfgError, Kernel, Support};
 use geometry::generate::box_mesh;
 use geometry::{CellKind, Mesh};
 use nalgebra::Matrix3;
 use shape::{Point3, Vector3};
+use tissuebench_efg::{Approximation, Basis, CubicSpline, EfgError, Kernel, Support};
 
 /// Both rules, with supports of about the same width.
 const RULES: [Support; 2] =

@@ -5,13 +5,13 @@ mod common;
 use std::ops::Range;
 
 use common::{field, on_mesh};
-use efg::{
-    Approximation, Basis, CubicSpline, Kernel, Smoothing, Support, gauss_rows, node_smoothed_rows,
-    smoothed_rows, surface_rows,
-};
 use geometry::generate::{ball_mesh, box_mesh, cylinder_mesh, kidney_mesh};
 use geometry::{CellKind, Mesh, cloud_from_mesh};
 use shape::{Point3, PointRows, Vector3, VolumeRows};
+use tissuebench_efg::{
+    Approximation, Basis, CubicSpline, Kernel, Smoothing, Support, gauss_rows, node_smoothed_rows,
+    smoothed_rows, surface_rows,
+};
 
 const KERNEL: Kernel = Kernel::CubicSpline(CubicSpline);
 const HALF: f64 = 0.02;

@@ -3,13 +3,13 @@
 mod common;
 
 use common::{jittered_box, on_mesh};
-use efg::{
-    Basis, CubicSpline, EfgError, Kernel, Smoothing, WendlandC2, WendlandC4, flux_rows, gauss_regions,
-    gauss_rows, grid_rows, smoothed_regions, smoothed_rows, smoothed_trace, surface_rows,
-};
 use geometry::generate::{kidney_mesh, raise_order};
 use geometry::{CellKind, Facet, Mesh};
 use shape::{Point3, Vector3, VolumeRows};
+use tissuebench_efg::{
+    Basis, CubicSpline, EfgError, Kernel, Smoothing, WendlandC2, WendlandC4, flux_rows, gauss_regions,
+    gauss_rows, grid_rows, smoothed_regions, smoothed_rows, smoothed_trace, surface_rows,
+};
 
 const VOLUME: f64 = 0.04 * 0.03 * 0.03;
 
@@ -27,7 +27,7 @@ fn integrated_gradients(volume: &VolumeRows, nodes: usize) -> Vec<Vector3> {
 /// Returns the largest violation of `sum w grad_I = sum_boundary w phi_I n` over nodes, relative to the
 /// largest side.
 fn constraint_violation(
-    mls: &efg::Approximation,
+    mls: &tissuebench_efg::Approximation,
     mesh: &Mesh,
     volume: &VolumeRows,
     face_points: usize,

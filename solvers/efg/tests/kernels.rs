@@ -1,8 +1,8 @@
 //! Properties common to all kernels.
 
 use catalogue::{Value, Values, find};
-use efg::{KERNELS, Kernel};
 use proptest::prelude::*;
+use tissuebench_efg::{KERNELS, Kernel};
 
 #[test]
 fn one_at_the_centre_zero_from_the_rim_on_and_names_go_round() {

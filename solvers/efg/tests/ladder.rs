@@ -3,11 +3,11 @@
 mod common;
 
 use common::{field, jittered_box, on_mesh};
-use efg::{Approximation, Basis, CubicSpline, EfgError, Kernel, QuarticSpline, Support};
 use geometry::{CellKind, cloud_from_mesh};
 use shape::{Point3, Vector3};
+use tissuebench_efg::{Approximation, Basis, CubicSpline, EfgError, Kernel, QuarticSpline, Support};
 
-fn linear_error(mls: &Approximation, points: &[Point3]) -> (f64, efg::MlsInfo) {
+fn linear_error(mls: &Approximation, points: &[Point3]) -> (f64, tissuebench_efg::MlsInfo) {
     let (rows, info) = mls.grad_rows(points).unwrap();
     let mut worst = 0.0f64;
     for (q, x) in points.iter().enumerate() {

@@ -3,10 +3,10 @@
 mod common;
 
 use common::{field, jittered_box};
-use efg::{Approximation, Basis, EfgError};
 use geometry::{CellKind, Cloud, Mesh, cloud_from_mesh};
 use proptest::prelude::*;
 use shape::{GradRows, Point3, Vector3};
+use tissuebench_efg::{Approximation, Basis, EfgError};
 
 const SPACING: f64 = 0.0075;
 const GAMMAS: [f64; 4] = [0.8, 1.2, 1.8, 4.0];

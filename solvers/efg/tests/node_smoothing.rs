@@ -4,12 +4,12 @@
 mod common;
 
 use common::{field, jittered_box, on_mesh};
-use efg::{
+use geometry::{CellKind, Mesh};
+use shape::{Point3, Vector3};
+use tissuebench_efg::{
     Basis, CubicSpline, EfgError, Kernel, Smoothing, WendlandC2, node_smoothed_regions, node_smoothed_rows,
     node_smoothed_trace, smoothed_rows, surface_rows,
 };
-use geometry::{CellKind, Mesh};
-use shape::{Point3, Vector3};
 
 const VOLUME: f64 = 0.04 * 0.03 * 0.03;
 

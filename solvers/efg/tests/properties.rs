@@ -3,10 +3,10 @@
 mod common;
 
 use common::{dilatation, field, jittered_box, members, on_mesh};
-use efg::{Approximation, Basis, CubicSpline, Kernel, WendlandC2};
 use geometry::{CellKind, Mesh, cloud_from_mesh};
 use proptest::prelude::*;
 use shape::{GradRows, Point3, Vector3};
+use tissuebench_efg::{Approximation, Basis, CubicSpline, Kernel, WendlandC2};
 
 /// Length scale of the box, m: gradients are of the order of its inverse.
 const SPACING: f64 = 0.0075;

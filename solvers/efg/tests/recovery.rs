@@ -3,9 +3,9 @@
 mod common;
 
 use common::{jittered_box, on_mesh};
-use efg::{Basis, CubicSpline, Kernel, gauss_rows, gradient_error};
 use geometry::CellKind;
 use shape::{Point3, Vector3};
+use tissuebench_efg::{Basis, CubicSpline, Kernel, gauss_rows, gradient_error};
 
 fn errors(field: impl Fn(&Point3) -> Vector3, basis: Basis, dilatation: f64) -> (Vec<f64>, Vec<Point3>) {
     let mesh = jittered_box(CellKind::Tet4, 5);

@@ -35,11 +35,11 @@ use common::{cloud, solid};
 use criterion::{
     BenchmarkGroup, Criterion, Throughput, criterion_group, criterion_main, measurement::WallTime,
 };
-use explicit::{ExplicitBody, InternalForce};
 use geometry::CellKind;
 use lanes::LanePath;
 use material::{Law, NeoHookean};
 use shape::Vector3;
+use tissuebench_explicit::{ExplicitBody, InternalForce};
 
 fn compare(group: &mut BenchmarkGroup<WallTime>, body: ExplicitBody, u: &[Vector3], items: usize) {
     let threads = |n| rayon::ThreadPoolBuilder::new().num_threads(n).build().unwrap();

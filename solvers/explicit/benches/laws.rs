@@ -32,11 +32,11 @@ use std::time::{Duration, Instant};
 
 use common::{cloud, solid};
 use criterion::{Criterion, Throughput};
-use explicit::{ExplicitBody, InternalForce, Kernel};
 use geometry::CellKind;
 use lanes::LanePath;
 use material::Law;
 use shape::{DilationGroups, Vector3, VolumeRows};
+use tissuebench_explicit::{ExplicitBody, InternalForce, Kernel};
 
 /// Number of turns of the final table; the shortest time counts.
 const TURNS: usize = 60;

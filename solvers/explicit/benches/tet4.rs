@@ -59,7 +59,6 @@ use std::hint::black_box;
 use std::time::Instant;
 
 use common::solid;
-use explicit::{ExplicitBody, InternalForce};
 use geometry::CellKind;
 use lanes::{LANES, LanePath, Lanes, madd, on_path};
 use material::lane::LaneStrain;
@@ -67,6 +66,7 @@ use material::lane::invariants::piola;
 use material::{Law, Material, NeoHookean};
 use rayon::ThreadPoolBuilder;
 use shape::Vector3;
+use tissuebench_explicit::{ExplicitBody, InternalForce};
 
 /// Number of turns, each of which takes one time of everything.
 const TURNS: usize = 60;

@@ -6,7 +6,7 @@
 //! and [`relax`] finds its static equilibrium.
 //!
 //! ```
-//! use explicit::{ExplicitBody, InternalForce};
+//! use tissuebench_explicit::{ExplicitBody, InternalForce};
 //! use geometry::{CellKind, generate::box_mesh};
 //! use lanes::LanePath;
 //! use material::{Law, NeoHookean};

@@ -4,9 +4,9 @@
 use std::hint::black_box;
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use fem::{VolumeRule, point_rows, volume_rows};
 use geometry::generate::box_mesh;
 use geometry::{CellKind, Mesh, Point3};
+use tissuebench_fem::{VolumeRule, point_rows, volume_rows};
 
 fn cube(kind: CellKind, n: usize) -> Mesh {
     box_mesh(kind, Point3::origin(), Point3::new(0.1, 0.1, 0.1), [n; 3], [1.0; 3], None).unwrap()

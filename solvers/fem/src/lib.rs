@@ -10,7 +10,7 @@
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
 //! let max = Point3::new(0.02, 0.01, 0.01);
 //! let mesh = box_mesh(CellKind::Tet10, Point3::origin(), max, [2, 1, 1], [1.0; 3], None)?;
-//! let volume = fem::volume_rows(&mesh, &fem::VolumeRule::STANDARD)?;
+//! let volume = tissuebench_fem::volume_rows(&mesh, &tissuebench_fem::VolumeRule::STANDARD)?;
 //! assert!((volume.weights().iter().sum::<f64>() - 2e-6).abs() < 1e-18);
 //! // The gradients of a linear field are reproduced at every point: u = (3 y, 0, 0).
 //! let u: Vec<Vector3> = mesh.points().iter().map(|x| Vector3::new(3.0 * x.y, 0.0, 0.0)).collect();

@@ -3,10 +3,12 @@
 mod common;
 
 use common::{affine, all, ball, jittered};
-use fem::{FemError, VolumeRule, grad_rows, nearest_grad_rows, nearest_point_rows, point_rows, volume_rows};
 use geometry::generate::box_mesh;
 use geometry::{CellKind, Matrix3, Mesh, Point3, Vector3};
 use proptest::prelude::*;
+use tissuebench_fem::{
+    FemError, VolumeRule, grad_rows, nearest_grad_rows, nearest_point_rows, point_rows, volume_rows,
+};
 
 fn positions(mesh: &Mesh) -> Vec<Vector3> {
     mesh.points().iter().map(|p| p.coords).collect()

@@ -3,13 +3,13 @@
 mod common;
 
 use common::{affine, all, ball, jittered, middles, mixed};
-use fem::{
-    FemError, SurfaceRule, VolumeRule, cell_of_point, element_dilation, flux_rows, regions, surface_rows,
-    volume_rows,
-};
 use geometry::quadrature::{TET_RULES, TRI_RULES};
 use geometry::{CellKind, FaceKind, Facet, Matrix3, Mesh, Point3, Vector3};
 use proptest::prelude::*;
+use tissuebench_fem::{
+    FemError, SurfaceRule, VolumeRule, cell_of_point, element_dilation, flux_rows, regions, surface_rows,
+    volume_rows,
+};
 
 const RULES: [VolumeRule; 2] = [VolumeRule::STANDARD, VolumeRule::FINE];
 

@@ -4,7 +4,7 @@
 use std::hint::black_box;
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use geometry::{Cloud, Kidney, Search, cloud};
+use tissuebench_geometry::{Cloud, Kidney, Search, cloud};
 
 fn search(c: &mut Criterion) {
     let Cloud { points, spacing } = cloud(&Kidney, 1331, 1, &[]).unwrap();

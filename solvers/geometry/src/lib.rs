@@ -4,7 +4,7 @@
 //! materials.
 //!
 //! ```
-//! use geometry::{CellKind, Kidney, Search, cloud, generate::kidney_mesh, quality};
+//! use tissuebench_geometry::{CellKind, Kidney, Search, cloud, generate::kidney_mesh, quality};
 //!
 //! let mesh = kidney_mesh(CellKind::Tet10, 4)?;
 //! let quality = quality::check(&mesh)?;

@@ -1,9 +1,9 @@
 //! Clouds: exact counts, bitwise reproducibility, even spacing, coverage of the surface; and the closed-form
 //! bodies that they fill.
 
-use geometry::generate::{box_mesh, raise_order};
-use geometry::shapes::{Ball, Cuboid, Cylinder, HalfKidney, Shape, SphereShell};
-use geometry::{
+use tissuebench_geometry::generate::{box_mesh, raise_order};
+use tissuebench_geometry::shapes::{Ball, Cuboid, Cylinder, HalfKidney, Shape, SphereShell};
+use tissuebench_geometry::{
     CellKind, Cloud, CloudError, Kidney, Point3, Refinement, Search, Sizes, Vector3, cloud, cloud_from_mesh,
     cloud_of_sizes,
 };
@@ -185,7 +185,7 @@ fn shapes_hold_together() {
 /// from a fine triangulation.
 #[test]
 fn kidney_surface_samples_are_uniform() {
-    let mesh = geometry::generate::kidney_mesh(CellKind::Tet4, 24).unwrap();
+    let mesh = tissuebench_geometry::generate::kidney_mesh(CellKind::Tet4, 24).unwrap();
     let parts: [fn(&Point3) -> bool; 4] =
         [|p| p.x < 0.0, |p| p.y.abs() < 0.015, |p| p.z.abs() < 0.005, |p| p.x > 0.012 && p.y.abs() > 0.015];
     let (mut area, mut share) = (0.0, [0.0; 4]);
@@ -270,8 +270,12 @@ fn sizes_spend_the_nodes_where_the_error_is() {
 #[test]
 fn half_kidney_samples_are_uniform() {
     let mut unit = numbers(11);
-    let mesh =
-        geometry::generate::half_kidney_mesh(CellKind::Tet4, 8, geometry::generate::Drawn::Strongly).unwrap();
+    let mesh = tissuebench_geometry::generate::half_kidney_mesh(
+        CellKind::Tet4,
+        8,
+        tissuebench_geometry::generate::Drawn::Strongly,
+    )
+    .unwrap();
     let area = |group| -> f64 {
         let facets = mesh.group(group).unwrap().iter();
         let corners = facets.map(|&f| mesh.facet_nodes(f).map(|n| mesh.points()[n as usize]).collect());

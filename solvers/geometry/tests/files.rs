@@ -5,8 +5,8 @@ mod common;
 use std::path::{Path, PathBuf};
 
 use common::assert_refused;
-use geometry::generate::{box_mesh, kidney_mesh};
-use geometry::{CellKind, Mesh, Point3, files, quality};
+use tissuebench_geometry::generate::{box_mesh, kidney_mesh};
+use tissuebench_geometry::{CellKind, Mesh, Point3, files, quality};
 
 /// Files of one cell kind written by `make.py` in the same folder.
 fn made(kind: CellKind) -> Vec<PathBuf> {

@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-use geometry::files::{read_bytes, read_surface_bytes};
-use geometry::{Mesh, quality};
+use tissuebench_geometry::files::{read_bytes, read_surface_bytes};
+use tissuebench_geometry::{Mesh, quality};
 
 fn mesh(text: impl AsRef<[u8]>, name: &str) -> Mesh {
     read_bytes(text.as_ref(), Path::new(name), 1.0).unwrap_or_else(|bad| panic!("{bad}")).0

@@ -5,7 +5,7 @@ mod common;
 use std::path::Path;
 
 use common::assert_refused;
-use geometry::{Mesh, files};
+use tissuebench_geometry::{Mesh, files};
 
 fn deck(text: &str) -> Result<Mesh, String> {
     let read = files::read_bytes(text.as_bytes(), Path::new("deck.inp"), 1.0);
@@ -89,7 +89,7 @@ fn the_mesh_of_an_instance_is_its_own() {
     let one = deck(&around(&independent("a", "5., 0., 0.\n"))).unwrap();
     assert_eq!(one.region_names(), ["Set-1"]);
     assert_eq!(groups(&one), [("Set-1", 1), ("Surf-1", 1), ("tip", 1)]);
-    assert_eq!(one.points()[3], geometry::Point3::new(5.0, 0.0, 1.0));
+    assert_eq!(one.points()[3], tissuebench_geometry::Point3::new(5.0, 0.0, 1.0));
     let two = deck(&around(&(independent("a", "") + &independent("b", "2., 0., 0.\n")))).unwrap();
     assert_eq!(two.region_names(), ["a.Set-1", "b.Set-1"]);
     assert_eq!((two.cell_count(), two.points()[7].x), (2, 2.0));

@@ -4,8 +4,8 @@
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
-use geometry::files::{self, Format, GmshVersion};
-use geometry::{CellKind, Mesh, quality};
+use tissuebench_geometry::files::{self, Format, GmshVersion};
+use tissuebench_geometry::{CellKind, Mesh, quality};
 
 /// Smallest number of files of either class.
 const LEAST: usize = 60;

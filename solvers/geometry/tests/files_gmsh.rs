@@ -2,10 +2,10 @@
 
 use std::path::Path;
 
-use geometry::files::{self, FileError, Problem};
-use geometry::generate::{box_mesh, kidney_mesh};
-use geometry::{CellKind, Mesh, Point3, quality};
 use proptest::prelude::*;
+use tissuebench_geometry::files::{self, FileError, Problem};
+use tissuebench_geometry::generate::{box_mesh, kidney_mesh};
+use tissuebench_geometry::{CellKind, Mesh, Point3, quality};
 
 const NAME: &str = "some/file.msh";
 

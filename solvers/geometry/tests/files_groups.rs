@@ -5,9 +5,9 @@ mod common;
 
 use std::path::Path;
 
-use geometry::files::{self, Format, GmshVersion, Kind, read_bytes};
-use geometry::generate::{raise_order, to_tets, turned};
-use geometry::{CellKind, Mesh, generate, quality};
+use tissuebench_geometry::files::{self, Format, GmshVersion, Kind, read_bytes};
+use tissuebench_geometry::generate::{raise_order, to_tets, turned};
+use tissuebench_geometry::{CellKind, Mesh, generate, quality};
 
 fn read(text: &str, name: &str) -> Result<Mesh, String> {
     read_bytes(text.as_bytes(), Path::new(name), 1.0).map(|(mesh, _)| mesh).map_err(|bad| bad.to_string())
@@ -116,8 +116,9 @@ fn arrays_that_are_not_taken_are_named() {
 }
 
 fn block(kind: CellKind) -> Mesh {
-    let corner = geometry::Point3::new(2.0, 1.0, 1.0);
-    generate::box_mesh(kind, geometry::Point3::origin(), corner, [2, 1, 1], [1.0; 3], None).unwrap()
+    let corner = tissuebench_geometry::Point3::new(2.0, 1.0, 1.0);
+    generate::box_mesh(kind, tissuebench_geometry::Point3::origin(), corner, [2, 1, 1], [1.0; 3], None)
+        .unwrap()
 }
 
 fn vtk(mesh: &Mesh, kind: u8, order: impl Fn(&[u32]) -> Vec<u32>) -> String {
@@ -170,7 +171,7 @@ fn middle_nodes_in_another_order_are_put_in_their_places() {
 fn a_mirrored_mesh_is_turned() {
     for kind in CellKind::ALL {
         let mesh = block(kind);
-        let mirrored = mesh.moved(|p| geometry::Point3::new(-p.x, p.y, p.z)).unwrap();
+        let mirrored = mesh.moved(|p| tissuebench_geometry::Point3::new(-p.x, p.y, p.z)).unwrap();
         let facets = mirrored
             .boundary()
             .into_iter()

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use geometry::files::read_bytes;
+use tissuebench_geometry::files::read_bytes;
 
 fn refusal(text: &str) -> String {
     let read = read_bytes(text.as_bytes(), Path::new("small"), 1e-3);

@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
-use geometry::files::{self, Format, GmshVersion};
-use geometry::generate::{box_mesh, kidney_mesh};
-use geometry::{CellKind, Mesh, Point3};
+use tissuebench_geometry::files::{self, Format, GmshVersion};
+use tissuebench_geometry::generate::{box_mesh, kidney_mesh};
+use tissuebench_geometry::{CellKind, Mesh, Point3};
 
 const FOUR: Format = Format::Gmsh(GmshVersion::FourOne);
 
@@ -86,8 +86,9 @@ fn entities_have_their_boxes_and_tags() {
         None,
     );
     let mesh = mesh.unwrap();
-    let low =
-        |facet: &&geometry::Facet| mesh.facet_nodes(**facet).all(|n| mesh.points()[n as usize].x == 0.0);
+    let low = |facet: &&tissuebench_geometry::Facet| {
+        mesh.facet_nodes(**facet).all(|n| mesh.points()[n as usize].x == 0.0)
+    };
     let held: Vec<_> = mesh.boundary().iter().filter(low).copied().collect();
     assert_eq!(held.len(), 2);
     let names: Vec<String> = mesh.group_names().map(String::from).collect();

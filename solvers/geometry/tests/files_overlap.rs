@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-use geometry::generate::{box_mesh, kidney_mesh};
-use geometry::{CellKind, Mesh, Point3, files, quality};
+use tissuebench_geometry::generate::{box_mesh, kidney_mesh};
+use tissuebench_geometry::{CellKind, Mesh, Point3, files, quality};
 
 fn deck(nodes: &str, elements: &str) -> Result<Mesh, String> {
     let text = format!("*NODE\n{nodes}*ELEMENT, TYPE=C3D4\n{elements}");

@@ -6,7 +6,7 @@ mod common;
 use std::path::Path;
 
 use common::assert_refused;
-use geometry::{Mesh, files};
+use tissuebench_geometry::{Mesh, files};
 
 fn read(name: &str, text: &str) -> Result<Mesh, String> {
     files::read_bytes(text.as_bytes(), Path::new(name), 1.0)

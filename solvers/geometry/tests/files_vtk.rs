@@ -5,7 +5,7 @@ mod common;
 use std::path::Path;
 
 use common::assert_refused;
-use geometry::{Mesh, files};
+use tissuebench_geometry::{Mesh, files};
 
 fn read(bytes: &[u8]) -> Result<Mesh, String> {
     files::read_bytes(bytes, Path::new("m"), 1.0).map(|(mesh, _)| mesh).map_err(|bad| bad.to_string())

@@ -3,8 +3,8 @@
 
 use std::path::{Path, PathBuf};
 
-use geometry::generate::{box_mesh, converted, is_convertible, raise_order};
-use geometry::{CellKind, Mesh, Point3, files, quality};
+use tissuebench_geometry::generate::{box_mesh, converted, is_convertible, raise_order};
+use tissuebench_geometry::{CellKind, Mesh, Point3, files, quality};
 
 /// A file written by `make.py`.
 fn made(name: &str) -> PathBuf {

@@ -3,12 +3,12 @@
 
 use std::f64::consts::PI;
 
-use geometry::generate::{
+use tissuebench_geometry::generate::{
     Drawn, GenerateError, Jitter, ShellExtent, ball_mesh, box_mesh, cylinder_mesh, half_kidney_mesh,
     kidney_mesh, raise_order, sphere_shell_mesh, to_tets,
 };
-use geometry::shapes::{Kidney, Shape};
-use geometry::{CellKind, Facet, Mesh, Point3, Vector3, quality};
+use tissuebench_geometry::shapes::{Kidney, Shape};
+use tissuebench_geometry::{CellKind, Facet, Mesh, Point3, Vector3, quality};
 
 fn unit_box(kind: CellKind, cells: [usize; 3], jitter: Option<Jitter>) -> Mesh {
     let (min, max) = (Point3::new(-0.1, 0.2, 0.3), Point3::new(0.9, 0.7, 0.6));

@@ -1,9 +1,11 @@
 //! Point location: barycentric coordinates reproduce a point inside the mesh, and the closest point for one
 //! outside.
 
-use geometry::generate::{Jitter, box_mesh, kidney_mesh};
-use geometry::shapes::{Kidney, Shape};
-use geometry::{CellKind, LocateError, Location, Mesh, Point3, Vector3, closest_on_triangle, locate};
+use tissuebench_geometry::generate::{Jitter, box_mesh, kidney_mesh};
+use tissuebench_geometry::shapes::{Kidney, Shape};
+use tissuebench_geometry::{
+    CellKind, LocateError, Location, Mesh, Point3, Vector3, closest_on_triangle, locate,
+};
 
 fn unit_cube(kind: CellKind) -> Mesh {
     let jitter = Some(Jitter { fraction: 0.2, seed: 2 });

@@ -1,8 +1,8 @@
 //! Files of positions: accepted files, and errors with their line and column.
 
-use geometry::{PointFileError, PointProblem, read_points};
+use tissuebench_geometry::{PointFileError, PointProblem, read_points};
 
-fn read(text: &str) -> Result<geometry::PointFile, PointFileError> {
+fn read(text: &str) -> Result<tissuebench_geometry::PointFile, PointFileError> {
     let file = std::env::temp_dir().join(format!("points-{}-{}.csv", std::process::id(), text.len()));
     std::fs::write(&file, text).unwrap();
     let read = read_points(&file, 1e-3);
@@ -14,8 +14,8 @@ fn read(text: &str) -> Result<geometry::PointFile, PointFileError> {
 fn lines_names_and_comments() {
     let plain = read("1, 2, 3\r\n\n# a comment\n-4,5e-1 ,6").unwrap();
     assert_eq!(plain.lines, [1, 4]);
-    assert_eq!(plain.points[0], geometry::Point3::new(1e-3, 2e-3, 3e-3));
-    assert_eq!(plain.points[1], geometry::Point3::new(-4e-3, 0.5e-3, 6e-3));
+    assert_eq!(plain.points[0], tissuebench_geometry::Point3::new(1e-3, 2e-3, 3e-3));
+    assert_eq!(plain.points[1], tissuebench_geometry::Point3::new(-4e-3, 0.5e-3, 6e-3));
     let named = read("\u{feff}\"id\",Z,\"x\",y\n7,3,1,2\n").unwrap();
     assert_eq!((named.points[0], named.lines), (plain.points[0], vec![2]));
 }

@@ -1,6 +1,6 @@
 //! Every quadrature rule: exact moments, symmetry and the signs of its weights.
 
-use geometry::quadrature::{Rule, TET_RULES, TRI_RULES, gauss_legendre, hex, quad, tet, tri};
+use tissuebench_geometry::quadrature::{Rule, TET_RULES, TRI_RULES, gauss_legendre, hex, quad, tet, tri};
 
 fn factorial(n: usize) -> f64 {
     (1..=n).map(|k| k as f64).product()

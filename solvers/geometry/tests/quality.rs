@@ -1,7 +1,7 @@
 //! Quality measures of shapes with known values, and the index of the worst element.
 
-use geometry::generate::{box_mesh, raise_order};
-use geometry::{CellKind, Mesh, Point3, quality};
+use tissuebench_geometry::generate::{box_mesh, raise_order};
+use tissuebench_geometry::{CellKind, Mesh, Point3, quality};
 
 fn regular_tetrahedron() -> Vec<Point3> {
     [[1., 1., 1.], [1., -1., -1.], [-1., 1., -1.], [-1., -1., 1.]].into_iter().map(Point3::from).collect()

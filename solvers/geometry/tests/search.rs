@@ -1,7 +1,7 @@
 //! Search compared with brute force, on points with many equal distances.
 
-use geometry::{Neighbour, Point3, Search, SearchError};
 use proptest::prelude::*;
+use tissuebench_geometry::{Neighbour, Point3, Search, SearchError};
 
 fn brute(points: &[Point3], at: &Point3) -> Vec<Neighbour> {
     let mut all: Vec<(f64, u32)> = points

@@ -3,10 +3,10 @@
 mod common;
 
 use common::{bumpy, jagged, joined, moved, sphere_like, surface, torus};
-use geometry::stuffing::{
+use tissuebench_geometry::stuffing::{
     Stuffing, StuffingError, expected_nodes, fit, stuff, stuff_with_nodes, stuff_with_quadratic_nodes,
 };
-use geometry::{Facet, Mesh, Surface, quality};
+use tissuebench_geometry::{Facet, Mesh, Surface, quality};
 
 /// Bounds proven for the angles of the lattice, in degrees.
 const ANGLES: [f64; 2] = [10.7, 164.8];
@@ -116,7 +116,7 @@ fn more_nodes_wanted_are_never_fewer_made() {
             assert!(volume > 0.75 * surface.volume(), "{name}: {volume} of {}", surface.volume());
             last = found;
             let stuffed = stuff_with_quadratic_nodes(surface, nodes).unwrap();
-            let found = stuffed.mesh.points().len() + geometry::edges(&stuffed.mesh).len();
+            let found = stuffed.mesh.points().len() + tissuebench_geometry::edges(&stuffed.mesh).len();
             assert!(found >= quadratic, "{name}: {found} for {nodes} quadratic, {quadratic} for fewer");
             quadratic = found;
         }
@@ -127,7 +127,7 @@ fn more_nodes_wanted_are_never_fewer_made() {
 fn the_length_of_edges_is_the_spacing() {
     let mesh = filled(&surface(sphere_like(5, |n| n)), 0.08, 0);
     let length = |(a, b): &(u32, u32)| (mesh.points()[*a as usize] - mesh.points()[*b as usize]).norm();
-    let edges = geometry::edges(&mesh);
+    let edges = tissuebench_geometry::edges(&mesh);
     let mean = edges.iter().map(length).sum::<f64>() / edges.len() as f64;
     assert!((mean / 0.08 - 1.0).abs() < 0.05, "{mean}");
 }

@@ -5,8 +5,8 @@ mod common;
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use geometry::stuffing::{Stuffing, stuff};
-use geometry::{Mesh, Surface, files};
+use tissuebench_geometry::stuffing::{Stuffing, stuff};
+use tissuebench_geometry::{Mesh, Surface, files};
 
 /// Corners of the unit cube, and its named faces, counter-clockwise from outside.
 const CORNERS: [[u8; 3]; 8] =
@@ -72,7 +72,7 @@ fn filled(surface: &Surface) -> Mesh {
 
 /// Area of a named group of the boundary.
 fn area(mesh: &Mesh, name: &str) -> f64 {
-    let of = |&facet: &geometry::Facet| {
+    let of = |&facet: &tissuebench_geometry::Facet| {
         let corners: Vec<_> = mesh.facet_nodes(facet).map(|node| mesh.points()[node as usize]).collect();
         0.5 * (corners[1] - corners[0]).cross(&(corners[2] - corners[0])).norm()
     };

@@ -5,8 +5,8 @@ mod common;
 use std::fmt::Write;
 use std::path::Path;
 
-use geometry::{Surface, files};
 use proptest::prelude::*;
+use tissuebench_geometry::{Surface, files};
 
 fn read(name: &str, text: &str) -> Result<Surface, String> {
     files::read_surface_bytes(text.as_bytes(), Path::new(name), 1.0).map_err(|bad| bad.to_string())

@@ -5,10 +5,10 @@ mod common;
 use std::path::Path;
 
 use common::{assert_refused, bumpy, joined, moved, sphere_like, surface, torus};
-use geometry::shapes::Shape;
-use geometry::surface::{Soup, SurfaceProblem};
-use geometry::{Point3, Surface, cloud, files};
 use proptest::prelude::*;
+use tissuebench_geometry::shapes::Shape;
+use tissuebench_geometry::surface::{Soup, SurfaceProblem};
+use tissuebench_geometry::{Point3, Surface, cloud, files};
 
 /// A tetrahedron with a volume of 1/6.
 const CORNERS: [[f64; 3]; 4] = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];

@@ -24,9 +24,9 @@
 use criterion::{Bencher, Criterion, criterion_group, criterion_main};
 use geometry::generate::kidney_mesh;
 use geometry::{CellKind, Kidney, cloud};
-use interp::{Barycentric, Scheme};
 use shape::{RowBlocks, Vector3};
 use std::hint::black_box;
+use tissuebench_interp::{Barycentric, Scheme};
 
 /// Measures on a thread of the pool, as in a run.
 fn on_pool<T>(bencher: &mut Bencher, make: impl Fn() -> T + Send + Sync) {

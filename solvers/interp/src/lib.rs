@@ -7,19 +7,19 @@
 //! gradients ([`Scheme::grad_rows`]).
 //!
 //! ```
-//! use interp::{InverseDistance, Radial, Scheme};
+//! use tissuebench_interp::{InverseDistance, Radial, Scheme};
 //! use shape::{Point3, Vector3};
 //! let nodes: Vec<Point3> =
 //!     (0..27).map(|i| Point3::new((i % 3) as f64, (i / 3 % 3) as f64, (i / 9) as f64) * 1e-3).collect();
 //! let target = [Point3::new(0.3e-3, 1.6e-3, 0.5e-3)];
 //! let field: Vec<Vector3> = nodes.iter().map(|x| 0.1 * x.coords).collect();
-//! let error = |scheme: Scheme| -> Result<f64, interp::InterpError> {
+//! let error = |scheme: Scheme| -> Result<f64, tissuebench_interp::InterpError> {
 //!     let (rows, _) = scheme.rows(&nodes, None, &target)?;
 //!     Ok((rows.rows().apply(&field)[0] - 0.1 * target[0].coords).norm())
 //! };
 //! assert!(error(Radial::Cubic.into())? < 1e-15); // exact for linear fields
 //! assert!(error(InverseDistance { neighbours: 4, power: 2.0 }.into())? > 1e-6); // exact for constants only
-//! # Ok::<(), interp::InterpError>(())
+//! # Ok::<(), tissuebench_interp::InterpError>(())
 //! ```
 
 mod circumcentre;

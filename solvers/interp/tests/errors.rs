@@ -3,12 +3,12 @@
 use efg::{EfgError, Support};
 use geometry::generate::box_mesh;
 use geometry::{CellKind, CloudError, LocateError, Mesh};
-use interp::{
+use nalgebra::Vector3;
+use shape::Point3;
+use tissuebench_interp::{
     Barycentric, InterpError, InverseDistance, MlsLinear, MlsModified, MlsQuadratic, NaturalNeighbour,
     Radial, Scheme, Shepard, shepard,
 };
-use nalgebra::Vector3;
-use shape::Point3;
 
 fn mesh(kind: CellKind) -> Mesh {
     box_mesh(kind, Point3::origin(), Point3::new(0.02, 0.02, 0.02), [4, 4, 4], [1.0; 3], None).unwrap()

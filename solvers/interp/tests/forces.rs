@@ -2,9 +2,9 @@
 
 use geometry::generate::{Jitter, box_mesh};
 use geometry::{CellKind, Mesh};
-use interp::{InverseDistance, NaturalNeighbour, Radial, Scheme};
 use nalgebra::Vector3;
 use shape::{Point3, Rows};
+use tissuebench_interp::{InverseDistance, NaturalNeighbour, Radial, Scheme};
 
 fn mesh() -> Mesh {
     let jitter = Some(Jitter { fraction: 0.2, seed: 7 });

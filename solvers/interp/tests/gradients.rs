@@ -2,9 +2,9 @@
 
 use geometry::generate::{Jitter, box_mesh};
 use geometry::{CellKind, Mesh};
-use interp::{InterpError, Radial, Scheme};
 use nalgebra::{Matrix3, Vector3};
 use shape::{GradRows, Point3};
+use tissuebench_interp::{InterpError, Radial, Scheme};
 
 fn mesh() -> Mesh {
     let jitter = Some(Jitter { fraction: 0.2, seed: 7 });

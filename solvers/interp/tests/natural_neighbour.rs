@@ -1,9 +1,9 @@
 //! Natural neighbour interpolation, compared with volumes counted on a grid, and in degenerate geometries.
 
 use geometry::{Kidney, cloud};
-use interp::{InterpError, TransferInfo, natural_neighbour};
 use nalgebra::{Rotation3, Vector3};
 use shape::{Point3, PointRows};
+use tissuebench_interp::{InterpError, TransferInfo, natural_neighbour};
 
 fn lattice(n: usize) -> Vec<Point3> {
     let at = |i: usize| Point3::new((i % n) as f64, (i / n % n) as f64, (i / n / n) as f64) * 1e-3;

@@ -2,13 +2,13 @@
 
 use geometry::generate::{Jitter, box_mesh};
 use geometry::{CellKind, Mesh};
-use interp::{
-    Barycentric, InverseDistance, MlsLinear, MlsModified, MlsQuadratic, Radial, Scheme, Shepard, TransferInfo,
-};
 use nalgebra::{Matrix3, Vector3};
 use proptest::prelude::*;
 use proptest::test_runner::FileFailurePersistence;
 use shape::{Point3, PointRows};
+use tissuebench_interp::{
+    Barycentric, InverseDistance, MlsLinear, MlsModified, MlsQuadratic, Radial, Scheme, Shepard, TransferInfo,
+};
 
 /// A box of 40 x 30 x 20 mm with 6 x 5 x 4 cells of 6 tetrahedra and jittered inner nodes: 210 nodes.
 fn mesh() -> Mesh {

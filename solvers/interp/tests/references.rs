@@ -1,9 +1,9 @@
 //! Reference numbers: computed by hand, from the textbook's own system, and known levels of error.
 
 use geometry::{Cloud, Kidney, cloud};
-use interp::{InverseDistance, MlsLinear, Nearest, Radial, Scheme, Shepard};
 use nalgebra::{DMatrix, Vector3};
 use shape::Point3;
+use tissuebench_interp::{InverseDistance, MlsLinear, Nearest, Radial, Scheme, Shepard};
 
 #[test]
 fn inverse_distance_by_hand() {

@@ -5,7 +5,7 @@
 //! [`LanePath`] names.
 //!
 //! ```
-//! use lanes::{LANES, LanePath, madd, on_path};
+//! use tissuebench_lanes::{LANES, LanePath, madd, on_path};
 //!
 //! on_path! {
 //!     /// `y += a x`.

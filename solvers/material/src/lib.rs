@@ -4,9 +4,9 @@
 //! all digits (here `E = (H + H^T + H^T H) / 2`, `J - 1 = tr H + II(H) + det H`, `ln J = log1p(J - 1)`).
 //!
 //! ```
-//! use material::{Law, LinearElastic, Material, NeoHookean};
+//! use tissuebench_material::{Law, LinearElastic, Material, NeoHookean};
 //! use shape::Matrix3;
-//! # fn main() -> Result<(), material::MaterialError> {
+//! # fn main() -> Result<(), tissuebench_material::MaterialError> {
 //! // Young's modulus 20 kPa, Poisson's ratio 0.45.
 //! let soft = Law::NeoHookean(NeoHookean::new(20e3, 0.45)?);
 //! let linear = LinearElastic::new(20e3, 0.45)?;

@@ -17,8 +17,8 @@ struct Lanes([f64; LANES]);
 /// table with ascending rows the bits are therefore those of [`Rows::apply`] on any machine.
 ///
 /// ```
-/// use shape::{RowBlocks, Rows, Unity, Vector3};
-/// # fn main() -> Result<(), shape::ShapeError> {
+/// use tissuebench_shape::{RowBlocks, Rows, Unity, Vector3};
+/// # fn main() -> Result<(), tissuebench_shape::ShapeError> {
 /// let rows = Rows::new(3, vec![0, 2, 4], vec![0, 1, 1, 2], vec![0.5, 0.5, 0.25, 0.75], Unity::Within(0.0))?;
 /// let (blocks, u) = (RowBlocks::new(&rows), [Vector3::x(), Vector3::y(), Vector3::z()]);
 /// let mut field = [Vector3::zeros(); 2];

@@ -8,7 +8,7 @@
 //! SI units.
 //!
 //! ```
-//! use shape::{PointRows, Point3, RowBlocks, Rows, Unity, Vector3};
+//! use tissuebench_shape::{PointRows, Point3, RowBlocks, Rows, Unity, Vector3};
 //! // Two points on the line between two nodes, at a quarter and at the end of it.
 //! let rows = Rows::new(2, vec![0, 2, 3], vec![0, 1, 1], vec![0.75, 0.25, 1.0], Unity::Within(1e-12))?;
 //! let points = vec![Point3::new(0.25, 0.0, 0.0), Point3::new(1.0, 0.0, 0.0)];
@@ -20,7 +20,7 @@
 //! let mut out = vec![Vector3::zeros(); 2];
 //! RowBlocks::new(table.rows()).apply_into(&u, &mut out);
 //! assert_eq!(out, at_points);
-//! # Ok::<(), shape::ShapeError>(())
+//! # Ok::<(), tissuebench_shape::ShapeError>(())
 //! ```
 
 mod blocks;

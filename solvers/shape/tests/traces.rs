@@ -1,6 +1,6 @@
 //! Coefficients of traces sum to one.
 
-use shape::{ShapeError, TraceRows};
+use tissuebench_shape::{ShapeError, TraceRows};
 
 #[test]
 fn coefficients_sum_to_one_but_for_rounding() {

@@ -10,7 +10,7 @@ use geometry::{CellKind, Cloud, Kidney};
 use material::LinearElastic;
 use shape::DilationGroups;
 use shape::FixedDof;
-use statics::{Body, LinearProblem, assemble};
+use tissuebench_statics::{Body, LinearProblem, assemble};
 
 fn benches(c: &mut Criterion) {
     let mut group = c.benchmark_group("assemble");

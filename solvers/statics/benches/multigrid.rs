@@ -4,7 +4,7 @@ mod common;
 
 use common::Pressed;
 use criterion::{BatchSize, Criterion, criterion_group, criterion_main};
-use statics::assemble;
+use tissuebench_statics::assemble;
 
 fn benches(c: &mut Criterion) {
     let mut group = c.benchmark_group("multigrid");

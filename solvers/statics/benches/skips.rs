@@ -15,7 +15,7 @@ use geometry::{CellKind, Kidney, cloud};
 use interp::{MlsLinear, Scheme};
 use material::LinearElastic;
 use shape::Vector3;
-use statics::assemble;
+use tissuebench_statics::assemble;
 
 /// Volumetric projection up to the assembled stiffness, on an element that does not lock. One dilation per
 /// tet10 couples no further nodes, so the factorisation is the same.

@@ -28,7 +28,7 @@
 //! use geometry::{CellKind, generate::box_mesh};
 //! use material::LinearElastic;
 //! use shape::{FixedDof, Point3};
-//! use statics::{Body, LinearProblem, assemble};
+//! use tissuebench_statics::{Body, LinearProblem, assemble};
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
 //! // A cube of 10 mm between frictionless walls, its top pressed down by 0.1 mm.
 //! let max = Point3::new(0.01, 0.01, 0.01);
@@ -47,7 +47,7 @@
 //! let problem = LinearProblem { body, loads: &[], fixed: &fixed, constraints: &[], weak: &[] };
 //! let solution = assemble(&problem)?.factor()?.solve(1.0)?;
 //! // Uniaxial stress: W = E eps^2 V / 2.
-//! let energy = statics::strain_energy(&body, &solution.u)?;
+//! let energy = tissuebench_statics::strain_energy(&body, &solution.u)?;
 //! assert!((energy - 0.5 * 20e3 * 1e-4 * 1e-6).abs() < 1e-12 * energy);
 //! # Ok(())
 //! # }

@@ -1,10 +1,10 @@
 //! Clouds and backgrounds shared by the tests.
 #![allow(dead_code)] // each test file uses its own part
 
-use efg::{Approximation, Basis, Kernel, Support};
 use geometry::generate::{Jitter, box_mesh};
 use geometry::{CellKind, Cloud, Mesh, cloud_from_mesh};
 use shape::{Point3, Vector3};
+use tissuebench_efg::{Approximation, Basis, Kernel, Support};
 
 /// A box of 40 x 30 x 30 mm with `n` cells along the short sides; the inner nodes of tet4 are jittered by a
 /// fifth of the spacing.

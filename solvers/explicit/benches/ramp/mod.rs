@@ -4,14 +4,14 @@
 use std::path::Path;
 
 use contact::{ContactLaw, ContactSurface, Drive, RoundedBox, Tool, ToolShape};
-use explicit::{
-    Dynamics, DynamicsParams, ExplicitBody, InternalForce, LanczosParams, Lumping, MovingTool, Prescribed,
-    Springs, Tools, critical_step_touching, lumped_mass,
-};
 use fem::{SurfaceRule, VolumeRule};
 use lanes::LanePath;
 use material::Law;
 use shape::{Matrix3, Point3, SurfaceRows, Vector3, VolumeRows};
+use tissuebench_explicit::{
+    Dynamics, DynamicsParams, ExplicitBody, InternalForce, LanczosParams, Lumping, MovingTool, Prescribed,
+    Springs, Tools, critical_step_touching, lumped_mass,
+};
 
 const LANCZOS: LanczosParams = LanczosParams { steps: 15, safety: 0.95 };
 const PENALTY: f64 = 5e8;

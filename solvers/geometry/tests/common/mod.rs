@@ -1,8 +1,8 @@
 //! Closed-form closed surfaces, and a check of malformed files with one change each, for tests.
 #![allow(dead_code)] // each test takes some
 
-use geometry::surface::Soup;
-use geometry::{Point3, Surface, Vector3};
+use tissuebench_geometry::surface::Soup;
+use tissuebench_geometry::{Point3, Surface, Vector3};
 
 /// A sphere of 8 * 4^levels triangles, with `map` applied to its unit vectors.
 pub fn sphere_like(levels: u32, map: impl Fn(Vector3) -> Vector3) -> Soup {

@@ -7,7 +7,7 @@ use geometry::{CellKind, Mesh};
 use material::LinearElastic;
 use shape::{DilationGroups, SurfaceRows, VolumeRows};
 use shape::{FixedDof, Point3};
-use statics::{Body, LinearProblem, Load};
+use tissuebench_statics::{Body, LinearProblem, Load};
 
 pub struct Pressed {
     pub mesh: Mesh,
