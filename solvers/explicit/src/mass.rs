@@ -1,5 +1,6 @@
 //! Lumped mass.
 
+use geometry::CellKind;
 use shape::VolumeRows;
 
 use super::ExplicitError;
@@ -16,12 +17,16 @@ pub enum Lumping {
 }
 
 impl Lumping {
-    /// Chooses the method of lumping for a table: [`Lumping::DiagonalScaling`] for quadratic elements (all
-    /// rows with 10 or all with 20 nodes), [`Lumping::RowSum`] for all others.
+    /// Chooses the method of lumping for a table: [`Lumping::DiagonalScaling`] for quadratic elements (every
+    /// row has as many nodes as a quadratic cell), [`Lumping::RowSum`] for all others.
     pub fn for_table(volume: &VolumeRows) -> Lumping {
-        match volume.rows().uniform_len() {
-            Some(10 | 20) => Lumping::DiagonalScaling,
-            _ => Lumping::RowSum,
+        let rows = volume.rows();
+        let is_quadratic = |nodes: usize| {
+            CellKind::ALL.into_iter().any(|kind| kind.order() == 2 && kind.node_count() == nodes)
+        };
+        match (0..rows.len()).all(|q| is_quadratic(rows.row(q).0.len())) {
+            true => Lumping::DiagonalScaling,
+            false => Lumping::RowSum,
         }
     }
 }
