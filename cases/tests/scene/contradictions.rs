@@ -110,6 +110,13 @@ fn contradictions_of_a_static_scene_name_their_key() {
             "reference",
             "is of a displacement, and kind = \"prepare\" solves for none",
         ],
+    ];
+    refused(&grasped(), &edits);
+}
+
+#[test]
+fn settings_that_a_static_procedure_cannot_have_are_refused() {
+    let edits = [
         ["steps = 10", "steps = 10\nlimit_within = 2", "procedure.limit_within", "is no part of the load"],
         ["steps = 10", "steps = 10\niterations = 0", "procedure.iterations", "is zero"],
         ["steps = 10", "steps = 10\niterations = 4000000000", "procedure.iterations", "are too many"],
