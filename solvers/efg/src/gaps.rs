@@ -116,7 +116,7 @@ impl Gaps {
             ways.walk(&self.graph, &x, &self.corners[self.homes[node as usize] as usize], length, FARTHEST);
             let detour = |vertex: u32| {
                 let straight = length(self.graph.place(vertex), &x);
-                STEEP * (ways.to(vertex).min(FARTHEST) - STRAIGHT * straight).max(0.0)
+                excess(ways.to(vertex).min(FARTHEST), straight)
             };
             let touched =
                 balls.iter().enumerate().filter(|(_, (at, radius))| (at - x).norm() < reach + radius);
@@ -211,10 +211,9 @@ impl Gaps {
         rows.shorten_last(n);
     }
 
-    /// Returns the detour (m) from the point `x` in `cell` to each of `nodes`: the length of the shortest
-    /// path through the body minus the straight distance. The detour counts as zero if the path is at most
-    /// 1.5 times as long as the straight distance. Paths are searched up to 1.5 times the length `farthest`
-    /// (m). The detour is infinite if no such path reaches a corner of the node's cell.
+    /// Returns the detour (m) from the point `x` in `cell` to each of `nodes`. Paths are searched up to 1.5
+    /// times the length `farthest` (m). The detour is infinite if no such path reaches a corner of the node's
+    /// cell.
     pub fn detours(&self, x: &Point3, cell: u32, nodes: &[Point3], farthest: f64) -> Vec<f64> {
         let mut ways = Ways::new(self.graph.vertices());
         let length = |a: &Point3, b: &Point3| (a - b).norm();
@@ -227,7 +226,7 @@ impl Gaps {
             } else {
                 self.corners[home as usize].iter().map(over).fold(f64::INFINITY, f64::min)
             };
-            if way <= STRAIGHT * straight { 0.0 } else { way - straight }
+            excess(way, straight)
         };
         nodes.iter().zip(&self.homes).map(detour).collect()
     }
@@ -241,6 +240,11 @@ impl Face {
             && apart.dot(&self.normal) > -slack
             && apart.dot(&other.normal) < slack
     }
+}
+
+/// Returns the detour of a path with the straight distance between its ends.
+fn excess(way: f64, straight: f64) -> f64 {
+    STEEP * (way - STRAIGHT * straight).max(0.0)
 }
 
 /// Returns the boundary faces that face another face closer than `reach` (m).

@@ -138,8 +138,7 @@ impl Approximation {
         left[0].abs().max(left[1..].iter().fold(0.0, |most, l| l.abs().max(most)) / scale)
     }
 
-    /// Returns the detours from a point to all nodes, m: the length of the path through the body minus the
-    /// straight distance. The list is empty for a body without gaps.
+    /// Returns the detours from a point to all nodes, m. The list is empty for a body without gaps.
     fn detours(&self, x: &Point3, cell: Option<u32>) -> Vec<f64> {
         let (Some(gaps), Some(cell)) = (&self.gaps, cell) else { return Vec::new() };
         gaps.detours(x, cell, &self.nodes[..self.balls.len()], MOST_ENLARGEMENT * self.widest())
