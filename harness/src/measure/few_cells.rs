@@ -22,10 +22,13 @@ const PLACES: usize = 64;
 /// the face a symmetry plane.
 const ALONG: f64 = 0.999;
 
+/// Relative rounding of a position on the surface.
+const ROUNDING: f64 = 1e-9;
+
 /// Triangle of the body's surface.
 struct Triangle {
     corners: [Point3; 3],
-    /// Unit normal.
+    /// Outward unit normal.
     normal: Vector3,
     /// Whether the triangle lies on a symmetry plane.
     mirror: bool,
@@ -101,11 +104,10 @@ fn cells_across(run: &Solved, surface: &[Triangle], q: usize) -> f64 {
     };
     let across =
         |triangle: &Triangle| length * along.dot(&triangle.normal).abs() / size(run, nodes, &triangle.normal);
-    [ahead.1, behind.1]
-        .into_iter()
-        .filter(|triangle| !triangle.mirror)
-        .map(across)
-        .fold(f64::INFINITY, f64::min)
+    // A triangle that contains the point itself may be almost parallel to the line.
+    let sides =
+        [ahead, behind].into_iter().filter(|(distance, triangle)| !triangle.mirror && *distance > 0.0);
+    sides.map(|(_, triangle)| across(triangle)).fold(f64::INFINITY, f64::min)
 }
 
 /// Extent of the cell of these nodes along a direction, m; half of it for a quadratic cell, and the node
@@ -119,15 +121,18 @@ fn size(run: &Solved, nodes: &[u32], along: &Vector3) -> f64 {
     if run.method.order == 2 { extent / 2.0 } else { extent }
 }
 
-/// Nearest triangle from a point inside along a direction, with its distance, m.
+/// Nearest triangle through which a line from a point leaves the body, with its distance, m. The point may
+/// lie on the surface itself: a triangle that the line enters there is not counted.
 fn hit<'a>(surface: &'a [Triangle], x: &Point3, along: Vector3) -> Option<(f64, &'a Triangle)> {
-    let met = surface.iter().filter_map(|triangle| Some((triangle.distance(x, &along)?, triangle)));
+    let leaves = surface.iter().filter(|triangle| triangle.normal.dot(&along) > 0.0);
+    let met = leaves.filter_map(|triangle| Some((triangle.distance(x, &along)?, triangle)));
     met.min_by(|a, b| a.0.total_cmp(&b.0))
 }
 
 impl Triangle {
     /// Distance along a direction (Moeller & Trumbore 1997); `None` if the line misses the triangle or the
-    /// triangle lies behind.
+    /// triangle lies behind. The distance of a point on the triangle is 0; rounding may move it off the
+    /// triangle or across an edge.
     fn distance(&self, x: &Point3, along: &Vector3) -> Option<f64> {
         let [a, b, c] = &self.corners;
         let (e, f, s) = (b - a, c - a, x - a);
@@ -135,7 +140,9 @@ impl Triangle {
         let det = e.dot(&p);
         let (v, w, t) = (s.dot(&p) / det, along.dot(&r) / det, f.dot(&r) / det);
         // A triangle parallel to the direction gives NaN and is missed.
-        (v >= 0.0 && w >= 0.0 && v + w <= 1.0 && t >= 0.0).then_some(t)
+        let inside = v >= -ROUNDING && w >= -ROUNDING && v + w <= 1.0 + ROUNDING;
+        let on = ROUNDING * e.norm();
+        (inside && t >= -on).then_some(if t > on { t } else { 0.0 })
     }
 }
 
