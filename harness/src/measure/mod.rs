@@ -4,6 +4,7 @@ mod dead_pressure;
 mod displacement;
 mod exact_fit;
 mod few_cells;
+mod hourglass;
 mod large_strain;
 pub(crate) mod mean_pressure;
 mod modes;

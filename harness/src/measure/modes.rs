@@ -3,8 +3,10 @@
 use cases::exact::Vibrations;
 use catalogue::{metric, warning};
 use geometry::{Point3, Vector3};
+use shape::VolumeRows;
 
 use super::Solved;
+use super::hourglass::shear;
 use crate::Failure;
 use crate::outcome::{Metric, Warning, push};
 use crate::procedure::Vibration;
@@ -14,9 +16,12 @@ const SLOW: f64 = 0.9;
 /// Fraction of the frequency of a shear wave across the body below which a mode is rigid. Rounding leaves
 /// 1e-6.
 const RIGID: f64 = 1e-3;
-/// Fraction of the square of that frequency below which a mode has no energy. Rounding leaves 1e-10; a
-/// cantilever 1000 times as long as thick has 1e-8.
+/// Fraction of the square of that frequency below which it is rounding, which leaves 1e-10; a cantilever 1000
+/// times as long as thick has 1e-8.
 const NO_ENERGY: f64 = 1e-9;
+/// Ratio of squared frequencies, that of the shape under finer integration over the mode's own, above which
+/// the mode is an artefact of the method.
+const UNSEEN: f64 = 4.0;
 /// Multiple of the exact frequency up to which its mode is searched.
 const FAST: f64 = 1.5;
 /// Smallest overlap with the span of the exact modes for a mode to count as one of them.
@@ -82,23 +87,50 @@ pub(crate) fn report(run: &Solved, vibration: &Vibration) -> Result<Modes, Failu
         }
         metrics
     });
-    let warnings = without_energy(modes).into_iter().collect();
+    let warnings = without_energy(run, modes, count)?.into_iter().collect();
     Ok(Modes { modes: each.collect(), metrics, dofs: modes.dofs, warnings })
 }
 
-/// Warning of modes with zero frequency that are not rigid motions of the body.
-fn without_energy(modes: &statics::Modes) -> Option<Warning> {
-    let still = modes.squared.iter().filter(|&&square| square < NO_ENERGY * modes.scale).count();
-    let excess = still.saturating_sub(modes.rigid);
-    (excess > 0).then(|| {
+/// Warning of modes with (nearly) zero frequency because of the quadrature or the mass. A mode's shape has
+/// the squared frequency of its strain energy under finer integration over its consistent mass. Alternating
+/// shapes have strain between the points of means and of reduced quadrature, and almost no displacement in a
+/// cloud whose lumped mass moves. Modes beyond the reported `count` are examined until one is sound.
+fn without_energy(run: &Solved, modes: &statics::Modes, count: usize) -> Result<Option<Warning>, Failure> {
+    let (density, own) = (run.setup.density()?, &run.prepared.volume);
+    let (fine, fine_region) = run.prepared.fine_volume()?;
+    let hidden = |shape: &[Vector3]| {
+        let of = |rows: &VolumeRows, region: &[u16]| {
+            shear(run.setup, rows.at(), rows.weights(), region, shape, true)
+        };
+        of(&fine, &fine_region) - of(&own.rows, &own.region)
+    };
+    let inertia = |shape: &[Vector3]| {
+        let density = |q: usize| density[fine_region.get(q).map_or(0, |&region| usize::from(region))];
+        let each = fine.rows().apply(shape).into_iter().zip(fine.weights()).enumerate();
+        each.map(|(q, (u, w))| w * density(q) * u.norm_squared()).sum::<f64>()
+    };
+    let mut worst: Option<[f64; 2]> = None;
+    let mut unseen = 0;
+    for (n, (shape, &square)) in modes.shapes.iter().zip(&modes.squared).enumerate() {
+        let square = square.max(0.0);
+        // The shape has a mass of one.
+        let finer = (square + 2.0 * hidden(shape)) / inertia(shape);
+        if finer > UNSEEN * square.max(NO_ENERGY * modes.scale) {
+            worst.get_or_insert([square, finer]);
+            unseen += 1;
+        } else if n >= count && square > NO_ENERGY * modes.scale {
+            break;
+        }
+    }
+    Ok(worst.map(|squares| {
+        let [own, finer] = squares.map(|square| square.sqrt() / std::f64::consts::TAU);
         let message = format!(
-            "{}{excess} modes strain the body without energy, in addition to its {} rigid motions: their frequency of \
-             0 is an artefact of the method. Take full integration, more points, or more cells across",
-            if modes.are_all() { "" } else { "at least " },
-            modes.rigid
+            "{unseen} of the lowest modes have little or no energy because the integration or the lumped mass does not see their \
+             shape: the first of them has {own:.4} Hz, and {finer:.4} Hz with finer integration and a consistent mass. Use full \
+             integration, more points, more stabilisation, or another mass"
         );
-        Warning::new(&warning::ZERO_ENERGY_MODES, excess as f64, "method", message)
-    })
+        Warning::new(&warning::ZERO_ENERGY_MODES, unseen as f64, "method", message)
+    }))
 }
 
 /// Overlap of each mode with the span of the exact modes of one frequency (the squared cosine in L2 over the

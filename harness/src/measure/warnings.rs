@@ -8,7 +8,7 @@ use shape::{length, position};
 use super::exact_fit::Misfit;
 use super::patch::patch_error;
 use super::penetration::{self, narrowest};
-use super::{Recovered, Solved, dead_pressure, exact_fit, few_cells, large_strain};
+use super::{Recovered, Solved, dead_pressure, exact_fit, few_cells, hourglass, large_strain};
 use crate::Failure;
 use crate::adapter;
 use crate::discretise::{Essential, place};
@@ -81,6 +81,7 @@ pub(crate) fn warnings(
     found.extend(penetration::warnings(run));
     found.extend(dead_pressure::warnings(run)?);
     found.extend(few_cells::warning(run, metrics)?);
+    found.extend(hourglass::warning(run, value(&metric::STRAIN_ENERGY), largest)?);
     found.extend(run.solution.digits.and_then(few_digits));
     found.extend(unchecked(run));
     found.extend(large_strain(run));

@@ -115,11 +115,14 @@ warnings! {
         "the body loses stability before the end of the load path, and the mesh decides which of several \
          equilibria the run follows from there; value: the load fraction at the last stable step";
     ZERO_ENERGY_MODES: "zero-energy-modes", None,
-        "vibration modes deform the body without energy although they are not rigid motions, so their \
-         frequency of 0 is an artefact of the method; value: the number of such modes";
+        "vibration modes have less than half the frequency that their shape has with finer integration and a consistent mass, often \
+         zero, which is an artefact of the method; value: the number of such modes";
     FEW_CELLS: "few-cells", None,
         "the body has fewer than three cells across a section that bends or is compressed, counted along the \
          displacement and twice if quadratic; value: the number of cells across, median by strain energy";
+    HOURGLASSING: "hourglassing", None,
+        "means over nodes ignore strain that alternates from cell to cell, which makes the body too soft; value: the energy of this strain \
+         divided by the strain energy";
     FEW_DIGITS: "few-digits", None,
         "the matrix is nearly singular, so rounding leaves few correct digits in a linear solution; value: \
          the number of correct digits";

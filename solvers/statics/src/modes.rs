@@ -9,13 +9,12 @@
 
 use std::f64::consts::PI;
 
-use algebra::{AlgebraError, Connectivity, FactorError, Symmetric, eigen};
+use algebra::{AlgebraError, FactorError, Symmetric, eigen};
 use shape::Vector3;
 
 use crate::body::check_len;
 use crate::problem::{Assembled, assemble_free};
 use crate::reduction::Reduction;
-use crate::rigid::free_motions;
 use crate::{LinearProblem, Mass, SolveError};
 
 /// Number of unknowns up to which a dense decomposition finds all modes (8 s at this limit). Larger systems
@@ -48,9 +47,6 @@ pub struct Modes {
     /// Number of unknowns that have stiffness but no mass. Their modes have infinite frequency and are not
     /// among `squared` and `shapes`. The number is 0 if only the lowest modes were computed.
     pub massless: usize,
-    /// Number of rigid motions that the supports leave free. Any further modes of frequency zero strain the
-    /// body without energy.
-    pub rigid: usize,
     /// Number of unknowns of the body.
     pub dofs: usize,
 }
@@ -95,10 +91,6 @@ pub fn lowest_modes(problem: &LinearProblem, mass: &Mass, count: usize) -> Resul
 fn found(problem: &LinearProblem, mass: &Mass, count: Option<usize>) -> Result<Modes, SolveError> {
     check_len("nodes of the mass", mass.node_count(), problem.body.nodes.len())?;
     let assembled = assemble_free(problem)?;
-    let table = problem.body.volume.at().rows();
-    let points = Connectivity { offsets: table.offsets(), nodes: table.nodes(), seen_by: &[] };
-    let (prescribed, rows) = (&assembled.prescribed, &assembled.rows);
-    let rigid = free_motions(&problem.body, points, prescribed, rows, problem.weak);
     let constrained: Vec<Option<f64>> = assembled.prescribed.iter().map(|value| value.map(|_| 0.0)).collect();
     let reduction = Reduction::new(&constrained, &assembled.rows)?;
     let (k, m) = (reduction.matrix(&assembled.stiffness), reduction.matrix(&mass.matrix()));
@@ -135,7 +127,7 @@ fn found(problem: &LinearProblem, mass: &Mass, count: Option<usize>) -> Result<M
         shapes.push(shape);
     }
     let massless = eigen.values.len() - squared.len();
-    Ok(Modes { squared, shapes, scale: shift, residual, massless, rigid, dofs: k.dim() })
+    Ok(Modes { squared, shapes, scale: shift, residual, massless, dofs: k.dim() })
 }
 
 /// Returns the error of an indefinite stiffness, which with Nitsche supports is attributed to their

@@ -145,18 +145,6 @@ pub(crate) fn check_rows(
     Ok(())
 }
 
-/// Returns the number of rigid motions that the supports of an assembled body leave free.
-pub(crate) fn free_motions(
-    body: &Body,
-    points: Connectivity,
-    prescribed: &[Option<f64>],
-    rows: &[Row],
-    weak: &[WeakSupport],
-) -> usize {
-    let motions = motions(body.nodes, points, rows, |add| add_all(prescribed, rows, weak, add));
-    motions.free.iter().map(Vec::len).sum()
-}
-
 /// Adds the rows of all supports of a linear problem.
 fn add_all(prescribed: &[Option<f64>], rows: &[Row], weak: &[WeakSupport], add: AddRow) {
     add_prescribed(prescribed, add);
