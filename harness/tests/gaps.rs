@@ -109,6 +109,40 @@ fn finer_clouds_open_slits_as_elements_do() {
     }
 }
 
+/// Probes beside the slit, 0.6 mm from its middle plane, are nearer to nodes across the slit than to most of
+/// their own side. The two sides move apart by a fifth of a millimetre.
+#[test]
+fn schemes_that_take_values_from_across_a_slit_are_warned_about() {
+    let dir = tempfile::tempdir().unwrap();
+    let warning = |tip: f64, schemes: &[&str]| {
+        let path = write(&dir, "slit.msh", &slit(2, tip, 0.3, 0.0));
+        let probes: Vec<String> = (0..6)
+            .flat_map(|k| [14.4, 15.6].map(|x| format!(r#"["{x} mm", "4 mm", "{} mm"]"#, 10 + k)))
+            .collect();
+        let schemes: Vec<String> =
+            schemes.iter().map(|name| format!(r#"{{ to = "probes", scheme = "{name}" }}"#)).collect();
+        let scene = format!(
+            r#"{}method = [{{ id = "gauss", {CLOUD}, size = {{ file = "{path}" }}, support_scale = 1.6, basis = "linear", integration = {{ rule = "gauss", points = 4 }}, essential = "penalty" }}]
+output = {{ probes = [{}], transfer = [{}] }}
+"#,
+            head(&path),
+            probes.join(", "),
+            schemes.join(", ")
+        );
+        let done = tissuebench(&["run", &write(&dir, "slit.toml", &scene), "--once", "--format", "json"]);
+        assert_eq!(done.code, 0, "{}", done.stderr);
+        let run = objects(&done.stdout).remove(0);
+        let warnings = run["warnings"].as_array().unwrap();
+        warnings.iter().find(|w| w["code"] == "gap-bridged").cloned()
+    };
+    let found = warning(5.4, &["shepard", "barycentric", "mls-linear"]).unwrap();
+    let message = found["message"].as_str().unwrap();
+    assert!(message.contains("of 12 targets") && message.contains("(shepard, mls-linear)"), "{message}");
+    assert!(found["value"].as_f64().unwrap() > 0.1, "{found}");
+    assert!(warning(5.4, &["barycentric"]).is_none());
+    assert!(warning(99.0, &["shepard", "mls-linear"]).is_none(), "no slit");
+}
+
 /// A block with a rod on its top.
 fn rod() -> String {
     let lines = [&[0.0, 4.5, 9.25, 10.75, 15.5, 20.0][..], &[0.0, 4.5, 9.25, 10.75, 15.5, 20.0]];

@@ -3,15 +3,15 @@
 
 use std::time::Instant;
 
-use catalogue::metric;
+use catalogue::{metric, warning};
 use geometry::{Point3, Vector3};
-use shape::RowBlocks;
+use shape::{RowBlocks, Rows};
 
 use super::norms::difference;
 use super::{BESIDE, Difference, RMS, Request, Solved, push_difference};
 use crate::Failure;
 use crate::outcome::timing::Timings;
-use crate::outcome::{Counters, Metric, SchemeSettings, Transfer, push};
+use crate::outcome::{Counters, Metric, SchemeSettings, Transfer, Warning, push};
 
 /// Name of the method's own shape functions among the schemes; they need no transfer.
 pub const OWN_ROWS: &str = "own-rows";
@@ -29,6 +29,12 @@ const BESIDE_TRANSFER: Difference = [
     &metric::BESIDE_TRANSFER_RMS,
 ];
 
+/// Difference from the cloud's own displacement above which a target with nodes across a gap counts, relative
+/// to the largest displacement of the targets.
+const JUMP: f64 = 0.01;
+/// Sum of the weights of nodes across a gap above which a target has such nodes.
+const BRIDGE: f64 = 0.01;
+
 /// Number of applications of a table that are timed together. A single application (10 us) is at the
 /// resolution of the clock.
 const APPLIES: usize = 20;
@@ -36,9 +42,15 @@ const APPLIES: usize = 20;
 /// Transfers from the cloud's nodes to the targets by every requested scheme, then by the method's own shape
 /// functions. The schemes interpolate the displacement at the nodes, not the nodal parameters, which are not
 /// displacements.
-pub fn transfers(run: &Solved, request: &Request, counters: &mut Counters) -> Result<Vec<Transfer>, Failure> {
+///
+/// The schemes do not know the body. A warning is given if one of them takes values from across a gap.
+pub fn transfers(
+    run: &Solved,
+    request: &Request,
+    counters: &mut Counters,
+) -> Result<(Vec<Transfer>, Option<Warning>), Failure> {
     if request.schemes.is_empty() || request.targets.is_empty() {
-        return Ok(Vec::new());
+        return Ok((Vec::new(), None));
     }
     let Solved { method, prepared, solution, .. } = *run;
     let u = &solution.u;
@@ -46,7 +58,9 @@ pub fn transfers(run: &Solved, request: &Request, counters: &mut Counters) -> Re
     let at_nodes = prepared.source.at_points(nodes)?.0.rows().apply(u);
     let own = prepared.source.at_points(request.targets)?.0.rows().apply(u);
     let linear = |points: &[Point3]| -> Vec<Vector3> { points.iter().map(linear_field).collect() };
-    request
+    let across = prepared.source.across_gaps(request.targets)?;
+    let mut bridged: Vec<Bridged> = Vec::new();
+    let transfers: Result<Vec<Transfer>, Failure> = request
         .schemes
         .iter()
         .map(|(settings, scheme)| {
@@ -57,6 +71,7 @@ pub fn transfers(run: &Solved, request: &Request, counters: &mut Counters) -> Re
             let ((rows, info), timing) = timed(request, build, |(rows, _)| rows.rows(), &at_nodes)?;
             counters.transfer_tables += 1;
             let field = rows.rows().apply(&at_nodes);
+            bridged.extend(Bridged::new(name, rows.rows(), &across, &field, &own));
             let mut metrics = Vec::new();
             if let Some(reference) = request.reference {
                 push_difference(&mut metrics, RMS, &field, &reference.targets);
@@ -96,7 +111,58 @@ pub fn transfers(run: &Solved, request: &Request, counters: &mut Counters) -> Re
             }
             Ok(transfer(OWN_ROWS, SchemeSettings::default(), metrics, timing, request))
         }))
-        .collect()
+        .collect();
+    Ok((transfers?, bridging(&bridged, &own)))
+}
+
+/// A scheme that takes values from across a gap.
+struct Bridged {
+    scheme: &'static str,
+    /// Number of targets that have such values and differ from the cloud's own by more than [`JUMP`].
+    targets: usize,
+    /// Largest of these differences, relative to the largest displacement of the targets.
+    largest: f64,
+}
+
+impl Bridged {
+    /// Compares the displacement of a scheme with the cloud's own at the targets that have nodes across a gap
+    /// in their rows; `None` if they agree.
+    fn new(
+        scheme: &'static str,
+        rows: &Rows,
+        across: &[Vec<u32>],
+        field: &[Vector3],
+        own: &[Vector3],
+    ) -> Option<Bridged> {
+        let whole = own.iter().map(|u| u.norm()).fold(0.0, f64::max);
+        let bridges = |target: usize| {
+            let (nodes, weights) = rows.row(target);
+            let beyond =
+                nodes.iter().zip(weights).filter(|(node, _)| across[target].binary_search(node).is_ok());
+            beyond.map(|(_, weight)| weight.abs()).sum::<f64>() > BRIDGE
+        };
+        let off = (0..across.len()).map(|target| ((field[target] - own[target]).norm() / whole, target));
+        let off = off.filter(|&(off, target)| off > JUMP && bridges(target));
+        let (targets, largest) = off.fold((0, 0.0f64), |(count, most), (off, _)| (count + 1, most.max(off)));
+        (targets > 0).then_some(Bridged { scheme, targets, largest })
+    }
+}
+
+/// Warning of schemes that take values from across a gap.
+fn bridging(bridged: &[Bridged], own: &[Vector3]) -> Option<Warning> {
+    let worst = bridged.iter().max_by(|a, b| a.largest.total_cmp(&b.largest))?;
+    let whole = own.iter().map(|u| u.norm()).fold(0.0, f64::max);
+    let message = format!(
+        "transfer schemes ({}) use nodes across a gap of the body: with {:?} the displacement at {} of {} targets differs by up to {:.4} mm \
+         ({:.1} % of the largest) from that of the cloud. Use \"barycentric\", or the cloud's own shape functions ({OWN_ROWS})",
+        bridged.iter().map(|each| each.scheme).collect::<Vec<_>>().join(", "),
+        worst.scheme,
+        worst.targets,
+        own.len(),
+        1e3 * worst.largest * whole,
+        100.0 * worst.largest
+    );
+    Some(Warning::new(&warning::GAP_BRIDGED, worst.largest, "output.transfer", message))
 }
 
 fn transfer(

@@ -222,11 +222,13 @@ fn loaded(
     // A load path that ended early is compared with the reference at its steps, not at its end, and has no
     // simulator's loop.
     let whole = solution.is_whole();
+    let mut bridging = None;
     if outcome.plan.runs(StageName::Schemes) {
-        outcome.transfers = transfers(run, &request.at_end(whole), &mut counters)?;
+        (outcome.transfers, bridging) = transfers(run, &request.at_end(whole), &mut counters)?;
     }
     outcome.warnings =
         warnings(run, recovered.as_ref(), &outcome.metrics, &outcome.probes, outcome.last.as_ref())?;
+    outcome.warnings.extend(bridging);
     if let Some(ask) = request.repeated.filter(|_| whole && run.method.outside.is_none()) {
         outcome.latencies = repeated(ask, run, request.probes, &mut outcome.metrics)?;
     }

@@ -123,6 +123,9 @@ warnings! {
     HOURGLASSING: "hourglassing", None,
         "means over nodes ignore strain that alternates from cell to cell, which makes the body too soft; value: the energy of this strain \
          divided by the strain energy";
+    GAP_BRIDGED: "gap-bridged", None,
+        "a transfer scheme takes displacements from nodes across a slit or another gap of the body; value: the largest difference from \
+         the cloud's own displacement there, divided by the largest displacement";
     FEW_DIGITS: "few-digits", None,
         "the matrix is nearly singular, so rounding leaves few correct digits in a linear solution; value: \
          the number of correct digits";
