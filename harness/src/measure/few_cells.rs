@@ -1,17 +1,22 @@
-//! Bodies with fewer than three cells across a section that bends or is compressed.
+//! Bodies with fewer than three cells (four linear tetrahedra) across a section that bends or is compressed.
 
 use catalogue::{metric, warning};
-use geometry::{Facet, Matrix3, Point3, Vector3};
+use geometry::{CellKind, Facet, Matrix3, Point3, Vector3};
 use shape::position;
 
 use super::Solved;
 use crate::Failure;
+use crate::discretise::Dilation;
 use crate::discretise::place::{self, Patch};
 use crate::outcome::{Metric, Warning};
 
-/// Number of cells across below which the warning is given: three, with a margin because oblique cells look
-/// wider.
-const FEW: f64 = 2.5;
+/// Number of cells across below which the warning is given.
+const ENOUGH: usize = 3;
+/// This number for linear tetrahedra without a projection: with three cells across, slender parts bend 30 to
+/// 45 % too little.
+const ENOUGH_STIFF: usize = 4;
+/// Margin of both, because oblique cells look wider.
+const MARGIN: f64 = 0.5;
 /// Stress jump below which few cells suffice, because the stress is uniform, or linear as in a beam of
 /// quadratic cells. With few cells the jump underestimates the error, so this limit is below that of
 /// `stress-jump`.
@@ -21,7 +26,6 @@ const PLACES: usize = 64;
 /// Smallest cosine of the angle between a face's normal and an axis for which a support along the axis makes
 /// the face a symmetry plane.
 const ALONG: f64 = 0.999;
-
 /// Relative rounding of a position on the surface.
 const ROUNDING: f64 = 1e-9;
 
@@ -34,7 +38,7 @@ struct Triangle {
     mirror: bool,
 }
 
-/// Warns if half of the strain energy lies where the body has fewer than three cells between its two sides.
+/// Warns if half of the strain energy lies where the body has fewer than [`ENOUGH`] cells between its two sides.
 /// The cells are counted along the displacement, which is transverse in a body that bends or is compressed,
 /// and longitudinal in a body that is stretched or sheared. With an exact solution, the errors are known and
 /// there is no warning.
@@ -49,13 +53,17 @@ pub(super) fn warning(run: &Solved, metrics: &[Metric]) -> Result<Option<Warning
         by_energy(run, &gradients).into_iter().map(|q| (cells_across(run, &surface, q), q)).collect();
     counts.sort_by(|a, b| a.0.total_cmp(&b.0));
     let Some(&(cells, q)) = counts.get(counts.len() / 2) else { return Ok(None) };
-    Ok((cells < FEW).then(|| {
-        let at = position(&run.prepared.volume.rows.points()[q], place::size(run.method.mesh()));
-        let below = counts.iter().filter(|(cells, _)| *cells < FEW).count();
+    let mesh = run.method.mesh();
+    let stiff = run.method.dilation == Dilation::Standard && mesh.kind(0) == CellKind::Tet4;
+    let enough = if run.method.interpolates && stiff { ENOUGH_STIFF } else { ENOUGH };
+    let few = enough as f64 - MARGIN;
+    Ok((cells < few).then(|| {
+        let at = position(&run.prepared.volume.rows.points()[q], place::size(mesh));
+        let below = counts.iter().filter(|(cells, _)| *cells < few).count();
         let message = format!(
             "half of the strain energy lies where the body has at most {cells:.1} cells across in the direction of \
              its displacement (a quadratic cell counts twice), for example at {at}, and {:.0} \
-             % of the energy lies where there are fewer than three: forces and displacements may be inaccurate; take \
+             % of the energy lies where there are fewer than {enough}: forces and displacements may be inaccurate; take \
              smaller cells",
             100.0 * below as f64 / counts.len() as f64
         );

@@ -118,8 +118,8 @@ warnings! {
         "vibration modes have less than half the frequency that their shape has with finer integration and a consistent mass, often \
          zero, which is an artefact of the method; value: the number of such modes";
     FEW_CELLS: "few-cells", None,
-        "the body has fewer than three cells across a section that bends or is compressed, counted along the \
-         displacement and twice if quadratic; value: the number of cells across, median by strain energy";
+        "the body has fewer than three cells, or four linear tetrahedra, across a section that bends or is compressed, \
+         counted along the displacement and twice if quadratic; value: the number of cells across, median by strain energy";
     HOURGLASSING: "hourglassing", None,
         "means over nodes ignore strain that alternates from cell to cell, which makes the body too soft; value: the energy of this strain \
          divided by the strain energy";
