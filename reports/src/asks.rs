@@ -2,10 +2,9 @@
 
 use records::{Family, Purpose};
 
-use crate::figures::chosen;
 use crate::fronts::{Clock, QUESTIONS, Question, WANTED, band, counts, point};
 use crate::seconds::Seconds;
-use crate::select::{Run, Series, kernels, labels, series};
+use crate::select::{Run, Series, chosen, kernels, labels, series};
 
 /// A run that answers a question.
 #[derive(Clone, Debug)]

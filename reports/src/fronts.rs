@@ -52,6 +52,11 @@ impl Question {
     }
 }
 
+/// Whether an error belongs to a question that the runs of a case cannot answer.
+pub(crate) fn is_unanswerable(error: &str, runs: &[Run]) -> bool {
+    QUESTIONS.iter().any(|question| question.errors.contains(&error) && question.error(runs).is_none())
+}
+
 /// Whether the largest displacement is prescribed by a support: exact to rounding although the field is not.
 fn is_peak_prescribed(runs: &[Run]) -> bool {
     let Some(displacement) = QUESTIONS[0].error(runs) else { return false };

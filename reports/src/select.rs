@@ -3,6 +3,7 @@
 use std::cmp::Ordering;
 
 use catalogue::element;
+use records::text::ratio;
 use records::{Family, Purpose, Record};
 
 use crate::seconds::Seconds;
@@ -68,9 +69,9 @@ impl<'a> Run<'a> {
         self.value("load-carried").is_none_or(|load| load > 0.999_999)
     }
 
-    /// Whether tools touch the body.
-    pub(crate) fn has_contact(&self) -> bool {
-        self.records.iter().any(|r| r.quantity == "tool-force")
+    /// Whether the run recorded a quantity, as a plain value or in a history.
+    pub(crate) fn has(&self, quantity: &str) -> bool {
+        self.records.iter().any(|r| r.quantity == quantity)
     }
 
     /// Whether the run is the reference of the others, with an error of zero. An exact solution is not a run.
@@ -211,6 +212,35 @@ pub(crate) fn solved<'a>(runs: &[Run<'a>]) -> Vec<Run<'a>> {
 /// The runs of a case must be adjacent.
 pub(crate) fn competing<'a, 'r>(runs: &'a [Run<'r>]) -> impl Iterator<Item = &'a [Run<'r>]> {
     by_case(runs).filter(|case| case[0].is.purpose != Purpose::Patch)
+}
+
+/// Solver runs of every case except patch tests, with titles, at the Poisson's ratios closest to 0.3 and
+/// 0.495.
+pub(crate) fn chosen<'a, 'r>(runs: &'a [Run<'r>]) -> Vec<(String, &'a [Run<'r>])> {
+    let mut out = Vec::new();
+    for case in competing(runs) {
+        let name = &case[0].is.case;
+        let several = case.iter().any(|r| r.is.poisson != case[0].is.poisson);
+        let compressible = representative(case, 0.3);
+        let tissue = representative(case, 0.495);
+        for group in [compressible, tissue] {
+            let poisson = group[0].is.poisson;
+            let title = if several { format!("{name}, ν = {}", ratio(poisson)) } else { name.clone() };
+            if out.iter().all(|(t, _)| *t != title) {
+                out.push((title, group));
+            }
+        }
+    }
+    out
+}
+
+/// Runs of a case at the Poisson's ratio closest to the given one.
+pub(crate) fn representative<'a, 'r>(case: &'a [Run<'r>], poisson: f64) -> &'a [Run<'r>] {
+    let off = |g: &&[Run]| (g[0].is.poisson - poisson).abs();
+    groups(case, |r| r.is.poisson.to_bits())
+        .into_iter()
+        .min_by(|a, b| off(a).total_cmp(&off(b)))
+        .unwrap_or(case)
 }
 
 /// Gathers runs into series, whose members differ only in size.

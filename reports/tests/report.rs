@@ -207,18 +207,14 @@ fn findings_state_what_the_records_hold() {
         "pure-bending: from ν = 0 to 0.495, at the middle size, the relative L2 error more than doubles with tet4",
         "pure-bending: tet4, 0.622 % to 15.6 %",
         // 3.20 ms against 23 s.
-        "preparing EFG takes 3.20 ms here and 23.0 s in the publication, 7200 times as long",
+        "preparing EFG 23 s, 3.20 ms, 7200;",
         "from linear: thin-plate has the smallest error (rounding only), nearest the largest (0.90 mm RMS); inverse distance, the published scheme, has 0.50 mm RMS.",
         "patch-displacement: 3 of 4 methods reproduce the displacement within 10⁻¹². efg-gauss does not: its relative error is 0.0014.",
     ] {
         assert!(found.contains(sentence), "{sentence}\n{found}");
     }
     // A linear scene without contact has no time comparable with the published contact.
-    for unlike in [
-        "kidney-paper: the fastest EFG run is compared",
-        "the whole FE run (about 2 h) takes",
-        "solving EFG takes",
-    ] {
+    for unlike in ["kidney-paper: the claim", "the whole FE run (about 2 h)", "solving EFG"] {
         assert!(!found.contains(unlike), "{unlike}\n{found}");
     }
     let counts = &page["counts"];

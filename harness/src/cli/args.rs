@@ -241,9 +241,9 @@ pub struct ReferenceArgs {
 pub struct ClaimsArgs {
     /// Folder written by `verify` or `run --out`
     pub results: PathBuf,
-    /// Claims file
-    #[arg(long, value_name = "FILE", default_value = "cases/claims.toml")]
-    pub file: PathBuf,
+    /// Claims file (default: the claims of the program)
+    #[arg(long, value_name = "FILE")]
+    pub file: Option<PathBuf>,
 }
 
 /// Arguments of `export`.

@@ -1,14 +1,15 @@
 //! `tissuebench claims`: compares published claims with stored results.
 
 use records::read_run;
-use reports::{ClaimVerdict, read_claims};
+use reports::{ClaimVerdict, own_claims, read_claims};
 
 use crate::cli::args::ClaimsArgs;
 use crate::cli::unreported;
 
 /// Prints the verdict of the results on each claim and returns the exit code.
 pub(super) fn claims(args: &ClaimsArgs) -> u8 {
-    let read = read_claims(&args.file).and_then(|claims| Ok((claims, read_run(&args.results)?)));
+    let claims = args.file.as_deref().map_or_else(|| Ok(own_claims().to_vec()), read_claims);
+    let read = claims.and_then(|claims| Ok((claims, read_run(&args.results)?)));
     let (claims, set) = match read {
         Ok(read) => read,
         Err(bad) => return unreported(bad),

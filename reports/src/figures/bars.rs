@@ -1,6 +1,5 @@
 //! RMS errors by direction: one row per run, and one scale for all columns.
 
-use records::Family;
 use records::cell::csv_line;
 use records::store::slug;
 use records::text::significant;
@@ -8,10 +7,10 @@ use records::text::significant;
 use super::axes::TEXT;
 use super::canvas::{Anchor, BLACK_INK, Canvas, Colour, GREY, text_width};
 use super::grid::WIDTH;
-use super::{Data, Figure, representative};
+use super::{Data, Figure};
+use crate::claims::reproduced;
 use crate::look::Look;
-use crate::published::read_as;
-use crate::select::{Run, competing, kernels, labels, series};
+use crate::select::{Run, competing, kernels, labels, representative, series};
 
 const ROW: f64 = 16.0;
 const TOP: f64 = 42.0;
@@ -49,17 +48,16 @@ fn figure(group: &[Run]) -> Option<Figure> {
     if rows.iter().all(|r| r.1.iter().flatten().all(|v| *v < NOTHING)) {
         return None;
     }
-    let publication = read_as(is);
-    if let Some(publication) = publication {
-        let published = |q: &str| publication.number(Family::Efg, q).map(|v| v * 1e3);
-        rows.push(("published, EFG from FE".into(), DIRECTIONS.map(|(q, _)| published(q)), GREY));
-    }
+    let published = reproduced(is).map(|claim| {
+        DIRECTIONS.map(|(q, _)| claim.transferred(&format!("beside-{q}")).map(|value| value * 1e3))
+    });
+    rows.extend(published.map(|values| ("published, between its methods".into(), values, GREY)));
     let mut caption = String::from(
         "Root mean square of the displacement difference from the reference, with one scale for all columns and one \
          colour per method",
     );
-    if publication.is_some() {
-        caption += "; grey: the published difference of EFG from the publication's own FE";
+    if published.is_some() {
+        caption += "; grey: the difference between the publication's own methods";
     }
     if usual.iter().map(|s| s.runs.len()).sum::<usize>() > 24 {
         caption += "; the finest run of each method";

@@ -4,11 +4,11 @@ use super::axes::{Axis, Panel, TEXT};
 use super::canvas::{Anchor, Canvas, GREY};
 use super::grid::{Content, multiples};
 use super::style::{find, styles};
-use super::{Data, Figure, PAGE, chosen, continued, paged};
+use super::{Data, Figure, PAGE, continued, paged};
 use crate::order::ROUNDING;
 use crate::plot::{self, Curve, Plot, Scale};
 use crate::quantity::label;
-use crate::select::{Run, Series, labels, series};
+use crate::select::{Run, Series, chosen, labels, series};
 
 const SPACING: &str = "node spacing h [mm]";
 

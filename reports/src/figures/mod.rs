@@ -27,11 +27,10 @@ pub(crate) use locking::sweeps;
 pub use over_commits::svg as svg_over_commits;
 
 use records::RunSet;
-use records::text::ratio;
 
 use crate::commits::Trend;
 use crate::plot::{Plot, csv};
-use crate::select::{Run, competing, groups, solved};
+use crate::select::{Run, solved};
 
 /// Largest number of panels on a figure.
 const PAGE: usize = 6;
@@ -91,35 +90,6 @@ pub(crate) fn all(set: &RunSet, runs: &[Run], trends: &[Trend]) -> Vec<Figure> {
     figures.extend(cloud::neighbours(runs));
     figures.extend(over_commits::figure(trends));
     figures
-}
-
-/// Solver runs of every case except patch tests, with titles, at the Poisson's ratios closest to 0.3 and
-/// 0.495.
-pub(crate) fn chosen<'a, 'r>(runs: &'a [Run<'r>]) -> Vec<(String, &'a [Run<'r>])> {
-    let mut out = Vec::new();
-    for case in competing(runs) {
-        let name = &case[0].is.case;
-        let several = case.iter().any(|r| r.is.poisson != case[0].is.poisson);
-        let compressible = representative(case, 0.3);
-        let tissue = representative(case, 0.495);
-        for group in [compressible, tissue] {
-            let poisson = group[0].is.poisson;
-            let title = if several { format!("{name}, ν = {}", ratio(poisson)) } else { name.clone() };
-            if out.iter().all(|(t, _)| *t != title) {
-                out.push((title, group));
-            }
-        }
-    }
-    out
-}
-
-/// Runs of a case at the Poisson's ratio closest to the given one.
-fn representative<'a, 'r>(case: &'a [Run<'r>], poisson: f64) -> &'a [Run<'r>] {
-    let off = |g: &&[Run]| (g[0].is.poisson - poisson).abs();
-    groups(case, |r| r.is.poisson.to_bits())
-        .into_iter()
-        .min_by(|a, b| off(a).total_cmp(&off(b)))
-        .unwrap_or(case)
 }
 
 /// Title of a page; further pages have their number.

@@ -1,7 +1,6 @@
 //! Findings of the records in sentences. A sentence without its numbers is omitted.
 
 mod accuracy;
-mod claim;
 mod integration;
 mod placement;
 mod published;
@@ -9,11 +8,11 @@ mod stability;
 mod transfer;
 mod vibration;
 
-pub(crate) use claim::Matched;
 pub(crate) use transfer::source;
 
 use records::RunSet;
 
+use crate::claims;
 use crate::clouds::Clouds;
 use crate::select::{Run, competing, groups, solved};
 
@@ -27,7 +26,7 @@ pub(crate) struct Topic {
 pub(crate) fn all(set: &RunSet, runs: &[Run], clouds: &[Clouds]) -> Vec<Topic> {
     let solved = solved(runs);
     let topics = [
-        Topic { title: "A published claim on time", sentences: claim::claim(&solved) },
+        Topic { title: "Published claims", sentences: claims::findings(&solved) },
         Topic { title: "Where methods bend and break", sentences: stability::stability(set) },
         Topic { title: "Locking", sentences: accuracy::locking(&solved) },
         Topic { title: "Vibrations", sentences: vibration::vibrations(&solved) },

@@ -21,9 +21,6 @@ mod transfer;
 mod within;
 
 pub(crate) use error_split::{Parts as ErrorParts, parts as error_parts};
-pub(crate) use published::{
-    Pair as PublishedPair, Split as PublishedSplit, pairs as published_pairs, splits as published_splits,
-};
 
 use records::RunSet;
 
