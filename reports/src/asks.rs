@@ -1,5 +1,6 @@
 //! Questions put to every case, for each kind of time: the runs that answer, with their time and error.
 
+use catalogue::metric;
 use records::{Family, Purpose};
 
 use crate::fronts::{Clock, QUESTIONS, Question, WANTED, band, counts, point};
@@ -58,10 +59,27 @@ impl Ask {
     }
 }
 
-/// Sort key of the questions of a page and its figures. Cases in which many methods compete come first, above
-/// all those with a tool force that test a published claim and that some run answers within [`WANTED`]. Cases
-/// that reproduce a publication are compared with its numbers rather than judged.
-pub(crate) type Rank = (bool, bool, bool, bool, usize);
+/// Sort key of the questions of a page and its figures: the highest comes first.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) struct Rank {
+    /// The time is that of a first solve.
+    first: bool,
+    /// The case does not reproduce a publication, with whose numbers it would be compared rather than judged.
+    judged: bool,
+    /// The case tests a published claim by the force of a tool in a first solve.
+    claimed: bool,
+    /// Some run answers within [`WANTED`].
+    answered: bool,
+    /// Number of competing runs.
+    runs: usize,
+}
+
+impl Rank {
+    /// The fields in the order of comparison.
+    pub(crate) fn key(self) -> (bool, bool, bool, bool, usize) {
+        (self.first, self.judged, self.claimed, self.answered, self.runs)
+    }
+}
 
 /// All questions that at least two runs answer. If many kernels are compared, they have an additional
 /// question for the displacement of a first solve.
@@ -115,9 +133,10 @@ fn runs_of(lines: &[Line]) -> usize {
 
 fn rank(run: &Run, question: &Question, clock: Clock, lines: &[Line]) -> Rank {
     let first = clock == Clock::First;
-    let claimed = question.errors_are("tool-force-error") && !run.is.published.is_empty();
+    let claimed = question.errors_are(metric::TOOL_FORCE_ERROR.name) && !run.is.published.is_empty();
     let answered = lines.iter().flat_map(|line| &line.runs).any(|run| run.counts <= WANTED);
-    (first, run.is.purpose != Purpose::Published, first && claimed, answered, runs_of(lines))
+    let judged = run.is.purpose != Purpose::Published;
+    Rank { first, judged, claimed: first && claimed, answered, runs: runs_of(lines) }
 }
 
 fn line(

@@ -1,5 +1,6 @@
 //! Run time against error: the questions put to runs, the kinds of time, and the Pareto front.
 
+use catalogue::metric;
 use records::text::significant;
 
 use crate::order::ROUNDING;
@@ -41,11 +42,12 @@ impl Question {
     /// force of a force-driven tool (up to the tolerance of Newton's method) and a largest displacement at a
     /// support.
     pub(crate) fn error(&self, runs: &[Run]) -> Option<&'static str> {
-        if self.errors_are("peak-error") && is_peak_prescribed(runs) {
+        if self.errors_are(metric::PEAK_ERROR.name) && is_peak_prescribed(runs) {
             return None;
         }
         let found = |quantity: &str| {
-            let least = if quantity == "tool-force-error" { FLOOR } else { 0.0 };
+            let of_tool = |entry: &metric::Metric| entry.kind == metric::Kind::Tool;
+            let least = if metric::find(quantity).is_some_and(of_tool) { FLOOR } else { 0.0 };
             runs.iter().filter_map(|run| worst(run, quantity)).any(|e| e > least)
         };
         self.errors.iter().copied().find(|quantity| found(quantity))
@@ -61,7 +63,7 @@ pub(crate) fn is_unanswerable(error: &str, runs: &[Run]) -> bool {
 fn is_peak_prescribed(runs: &[Run]) -> bool {
     let Some(displacement) = QUESTIONS[0].error(runs) else { return false };
     runs.iter().any(|run| {
-        run.value("peak-error").is_some_and(|e| e < ROUNDING)
+        run.value(metric::PEAK_ERROR.name).is_some_and(|e| e < ROUNDING)
             && run.value(displacement).is_some_and(|e| e > FLOOR)
     })
 }

@@ -23,9 +23,14 @@ impl Shown {
         self.entry.label
     }
 
+    /// Whether the values are lengths.
+    pub(crate) fn is_length(self) -> bool {
+        self.entry.dimension == Dimension::Length
+    }
+
     /// Display unit: `mm` for lengths, otherwise the SI unit.
     pub(crate) fn unit(self) -> &'static str {
-        if self.entry.dimension == Dimension::Length { "mm" } else { self.entry.unit() }
+        if self.is_length() { "mm" } else { self.entry.unit() }
     }
 
     /// Label with its unit, such as `relative L2 error [1]`.
@@ -35,7 +40,7 @@ impl Shown {
 
     /// Factor from the SI value to the value shown.
     pub(crate) fn scale(self) -> f64 {
-        if self.entry.dimension == Dimension::Length { MILLIMETRES } else { 1.0 }
+        if self.is_length() { MILLIMETRES } else { 1.0 }
     }
 }
 

@@ -3,39 +3,41 @@
 //! Fused multiply-adds and register widths change the last bits of sums, and a method amplifies these by the
 //! condition of its system. Numbers that consist only of rounding are not compared.
 
+use catalogue::metric::{self, Metric};
+
 /// Relative tolerance of quantities without a rule.
 const RELATIVE: f64 = 1e-6;
 
 /// A larger tolerance of a quantity.
 struct Rule {
-    /// Prefix of the quantity's name.
-    quantity: &'static str,
+    quantity: &'static Metric,
     /// Relative tolerance.
     relative: f64,
     /// Absolute tolerance, in the quantity's unit.
     absolute: f64,
 }
 
-const RULES: &[Rule] = &[
+static RULES: [Rule; 6] = [
     // A residual below the solver's tolerance is rounding.
-    Rule { quantity: "residual", relative: 0.0, absolute: 1e-6 },
+    Rule { quantity: &metric::RESIDUAL, relative: 0.0, absolute: 1e-6 },
     // A residual close to its tolerance may take another iteration.
-    Rule { quantity: "newton-iterations", relative: 0.1, absolute: 2.0 },
+    Rule { quantity: &metric::NEWTON_ITERATIONS, relative: 0.1, absolute: 2.0 },
     // Shear on a section sums to rounding, 1e-17 N from 1e-2 N on each half, and the run has no other force.
-    Rule { quantity: "load-x", relative: RELATIVE, absolute: 1e-14 },
-    Rule { quantity: "load-y", relative: RELATIVE, absolute: 1e-14 },
-    Rule { quantity: "load-z", relative: RELATIVE, absolute: 1e-14 },
+    Rule { quantity: &metric::LOAD_X, relative: RELATIVE, absolute: 1e-14 },
+    Rule { quantity: &metric::LOAD_Y, relative: RELATIVE, absolute: 1e-14 },
+    Rule { quantity: &metric::LOAD_Z, relative: RELATIVE, absolute: 1e-14 },
     // An ordering breaks ties by the order in which they are met.
-    Rule { quantity: "factor-nonzeros", relative: 0.01, absolute: 0.0 },
+    Rule { quantity: &metric::FACTOR_NONZEROS, relative: 0.01, absolute: 0.0 },
 ];
 
 /// Fraction of the largest number of the same unit in a run below which a number is rounding.
 const ROUNDING: f64 = 1e-9;
 
-/// Whether two values of a quantity may come from the same method on two processors. `scale` is the largest
+/// Whether two values of a quantity, named with its unit (`load-x [N]`), may come from the same method on two processors. `scale` is the largest
 /// number of the unit in the run, or 1 for pure numbers.
 pub(super) fn close(quantity: &str, scale: f64, before: f64, now: f64) -> bool {
-    let (relative, absolute) = match RULES.iter().find(|rule| quantity.starts_with(rule.quantity)) {
+    let name = quantity.split(' ').next();
+    let (relative, absolute) = match RULES.iter().find(|rule| name == Some(rule.quantity.name)) {
         Some(rule) => (rule.relative, rule.absolute),
         None => (RELATIVE, 0.0),
     };

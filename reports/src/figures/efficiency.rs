@@ -47,7 +47,7 @@ fn figure(question: &Question, clock: Clock, page: usize, panels: &[Ask]) -> Fig
             question.name
         ),
         canvas: multiples(contents, &styles, &note(question, clock, panels)),
-        data: Data::Plots(plots),
+        data: Data::Fronts(plots),
     }
 }
 
@@ -255,6 +255,7 @@ fn front(canvas: &mut Canvas, panel: &Panel, best: &[(f64, f64)]) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::asks::Rank;
     use crate::fronts::QUESTIONS;
     use crate::fronts::tests::run;
     use crate::select::runs;
@@ -278,7 +279,7 @@ mod tests {
                 reference: None,
                 band: None,
                 kernels: false,
-                rank: (true, true, false, false, 1),
+                rank: Rank::default(),
             }
         };
         let drawn = |p: &Ask| near(&p.lines).iter().map(|d| d.name).collect::<Vec<_>>();

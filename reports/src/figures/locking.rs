@@ -1,5 +1,6 @@
 //! Error against Poisson's ratio at one size, which shows locking.
 
+use catalogue::metric::{self, Metric};
 use records::Family;
 
 use super::axes::Axis;
@@ -12,6 +13,29 @@ use crate::fronts::FLOOR;
 use crate::plot::{Curve, Plot, Scale};
 use crate::quantity::label;
 use crate::select::{Run, competing, labels};
+
+/// A quantity that shows locking.
+struct Measure {
+    metric: &'static Metric,
+    /// Name in titles.
+    what: &'static str,
+}
+
+impl Measure {
+    /// Whether the quantity is an error; otherwise it is a ratio to the exact value.
+    fn is_error(&self) -> bool {
+        self.metric.lower_is_better()
+    }
+}
+
+static MEASURES: [Measure; 3] = [
+    Measure { metric: &metric::L2, what: "displacement" },
+    Measure { metric: &metric::PRESSURE, what: "pressure" },
+    Measure { metric: &metric::TIP, what: "tip deflection" },
+];
+
+/// Label of the axis of a ratio.
+const RATIO: &str = "tip deflection / exact [1]";
 
 /// A method as `(label, family, runs of one size by ascending Poisson's ratio)`.
 pub(crate) type Sweep<'r> = (String, Family, Vec<Run<'r>>);
@@ -53,22 +77,19 @@ pub(super) fn figures(runs: &[Run]) -> Vec<Figure> {
     let mut panels = Vec::new();
     for case in competing(runs) {
         let sweeps = sweeps(case);
-        for quantity in ["l2", "pressure", "tip"] {
+        for measure in &MEASURES {
             let drawn =
-                sweeps.iter().any(|s| s.2.iter().filter(|r| usable(r, quantity).is_some()).count() > 1);
+                sweeps.iter().any(|s| s.2.iter().filter(|r| usable(r, measure).is_some()).count() > 1);
             if drawn {
-                panels.push((case[0].is.case.clone(), quantity, sweeps.clone()));
+                panels.push((case[0].is.case.clone(), measure, sweeps.clone()));
             }
         }
     }
     panels.chunks(PAGE).enumerate().map(|(page, panels)| figure(page, panels)).collect()
 }
 
-fn usable(run: &Run, quantity: &str) -> Option<f64> {
-    match quantity {
-        "tip" => run.value(quantity),
-        _ => run.value(quantity).map(|v| v.max(FLOOR)),
-    }
+fn usable(run: &Run, measure: &Measure) -> Option<f64> {
+    run.value(measure.metric.name).map(|v| if measure.is_error() { v.max(FLOOR) } else { v })
 }
 
 /// A measure that grows without bound as the material becomes incompressible.
@@ -76,40 +97,33 @@ fn stiffness(poisson: f64) -> f64 {
     1.0 / (1.0 - 2.0 * poisson)
 }
 
-fn figure(page: usize, panels: &[(String, &'static str, Vec<Sweep>)]) -> Figure {
+fn figure(page: usize, panels: &[(String, &'static Measure, Vec<Sweep>)]) -> Figure {
     let all: Vec<(String, Family)> =
         panels.iter().flat_map(|p| p.2.iter().map(|s| (s.0.clone(), s.1))).collect();
     let styles = styles(&all);
     let contents = panels
         .iter()
-        .map(|(case, quantity, sweeps)| {
+        .map(|(case, measure, sweeps)| {
             let points = |s: &Sweep| -> Vec<(f64, f64)> {
-                s.2.iter().filter_map(|r| Some((r.is.poisson, usable(r, quantity)?))).collect()
+                s.2.iter().filter_map(|r| Some((r.is.poisson, usable(r, measure)?))).collect()
             };
             let values = || sweeps.iter().flat_map(points);
             let mut ratios: Vec<f64> = values().map(|p| p.0).collect();
             ratios.sort_by(f64::total_cmp);
             ratios.dedup();
             let ticks = spread_out(&ratios);
-            let tip = *quantity == "tip";
             let styles = &styles;
-            let what = match *quantity {
-                "l2" => "displacement",
-                "pressure" => "pressure",
-                _ => "tip deflection",
-            };
             Content {
-                title: format!("{case}: {what}"),
+                title: format!("{case}: {}", measure.what),
                 x: Axis::log("Poisson's ratio ν [1], as 1/(1 − 2ν)", ratios.iter().map(|r| stiffness(*r)))
                     .with_ticks(ticks),
-                y: match tip {
-                    true => {
-                        Axis::linear("tip deflection / exact [1]", values().map(|p| p.1).chain([1.0]), true)
-                    }
-                    false => Axis::log(&label(quantity), values().map(|p| p.1)),
+                y: if measure.is_error() {
+                    Axis::log(&label(measure.metric.name), values().map(|p| p.1))
+                } else {
+                    Axis::linear(RATIO, values().map(|p| p.1).chain([1.0]), true)
                 },
                 plot: Box::new(move |canvas, panel| {
-                    if tip {
+                    if !measure.is_error() {
                         let (left, right) = (panel.at(panel.x.low(), 1.0), panel.at(panel.x.high(), 1.0));
                         canvas.dashed(&[left, right], GREY, 0.8, &[3.0, 2.0]);
                     }
@@ -135,20 +149,16 @@ fn figure(page: usize, panels: &[(String, &'static str, Vec<Sweep>)]) -> Figure 
 }
 
 /// Data of a panel, as a function of 1/(1 - 2 nu).
-fn plotted((case, quantity, sweeps): &(String, &'static str, Vec<Sweep>)) -> Plot {
+fn plotted((case, measure, sweeps): &(String, &'static Measure, Vec<Sweep>)) -> Plot {
     let curve = |(name, family, runs): &Sweep| {
-        let own = runs.iter().filter_map(|r| Some((r, usable(r, quantity)?)));
+        let own = runs.iter().filter_map(|r| Some((r, usable(r, measure)?)));
         let (points, ids) = own.map(|(r, y)| ((stiffness(r.is.poisson), y), r.is.run.clone())).unzip();
         Curve::new(name.clone(), *family, points, ids)
     };
-    let (what, y) = match *quantity {
-        "tip" => ("tip deflection", Scale::linear("tip deflection / exact [1]")),
-        "l2" => ("displacement", Scale::log(&label(quantity))),
-        _ => ("pressure", Scale::log(&label(quantity))),
-    };
+    let y = if measure.is_error() { Scale::log(&label(measure.metric.name)) } else { Scale::linear(RATIO) };
     Plot {
         case: case.clone(),
-        title: format!("{case}: {what} against Poisson's ratio"),
+        title: format!("{case}: {} against Poisson's ratio", measure.what),
         x: Scale::log("1/(1 − 2ν) [1], from compressible to incompressible"),
         y,
         curves: sweeps.iter().map(curve).collect(),

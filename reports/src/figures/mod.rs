@@ -48,6 +48,8 @@ pub(crate) struct Figure {
 pub(crate) enum Data {
     /// Curves over axes.
     Plots(Vec<Plot>),
+    /// Curves of time against error, which the page draws from the runs that answer its questions.
+    Fronts(Vec<Plot>),
     /// Rows of CSV.
     Rows(String),
     /// Case of a picture of its body, whose numbers are in the folder `fields` of the results.
@@ -58,7 +60,7 @@ impl Data {
     /// The data as CSV, `None` for a picture.
     pub(crate) fn csv(&self) -> Option<String> {
         match self {
-            Data::Plots(plots) => Some(csv(plots)),
+            Data::Plots(plots) | Data::Fronts(plots) => Some(csv(plots)),
             Data::Rows(rows) => Some(rows.clone()),
             Data::Picture(_) => None,
         }

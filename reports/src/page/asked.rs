@@ -4,7 +4,7 @@ use records::Reference;
 use serde::Serialize;
 
 use super::methods::Methods;
-use crate::asks::{Ask, Line, Rank, Timed};
+use crate::asks::{Ask, Line, Timed};
 use crate::fronts::Clock;
 use crate::quantity::label;
 
@@ -26,7 +26,7 @@ pub(super) struct AskView {
     reference: Option<String>,
     band: Option<f64>,
     /// Sort key; the page begins with the question of the highest rank.
-    rank: Rank,
+    rank: (bool, bool, bool, bool, usize),
     lines: Vec<LineView>,
 }
 
@@ -71,7 +71,7 @@ impl AskView {
             kernels: ask.kernels,
             reference: references.iter().find(of_case).map(described).or_else(|| ask.reference.clone()),
             band: ask.band,
-            rank: ask.rank,
+            rank: ask.rank.key(),
             lines: ask.lines.iter().map(&mut line).collect(),
         }
     }

@@ -182,10 +182,8 @@ fn views<'a>(figures: &'a [Drawn], methods: &mut Methods) -> (Vec<PlotView>, Vec
     let (mut plots, mut pictures) = (Vec::new(), Vec::new());
     for Drawn { figure, svg } in figures {
         match &figure.data {
-            // The page draws its fronts from the data of the questions.
-            Data::Plots(_) if figure.name.starts_with("efficiency") => {}
             Data::Plots(all) => plots.extend(all.iter().map(|plot| plotted(&figure.name, plot, methods))),
-            Data::Rows(_) => {}
+            Data::Fronts(_) | Data::Rows(_) => {}
             Data::Picture(case) => pictures.push(PictureView {
                 name: &figure.name,
                 case,
