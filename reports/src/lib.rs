@@ -22,9 +22,10 @@
 //! # }
 //! ```
 
-mod asks;
+mod appearance;
 pub mod baseline;
 mod busy;
+mod cheapest;
 mod claims;
 mod clouds;
 pub mod commits;
@@ -34,17 +35,16 @@ mod figures;
 mod findings;
 mod fronts;
 mod history;
-mod look;
 mod order;
 mod page;
 mod plot;
 mod quantity;
+mod questions;
 mod render;
 mod seconds;
 mod select;
 mod table;
 mod tables;
-mod within;
 
 #[cfg(test)]
 mod blank;

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use crate::Failure;
 use crate::cli::args::ReferenceArgs;
 use crate::cli::{fail, open, text};
-use crate::run::stored::Stored;
+use crate::run::stored_reference::Stored;
 use crate::study::make_reference::make;
 use crate::study::{folder, note_inputs};
 

@@ -9,7 +9,7 @@ use crate::cli::colour;
 
 use crate::outcome::timing::PHASES;
 use crate::outcome::{Outcome, Plan};
-use crate::run::stored::Stored;
+use crate::run::stored_reference::Stored;
 
 /// Formats the plan of a method with `nodes` nodes. Unknowns include those at supports.
 pub fn stages(method: &str, nodes: u64, plan: &Plan) -> String {

@@ -3,6 +3,7 @@
 mod dead_pressure;
 mod displacement;
 mod exact_fit;
+mod face_results;
 mod few_cells;
 mod hourglass;
 mod large_strain;
@@ -13,7 +14,6 @@ mod over_time;
 mod patch;
 mod penetration;
 mod picture;
-mod places;
 mod probe_history;
 mod probes;
 mod request;
@@ -39,10 +39,10 @@ use crate::scenario::setup::Setup;
 use norms::{difference, exact_at, norms, relative};
 
 pub(crate) use displacement::displacement;
+pub(crate) use face_results::places;
 pub(crate) use modes::report as report_modes;
 pub(crate) use over_time::over_time;
 pub(crate) use picture::picture;
-pub(crate) use places::places;
 pub(crate) use probe_history::metrics as probe_history;
 pub(crate) use probes::{check_probes, probe_errors, probes};
 pub(crate) use request::Request;

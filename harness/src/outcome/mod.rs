@@ -1,9 +1,9 @@
 //! Results of a run: identity, metrics, times and fields.
 
 mod counters;
+mod face_results;
 mod latency;
 mod load_step;
-mod places;
 mod plan;
 pub mod provenance;
 mod rows;
@@ -18,10 +18,10 @@ use records::{Record, Reference, SurfaceField};
 
 use crate::Failure;
 pub use counters::Counters;
+pub use face_results::{FaceMean, SupportForce};
 pub(crate) use latency::FOR_P99;
 pub use latency::Latency;
 pub use load_step::{LoadStep, ToolStep};
-pub use places::{FaceMean, SupportForce};
 pub use plan::{Plan, Stage, StageName};
 pub(crate) use rows::run_id;
 pub use states::States;

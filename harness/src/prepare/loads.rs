@@ -4,7 +4,7 @@ use fem::SurfaceRule;
 use geometry::{Facet, Vector3, quadrature};
 use shape::{RowSource, SurfaceRows};
 
-use super::reach::loaded;
+use super::region_check::loaded;
 use super::{Prepared, not_finite};
 use crate::Failure;
 use crate::discretise::Discretisation;

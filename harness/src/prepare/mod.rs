@@ -1,14 +1,14 @@
 //! The prepare phase: all tables for assembly, for one method on one body under one setup.
 
 mod agreement;
+mod contact_tables;
 mod loads;
 mod means;
 mod nodal_patch;
-pub(crate) mod reach;
+pub(crate) mod region_check;
 mod sharp;
 mod support_forces;
 mod support_gap;
-mod touch;
 
 use std::collections::HashMap;
 
@@ -30,10 +30,10 @@ use crate::discretise::{Discretisation, Essential, Volume};
 use crate::error::Key;
 use crate::outcome::{Counters, Plan, StageName};
 use crate::scenario::setup::{Setup, Support};
+use contact_tables::Touch;
 use loads::Values;
 use nodal_patch::{mean_rows, nodal_patches, on_facets};
 use support_forces::Held;
-use touch::Touch;
 
 pub use means::check_means;
 pub use support_forces::ConditionForces;

@@ -10,15 +10,15 @@ use catalogue::{metric, warning};
 use geometry::{Point3, files};
 use interp::Scheme;
 
-use super::mirror::Mirror;
-use super::stored::Stored;
+use super::stored_reference::Stored;
+use super::symmetry::Mirror;
 use super::witness::own_error;
 use super::{Finished, run};
 use crate::Failure;
 use crate::discretise::Discretisation;
 use crate::measure::{self, OwnError, Repeats, Request};
 use crate::outcome::{Counters, Outcome, Plan, SchemeSettings, Size as Sizes, Unfinished, Warning, Watch};
-use crate::prepare::reach;
+use crate::prepare::region_check;
 use crate::procedure::{Wanted, plan};
 use crate::scenario::{Scenario, point, rule, warnings};
 
@@ -342,7 +342,7 @@ impl<'a> Group<'a> {
     /// Returns an error if the method cannot be discretised and, as in a run, if a region selects nothing.
     pub fn plan(&self, scenario: &Scenario) -> Result<(Plan, Sizes), Failure> {
         let (discretisation, setup) = (scenario.discretise()?, scenario.setup()?);
-        reach::check(&discretisation, &setup).map_err(|failure| scenario.locate(failure))?;
+        region_check::check(&discretisation, &setup).map_err(|failure| scenario.locate(failure))?;
         Ok((plan(&discretisation, &setup, self.wanted()), size(&discretisation)))
     }
 

@@ -2,12 +2,12 @@
 //! transfers.
 
 mod export;
+mod external_problem;
 mod group;
 mod memory;
-pub(crate) mod mirror;
-mod posed;
 mod repeated;
-pub(crate) mod stored;
+pub(crate) mod stored_reference;
+pub(crate) mod symmetry;
 mod witness;
 
 use std::time::Instant;
@@ -33,10 +33,10 @@ use memory::Baseline;
 use repeated::repeated;
 
 pub use crate::measure::Repeats;
+pub use external_problem::{Found, Posed, PosedTool};
 pub use group::{Group, RunOptions, case_name};
 pub use memory::Baseline as MemoryBaseline;
-pub use posed::{Found, Posed, PosedTool};
-pub use stored::Stored;
+pub use stored_reference::Stored;
 
 /// Finished run with its nodal parameters.
 pub(crate) struct Finished {

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use super::Filters;
-use super::apart::ApartArgs;
+use super::isolated::ApartArgs;
 
 /// Arguments of `verify`.
 #[derive(Args)]

@@ -10,8 +10,8 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
-use super::apart::Apart;
 use super::files::{files, versions};
+use super::isolated::Apart;
 use super::progress::{Progress, Running};
 use super::store::{Accept, Store};
 use super::task::{TaskResult, failed, key};

@@ -5,8 +5,8 @@ use geometry::Point3;
 
 use crate::Failure;
 use crate::outcome::{LoadStep, ToolStep, Watch, provenance};
-use crate::run::mirror::Mirror;
-use crate::run::stored::{Problem, Source, Stored, StoredStep, StoredTool};
+use crate::run::stored_reference::{Problem, Source, Stored, StoredStep, StoredTool};
+use crate::run::symmetry::Mirror;
 use crate::run::{Group, case_name};
 
 /// Prints the state of a load step. A solution may take an hour, and the lines remain if it does not finish.

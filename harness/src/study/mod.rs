@@ -1,15 +1,16 @@
 //! A study: many scenes and methods, run in a fixed order, checked and written to files.
 
-pub(crate) mod apart;
 mod args;
 mod busy;
 pub mod check;
 mod events;
 mod execute;
+mod execution;
 mod files;
 mod filters;
 pub(crate) mod folder;
 mod foreseen;
+pub(crate) mod isolated;
 mod listing;
 pub(crate) mod make_reference;
 pub(crate) mod merge;
@@ -22,7 +23,6 @@ mod summary;
 mod task;
 mod tasks;
 mod trials;
-mod whole;
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -34,18 +34,17 @@ use records::{Axis, Check as Verdict, Machine, Record, Reference, RunSet, Surfac
 
 use crate::error::ForeignStatus;
 use crate::outcome::{Counters, Watch, provenance};
-use crate::run::stored::Stored;
+use crate::run::stored_reference::Stored;
 use crate::run::{Repeats, case_name};
 use crate::scenario::{purpose, too_large};
-use apart::Apart;
 use execute::Work;
+use isolated::Apart;
 use progress::Progress;
 use store::{Maker, Store};
 use task::TaskResult;
 use tasks::{Known, Task, list};
 use trials::RefusedScene;
 
-pub use apart::ExperimentArgs;
 pub use args::{Loudness, VerifyArgs};
 pub use busy::warn_if_busy;
 pub use events::Events;
@@ -53,6 +52,7 @@ pub(crate) use events::{Event, Line};
 pub(crate) use files::note_inputs;
 pub use filters::Filters;
 pub(crate) use filters::like;
+pub use isolated::ExperimentArgs;
 pub use listing::Planned;
 pub use merge::MergeArgs;
 pub use summary::RunSummary;

@@ -8,8 +8,8 @@ use super::axes::TEXT;
 use super::canvas::{Anchor, BLACK_INK, Canvas, Colour, GREY, text_width};
 use super::grid::WIDTH;
 use super::{Data, Figure};
+use crate::appearance::Look;
 use crate::claims::reproduced;
-use crate::look::Look;
 use crate::select::{Run, competing, kernels, labels, representative, series};
 
 const ROW: f64 = 16.0;

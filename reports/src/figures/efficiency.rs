@@ -7,10 +7,10 @@ use super::canvas::{Canvas, GREY};
 use super::grid::{Content, multiples};
 use super::style::{Style, find, styles};
 use super::{Data, Figure, PAGE, continued, paged};
-use crate::asks::{Ask, Line, Timed, asks};
 use crate::fronts::{Clock, DEADLINES, Deadline, FLOOR, FRONT, Question, pareto};
 use crate::plot::{self, Curve, Plot, Scale};
 use crate::quantity::label;
+use crate::questions::{Ask, Line, Timed, asks};
 use crate::seconds::Seconds;
 use crate::select::Run;
 
@@ -255,9 +255,9 @@ fn front(canvas: &mut Canvas, panel: &Panel, best: &[(f64, f64)]) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::asks::Rank;
     use crate::fronts::QUESTIONS;
     use crate::fronts::tests::run;
+    use crate::questions::Rank;
     use crate::select::runs;
     use records::Family;
 

@@ -5,10 +5,10 @@ use super::axes::Axis;
 use super::grid::{Content, multiples};
 use super::style::{find, styles};
 use super::{Data, Figure};
+use crate::cheapest::{methods, problems, ratios};
 use crate::fronts::wanted;
 use crate::plot::{self, Curve, Plot, Scale};
 use crate::select::Run;
-use crate::within::{methods, problems, ratios};
 
 /// Smallest number of cases for a profile of a method.
 const CASES: usize = 3;

@@ -4,7 +4,7 @@ use records::Family;
 
 use super::axes::TEXT;
 use super::canvas::{Anchor, BLACK_INK, Canvas, text_width};
-use crate::look::{Look, distinct};
+use crate::appearance::{Look, distinct};
 
 /// Style of a label.
 #[derive(Clone, Debug, PartialEq)]

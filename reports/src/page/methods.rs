@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, HashMap};
 use records::Family;
 use serde::Serialize;
 
-use crate::look::{Look, MARKERS, distinct};
+use crate::appearance::{Look, MARKERS, distinct};
 use crate::select::{Run, by_material, labels};
 
 /// Appearance of a label.

@@ -1,10 +1,10 @@
 //! The page of a report: a single file that needs no network, with its data in columns, drawn by the script
 //! of `reports/page`.
 
-mod asked;
 mod bodies;
 mod commits;
 mod methods;
+mod question;
 mod tabled;
 
 use std::collections::BTreeMap;
@@ -12,7 +12,6 @@ use std::collections::BTreeMap;
 use records::{Machine, Program, Purpose, RunSet, SceneHash, Status};
 use serde::Serialize;
 
-use crate::asks::asks;
 use crate::clouds::Clouds;
 use crate::commits::Trend;
 use crate::error::ReportError;
@@ -20,12 +19,13 @@ use crate::figures::{Data, Figure};
 use crate::findings;
 use crate::fronts::{DEADLINES, FLOOR, WANTED};
 use crate::plot::{Plot, Scale};
+use crate::questions::asks;
 use crate::select::{Run, solved};
 use crate::table::Table;
 
-use asked::AskView;
 use commits::TrendView;
 use methods::{LookView, Methods, RunColumns};
+use question::AskView;
 use tabled::{MapView, TableView};
 
 /// Title that identifies a page of this program.

@@ -1,24 +1,24 @@
 //! Tables of a report, and their common parts.
 
+mod cheapest;
 mod closure;
 mod conditioning;
 mod cost;
 mod error_split;
 mod errors;
+mod face_results;
 mod modes;
 mod orders;
 mod outcome;
 mod over_commits;
 mod peers;
 mod placement;
-mod places;
 mod published;
 mod repeated;
 mod solvers;
 mod stability;
 mod timing;
 mod transfer;
-mod within;
 
 pub(crate) use error_split::{Parts as ErrorParts, parts as error_parts};
 
@@ -32,17 +32,17 @@ use crate::table::Table;
 /// Every table with at least one row, in the order of the report.
 pub(crate) fn all(set: &RunSet, runs: &[Run], clouds: &[Clouds], trends: &[Trend]) -> Vec<Table> {
     let tables = [
-        within::within(runs),
+        cheapest::within(runs),
         stability::stability(set),
         errors::relative(runs),
         errors::rms(runs),
         errors::maxima(runs),
-        places::supports(runs),
-        places::means(runs),
+        face_results::supports(runs),
+        face_results::means(runs),
         orders::observed(runs),
         orders::convergence_index(runs),
         modes::modes(runs),
-        places::frequencies(runs),
+        face_results::frequencies(runs),
         timing::phases(runs, &set.provenance.machine),
         repeated::repeated(runs),
         cost::cost(runs),

@@ -2,10 +2,10 @@
 //! run time against error.
 
 mod args;
+mod default_methods;
 mod ladder;
 mod quantity;
 mod search;
-mod usual;
 
 use std::io::IsTerminal;
 
@@ -119,7 +119,7 @@ fn demand(args: &PickArgs) -> Result<Demand, String> {
 
 /// Loads the scene and selects the methods to try.
 fn opened(args: &PickArgs) -> Result<(Scene, Vec<usize>), u8> {
-    let (scene, own) = usual::with_usual(&args.scene, args.usual)
+    let (scene, own) = default_methods::with_usual(&args.scene, args.usual)
         .map_err(|errors| refuse_scene(&args.scene.file, &errors))?;
     if own == 0 || args.usual {
         let ids: Vec<&str> = scene.methods[own..].iter().map(|m| m.id.as_str()).collect();

@@ -1,7 +1,7 @@
 //! The hidden command `solve`: solves a problem in files, as a program called by an adapter does. It serves
 //! to measure the overhead of the protocol. It can also misbehave on request, to test the calling code.
 
-mod own;
+mod engine;
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -14,7 +14,7 @@ use serde_json::json;
 
 use crate::adapter::{RESULT, npy};
 use crate::procedure::external::problem::{SCHEMA, TEXT, Text};
-use own::Solved;
+use engine::Solved;
 
 /// Arguments of the hidden command `solve`.
 #[derive(Args)]
@@ -86,7 +86,7 @@ fn answer(args: &SolveArgs) -> Result<u8, String> {
         "children" => leave_a_child()?,
         _ => {}
     }
-    let solved = own::solve(&args.problem, &text)?;
+    let solved = engine::solve(&args.problem, &text)?;
     found(&args.answer, &text, mode, solved)
 }
 

@@ -6,10 +6,10 @@
 //! the pressure is wrong by 131 % there, and by 0.4 % at the points. A projection or a smoothed gradient has
 //! a different strain.
 
-mod own;
+mod quadrature_points;
 mod recovered;
 
 use super::Solved;
 
-pub(super) use own::own_stress;
+pub(super) use quadrature_points::own_stress;
 pub(crate) use recovered::Recovered;

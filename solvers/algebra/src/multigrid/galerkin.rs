@@ -7,8 +7,8 @@
 use lanes::{LanePath, on_path};
 
 use super::graph::Graph;
-use super::lower::{Lower, LowerRows};
-use super::sets::Sets;
+use super::lower_triangle::{Lower, LowerRows};
+use super::row_sets::Sets;
 use super::transfer::{Transfer, Weight};
 
 /// Returns `P^T A P` for the matrix `lower` with its `graph`.

@@ -3,7 +3,7 @@
 
 use std::ops::Range;
 
-use super::lower::LowerRows;
+use super::lower_triangle::LowerRows;
 use super::operator::{Operator, transposed};
 
 /// Columns of every row, ascending, with the positions of their blocks in the lower triangle.

@@ -5,7 +5,7 @@ use std::sync::Mutex;
 use super::aggregate::{Modes, aggregates, orthonormal};
 use super::galerkin::galerkin;
 use super::graph::Graph;
-use super::lower::{Lower, LowerRows};
+use super::lower_triangle::{Lower, LowerRows};
 use super::operator::{Entry, Operator};
 use super::transfer::{Dense, Transfer, Weight};
 use crate::linear_solver::{FactorError, Factorization, Symmetric, factor};

@@ -11,7 +11,7 @@ use std::ops::Range;
 use nalgebra::SMatrix;
 use rayon::prelude::*;
 
-use super::lower::LowerRows;
+use super::lower_triangle::LowerRows;
 use super::sweep::times;
 
 /// Vector entry of a node.

@@ -4,7 +4,7 @@ use super::aggregate::{MODES, aggregates, orthonormal};
 use super::galerkin::galerkin;
 use super::graph::Graph;
 use super::level::{Cycle, by_aggregates};
-use super::lower::{Block, Lower, LowerRows};
+use super::lower_triangle::{Block, Lower, LowerRows};
 use super::operator::Operator;
 use super::transfer::{Dense, Transfer, Weight};
 

@@ -9,7 +9,7 @@ use shape::Coarser;
 use super::aggregate::{Aggregates, MODES, Modes, NONE};
 use super::graph::Graph;
 use super::operator::{Entry, Operator};
-use super::sets::Sets;
+use super::row_sets::Sets;
 
 /// Weight of a coarse node with C degrees of freedom at a fine node with B.
 pub(super) trait Weight<const B: usize, const C: usize>: Copy + Send + Sync {

@@ -13,7 +13,7 @@ use material::Tangent;
 use shape::{Matrix3, Vector3};
 
 use super::shared::GroupHessian;
-use super::sorted::Sorted;
+use super::sorted_rows::Sorted;
 
 pub(crate) type Vector4 = nalgebra::Vector4<f64>;
 

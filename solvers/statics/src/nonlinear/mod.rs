@@ -10,7 +10,7 @@ mod newton;
 mod relaxing;
 mod shared;
 mod solid;
-mod sorted;
+mod sorted_rows;
 mod split;
 mod statics;
 mod stepper;

@@ -11,7 +11,7 @@ use shape::{Matrix3, Vector3};
 use super::groups::Pairs;
 use super::lanes::{BlockSum, PointTangent, Vector4, group_products, point_products};
 use super::solid::{Hessian, Internal};
-use super::sorted::Sorted;
+use super::sorted_rows::Sorted;
 use super::{Dilation, Solid};
 
 /// Index that marks a constrained degree of freedom among the unknowns.

@@ -3,7 +3,6 @@
 mod drive;
 mod equations;
 mod factors;
-mod passage;
 mod policy;
 mod rigid;
 mod search;
@@ -11,6 +10,7 @@ mod state;
 mod tangent;
 #[cfg(test)]
 mod tests;
+mod tool_checks;
 mod tools;
 
 use contact::{ContactCounts, Drive, ToolState};
@@ -25,9 +25,9 @@ use crate::nonlinear::in_time::{Ended, TimeTerms};
 use crate::nonlinear::statics::{StaticProblem, StaticWork, Step};
 use crate::nonlinear::system::SurfaceTable;
 
-pub(crate) use self::passage::shortest_travel;
 pub(crate) use self::policy::{Descent, near};
 pub(crate) use self::state::State;
+pub(crate) use self::tool_checks::shortest_travel;
 
 pub use self::policy::{Iteration, NewtonParams};
 

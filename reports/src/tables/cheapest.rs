@@ -1,11 +1,11 @@
 //! The smallest time within an error: a row for each method, a column for each case.
 
+use crate::cheapest::{methods, problems, ratios};
 use crate::fronts::wanted;
 use crate::seconds::Seconds;
 use crate::select::{Run, solved};
 use crate::table::Column::{Number, Words};
 use crate::table::{Cell, Table};
-use crate::within::{methods, problems, ratios};
 
 /// Table of every method on every case that it was run on.
 pub(super) fn within(runs: &[Run]) -> Table {

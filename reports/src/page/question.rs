@@ -4,9 +4,9 @@ use records::Reference;
 use serde::Serialize;
 
 use super::methods::Methods;
-use crate::asks::{Ask, Line, Timed};
 use crate::fronts::Clock;
 use crate::quantity::label;
+use crate::questions::{Ask, Line, Timed};
 
 #[derive(Serialize)]
 pub(super) struct AskView {

@@ -2,8 +2,8 @@
 
 use records::Family;
 
-use crate::asks::{Ask, Line, asks};
 use crate::fronts::{Clock, WANTED};
+use crate::questions::{Ask, Line, asks};
 use crate::seconds::Seconds;
 use crate::select::Run;
 

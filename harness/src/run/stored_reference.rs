@@ -11,7 +11,7 @@ use geometry::{Point3, Vector3};
 use records::{Family, Record};
 use serde::{Deserialize, Serialize};
 
-use super::mirror::Mirror;
+use super::symmetry::Mirror;
 use crate::Failure;
 use crate::measure::{OwnError, Reference, norms};
 use crate::outcome::{LoadStep, ToolStep, provenance, push, push_numbered, run_id};
