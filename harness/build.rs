@@ -13,7 +13,7 @@ const SOURCES: [&str; 12] = [
     "Cargo.lock",
     "rust-toolchain.toml",
     "cases/src",
-    "harness/adapters",
+    "harness/shipped",
     "harness/src",
     "harness/build.rs",
     "records/src",

@@ -5,7 +5,7 @@ pub(super) type Files = &'static [(&'static str, &'static str)];
 
 macro_rules! shipped {
     ($($folder:literal: $($file:literal),+;)+) => {
-        &[$(&[$(($file, include_str!(concat!("../../adapters/", $folder, "/", $file)))),+]),+]
+        &[$(&[$(($file, include_str!(concat!("../../shipped/", $folder, "/", $file)))),+]),+]
     };
 }
 
@@ -28,7 +28,7 @@ mod tests {
 
     #[test]
     fn every_folder_of_the_project_is_shipped_whole() {
-        let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("adapters");
+        let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("shipped");
         let mut folders = 0;
         for folder in std::fs::read_dir(root).unwrap().map(|entry| entry.unwrap().path()) {
             if !folder.is_dir() {

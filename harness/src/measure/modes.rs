@@ -91,7 +91,7 @@ pub(crate) fn report(run: &Solved, vibration: &Vibration) -> Result<Modes, Failu
     Ok(Modes { modes: each.collect(), metrics, dofs: modes.dofs, warnings })
 }
 
-/// Warning of modes with (nearly) zero frequency because of the quadrature or the mass. A mode's shape has
+/// Warning of modes whose frequency is far too low, often zero, because of the quadrature or the mass. A mode's shape has
 /// the squared frequency of its strain energy under finer integration over its consistent mass. Alternating
 /// shapes have strain between the points of means and of reduced quadrature, and almost no displacement in a
 /// cloud whose lumped mass moves. Modes beyond the reported `count` are examined until one is sound.
@@ -125,9 +125,9 @@ fn without_energy(run: &Solved, modes: &statics::Modes, count: usize) -> Result<
     Ok(worst.map(|squares| {
         let [own, finer] = squares.map(|square| square.sqrt() / std::f64::consts::TAU);
         let message = format!(
-            "{unseen} of the lowest modes have little or no energy because the integration or the lumped mass does not see their \
-             shape: the first of them has {own:.4} Hz, and {finer:.4} Hz with finer integration and a consistent mass. Use full \
-             integration, more points, more stabilisation, or another mass"
+            "{unseen} of the lowest modes have less than half the frequency that their shape has with finer integration and a \
+             consistent mass: the first of them has {own:.4} Hz instead of {finer:.4} Hz. The integration or the lumped mass does not see \
+             their shape; use full integration, more points, more stabilisation, or another mass"
         );
         Warning::new(&warning::ZERO_ENERGY_MODES, unseen as f64, "method", message)
     }))
