@@ -155,7 +155,7 @@ fn parts_made_one_by_one_join_to_the_same_reference() {
         assert_fails(&make(&[method], &refused, &[&part]), 2, says);
         assert!(!std::path::Path::new(&refused).exists());
     };
-    fails("hex9", "no method 'hex9'; it has hex8, tet4-nodal, hex20-mixed");
+    fails("hex9", "no method 'hex9'; known methods are hex8, tet4-nodal, hex20-mixed");
     let change = |from: &str, to: &str| {
         assert!(three.contains(from), "{three}");
         write(&dir, "made.toml", &three.replace(from, to));
