@@ -208,7 +208,8 @@ fn what_an_adapter_does_not_offer_is_named_and_no_failure_of_a_study() {
     let done = tissuebench(&dir, &["verify", "study.toml", "--quick", "--out", "results"]);
     assert_fails(&done, 3, "could not run: block nan: ");
     assert!(
-        done.stderr.contains("not-offered: scikit-fem does not support element hex20, only tet4, tet10, hex8"),
+        done.stderr
+            .contains("not-offered: scikit-fem does not support element hex20, only tet4, tet10, hex8"),
         "{}",
         done.stderr
     );

@@ -57,8 +57,11 @@ load = [{{ on = "left", traction = ["-100 Pa", "0 Pa", "0 Pa"] }}, {{ on = "righ
     )
 }
 
+/// Id, strain energy (J), and warnings with their values of a method.
+type Solved = (String, f64, Vec<(String, f64)>);
+
 /// Strain energy (J) of each method, and its warnings that doubt the energy, with their values.
-fn energies(mesh: &str) -> Vec<(String, f64, Vec<(String, f64)>)> {
+fn energies(mesh: &str) -> Vec<Solved> {
     let dir = tempfile::tempdir().unwrap();
     let path = write(&dir, "slit.msh", mesh);
     let scene = format!("{}method = [{}]\n", head(&path), methods(&path));

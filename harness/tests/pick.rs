@@ -213,7 +213,11 @@ fn what_is_asked_wrongly_is_refused() {
         "--quantity 'forse' is not a quantity with a relative error: did you mean 'force'?",
     );
     refused(&block(), &["--error", "3%", "--also", "force"], "is not QUANTITY=PERCENT");
-    refused(&block(), &["--error", "3%", "--method", "tet5"], "no method 'tet5'; known methods are tet4, hex20");
+    refused(
+        &block(),
+        &["--error", "3%", "--method", "tet5"],
+        "no method 'tet5'; known methods are tet4, hex20",
+    );
     refused(&block(), &["--error", "3%", "--quantity", "force"], "runs of this scene have no error of force");
     refused("title = \"nothing\"\n", &["--error", "3%"], "body");
 }

@@ -147,7 +147,10 @@ mod tests {
         assert_eq!(Baseline::load(&path).unwrap(), made);
         // A number has a line of its own, so that a change of one number is a change of one line.
         let text = std::fs::read_to_string(path.join("plates.toml")).unwrap();
-        assert!(text.ends_with("\"tool-force by step [m]\" = [\n    2e0,\n    7.41691286169067e-309,\n]\n"), "{text}");
+        assert!(
+            text.ends_with("\"tool-force by step [m]\" = [\n    2e0,\n    7.41691286169067e-309,\n]\n"),
+            "{text}"
+        );
     }
 
     #[test]

@@ -97,5 +97,5 @@ impl Element<15> for Wedge15 {
 
 /// Side of a corner, or of a node on a triangle's edge: -1 below, 1 above.
 fn side(node: usize) -> f64 {
-    if node / 3 % 2 == 0 { -1.0 } else { 1.0 }
+    if (node / 3).is_multiple_of(2) { -1.0 } else { 1.0 }
 }
