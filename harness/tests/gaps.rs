@@ -89,7 +89,8 @@ fn clouds_open_slits_as_elements_do() {
         assert_eq!(all.len(), 8);
         for (method, energy, doubts) in &all[1..] {
             let off = energy / exact - 1.0;
-            // Separated halves bend far from any gap, and 240 nodes are few: one of 120 alone has 0.11 to 0.15.
+            // Separated halves bend far from any gap, and 240 nodes are few: one of 120 alone has 0.11 to
+            // 0.15.
             let bound = if method == "own" && tip < 0.0 { 0.18 } else { 0.1 };
             assert!(off.abs() < bound || !doubts.is_empty(), "{tip} {width} {bend}, {method}: {off}");
             // Means over nodes are soft in bending, with or without a gap, and smooth the stress.

@@ -133,8 +133,8 @@ fn a_body_with_a_tip_has_its_probes_inside() {
     assert_eq!(done.code, 0, "{}", done.stderr);
 }
 
-/// A tip under the plate, and a blade: faces of different directions meet there. No run takes the plate for one that
-/// pushes out of the body from within.
+/// A tip under the plate, and a blade: faces of different directions meet there. No run takes the plate for
+/// one that pushes out of the body from within.
 #[test]
 fn a_plate_on_a_tip_is_carried_from_outside() {
     let dir = tempfile::tempdir().unwrap();

@@ -1,4 +1,5 @@
-//! Hexahedra and wedges of one mesh file in one body: exactness, contact, pressure, dynamics, output, and refusals.
+//! Hexahedra and wedges of one mesh file in one body: exactness, contact, pressure, dynamics, output, and
+//! refusals.
 
 mod common;
 
@@ -6,7 +7,8 @@ use common::{assert_fails, objects, tissuebench, write};
 use serde_json::Value;
 use tempfile::TempDir;
 
-/// A mesh file of the geometry crate: two cubes with hexahedra on the left and wedges on the right, 2 x 1 x 1.
+/// A mesh file of the geometry crate: two cubes with hexahedra on the left and wedges on the right, 2 x 1 x
+/// 1.
 fn file(name: &str) -> String {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../solvers/geometry/tests/files");
     format!("{folder}/{name}")
@@ -57,8 +59,8 @@ fn fields_of_the_cells_order_are_exact_from_every_format() {
     }
 }
 
-/// Pressed between the held end and a plate, and loaded by a pressure: mixed cells agree with tetrahedra, in statics
-/// and in explicit dynamics, and every state is written.
+/// Pressed between the held end and a plate, and loaded by a pressure: mixed cells agree with tetrahedra, in
+/// statics and in explicit dynamics, and every state is written.
 #[test]
 fn mixed_cells_do_what_tetrahedra_do() {
     let dir = TempDir::new().unwrap();

@@ -47,7 +47,8 @@ fn what_a_deck_has_beside_its_mesh_is_said_in_info_and_run() {
     assert!(done.code == 0 && !done.stdout.contains("left-out"), "{}", done.stdout);
 }
 
-/// Two blocks of 10 mm that share no node, with `*TIE` between them. The second block has `parts` cells along y.
+/// Two blocks of 10 mm that share no node, with `*TIE` between them. The second block has `parts` cells along
+/// y.
 fn tied(parts: usize) -> String {
     let mut text = String::from(
         "*NODE\n1,0,0,0\n2,10,0,0\n3,0,10,0\n4,10,10,0\n5,0,0,10\n6,10,0,10\n7,0,10,10\n8,10,10,10\n",
@@ -67,8 +68,8 @@ fn tied(parts: usize) -> String {
     text + "*TIE, NAME=GLUE\nSLAVE, MASTER\n"
 }
 
-/// The tie is listed by its line, and the blocks that it would join are counted. Blocks with coincident faces are
-/// joined on request, and then move as a mesh of one piece does.
+/// The tie is listed by its line, and the blocks that it would join are counted. Blocks with coincident faces
+/// are joined on request, and then move as a mesh of one piece does.
 #[test]
 fn pieces_of_a_tie_are_counted_and_joined_on_request() {
     let dir = tempfile::tempdir().unwrap();

@@ -9,7 +9,8 @@ struct House {
     folder: &'static str,
     /// Path of its modules.
     root: &'static str,
-    /// Modules from left to right. A module without a file of its own here belongs to the folder that is named.
+    /// Modules from left to right. A module without a file of its own here belongs to the folder that is
+    /// named.
     rooms: &'static [&'static str],
 }
 

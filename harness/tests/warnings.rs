@@ -87,8 +87,8 @@ fn a_mesh_that_locks_warns_of_its_stress_and_a_good_one_does_not() {
     }
 }
 
-/// Next to the edge of a bonded punch, forces of coarse meshes are too large by tens of percent, and nothing says how
-/// far: no number of a run without a reference is called an error. The jump of stress warns.
+/// Next to the edge of a bonded punch, forces of coarse meshes are too large by tens of percent, and nothing
+/// says how far: no number of a run without a reference is called an error. The jump of stress warns.
 #[test]
 fn no_number_of_a_run_without_a_reference_is_called_an_error() {
     let dir = tempfile::tempdir().unwrap();

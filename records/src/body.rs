@@ -34,8 +34,8 @@ pub struct Body {
 pub struct Inside {
     /// Coordinates (m) of the interior points in the reference configuration, packed.
     pub points: String,
-    /// Cells by their number of nodes (4, 6, 8, 10, 15 or 20). Indices refer to the points on faces, followed by the
-    /// interior points.
+    /// Cells by their number of nodes (4, 6, 8, 10, 15 or 20). Indices refer to the points on faces, followed
+    /// by the interior points.
     pub cells: Vec<Faces>,
     /// Values at each state of the body.
     pub states: Vec<InsideState>,

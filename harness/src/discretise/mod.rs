@@ -208,8 +208,8 @@ impl Discretisation {
     }
 }
 
-/// Refuses groups without a positive volume: their mean dilation has no meaning, and negative ones make a body
-/// unstable. Functions of second order are negative over most of their support.
+/// Refuses groups without a positive volume: their mean dilation has no meaning, and negative ones make a
+/// body unstable. Functions of second order are negative over most of their support.
 fn positive(groups: &DilationGroups, weights: &[f64]) -> Result<(), Failure> {
     let volume = |group: usize| -> f64 {
         let (points, shares) = groups.group(group);

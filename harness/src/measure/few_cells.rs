@@ -38,10 +38,10 @@ struct Triangle {
     mirror: bool,
 }
 
-/// Warns if half of the strain energy lies where the body has fewer than [`ENOUGH`] cells between its two sides.
-/// The cells are counted along the displacement, which is transverse in a body that bends or is compressed,
-/// and longitudinal in a body that is stretched or sheared. With an exact solution, the errors are known and
-/// there is no warning.
+/// Warns if half of the strain energy lies where the body has fewer than [`ENOUGH`] cells between its two
+/// sides. The cells are counted along the displacement, which is transverse in a body that bends or is
+/// compressed, and longitudinal in a body that is stretched or sheared. With an exact solution, the errors
+/// are known and there is no warning.
 pub(super) fn warning(run: &Solved, metrics: &[Metric]) -> Result<Option<Warning>, Failure> {
     let jump = metrics.iter().find(|m| *m.entry == metric::STRESS_JUMP).map(|m| m.value);
     if run.setup.exact.is_some() || run.setup.contact.is_some() || !jump.is_some_and(|jump| jump > EVEN) {

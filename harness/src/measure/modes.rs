@@ -91,10 +91,11 @@ pub(crate) fn report(run: &Solved, vibration: &Vibration) -> Result<Modes, Failu
     Ok(Modes { modes: each.collect(), metrics, dofs: modes.dofs, warnings })
 }
 
-/// Warning of modes whose frequency is far too low, often zero, because of the quadrature or the mass. A mode's shape has
-/// the squared frequency of its strain energy under finer integration over its consistent mass. Alternating
-/// shapes have strain between the points of means and of reduced quadrature, and almost no displacement in a
-/// cloud whose lumped mass moves. Modes beyond the reported `count` are examined until one is sound.
+/// Warning of modes whose frequency is far too low, often zero, because of the quadrature or the mass. A
+/// mode's shape has the squared frequency of its strain energy under finer integration over its consistent
+/// mass. Alternating shapes have strain between the points of means and of reduced quadrature, and almost no
+/// displacement in a cloud whose lumped mass moves. Modes beyond the reported `count` are examined until one
+/// is sound.
 fn without_energy(run: &Solved, modes: &statics::Modes, count: usize) -> Result<Option<Warning>, Failure> {
     let (density, own) = (run.setup.density()?, &run.prepared.volume);
     let (fine, fine_region) = run.prepared.fine_volume()?;

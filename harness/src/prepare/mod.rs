@@ -356,8 +356,8 @@ impl Prepared {
         Ok(())
     }
 
-    /// Constrains a cloud by a weak condition on the facets of the place, and by a penalty in its volume if the
-    /// place has one (a clamped end instead of a clamped face).
+    /// Constrains a cloud by a weak condition on the facets of the place, and by a penalty in its volume if
+    /// the place has one (a clamped end instead of a clamped face).
     fn constrain_weakly(
         &mut self,
         method: &Discretisation,

@@ -13,8 +13,8 @@ pub(super) struct Foreseen {
     seconds: Vec<f64>,
     /// Whether each task's time is a stored measurement.
     known: Vec<bool>,
-    /// Number of measured runs and median ratio of measured to estimated time, by scene; and the median over all
-    /// scenes.
+    /// Number of measured runs and median ratio of measured to estimated time, by scene; and the median over
+    /// all scenes.
     of_scene: BTreeMap<usize, (usize, f64)>,
     of_all: f64,
 }
@@ -79,8 +79,8 @@ impl Foreseen {
         self.known[task]
     }
 
-    /// Ratio of measured to estimated time of a scene. The ratio of all scenes counts like one more run of this
-    /// scene, so that a single run does not decide.
+    /// Ratio of measured to estimated time of a scene. The ratio of all scenes counts like one more run of
+    /// this scene, so that a single run does not decide.
     pub(super) fn factor(&self, scene: usize) -> f64 {
         let (count, of_scene) = self.of_scene.get(&scene).copied().unwrap_or((0, 1.0));
         let runs = count as f64;

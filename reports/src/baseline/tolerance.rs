@@ -33,8 +33,8 @@ static RULES: [Rule; 6] = [
 /// Fraction of the largest number of the same unit in a run below which a number is rounding.
 const ROUNDING: f64 = 1e-9;
 
-/// Whether two values of a quantity, named with its unit (`load-x [N]`), may come from the same method on two processors. `scale` is the largest
-/// number of the unit in the run, or 1 for pure numbers.
+/// Whether two values of a quantity, named with its unit (`load-x [N]`), may come from the same method on two
+/// processors. `scale` is the largest number of the unit in the run, or 1 for pure numbers.
 pub(super) fn close(quantity: &str, scale: f64, before: f64, now: f64) -> bool {
     let name = quantity.split(' ').next();
     let (relative, absolute) = match RULES.iter().find(|rule| name == Some(rule.quantity.name)) {

@@ -1,5 +1,5 @@
-//! Published comparisons of methods, tested against results. A claim consists of scenes, methods, relations and
-//! tolerances, and of published numbers with their place.
+//! Published comparisons of methods, tested against results. A claim consists of scenes, methods, relations
+//! and tolerances, and of published numbers with their place.
 
 mod judge;
 mod numbers;

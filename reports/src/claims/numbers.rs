@@ -125,7 +125,8 @@ struct Match<'a, 'r> {
 }
 
 impl<'a, 'r> Match<'a, 'r> {
-    /// The displacement of the run after the published transfer scheme, compared with the secondary reference.
+    /// The displacement of the run after the published transfer scheme, compared with the secondary
+    /// reference.
     fn transferred(&self) -> Option<&'a Run<'r>> {
         let scheme = self.published.transfer.as_ref()?;
         self.case.iter().find(|r| {

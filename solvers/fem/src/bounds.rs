@@ -56,9 +56,9 @@ impl Bounds {
 ///
 /// A quadratic map is the (tri)linear map of its corners plus, per edge, the deviation of the mid-edge node
 /// from the middle times a function between 0 and 1. The sum of these functions is bounded by the cell's
-/// [`bulge`](geometry::element::ReferenceCell::bulge). The corners plus that many largest deviations therefore
-/// bound the cell. The box is enlarged by 1e-9 of its diagonal, so that
-/// rounding leaves no gap between cells.
+/// [`bulge`](geometry::element::ReferenceCell::bulge). The corners plus that many largest deviations
+/// therefore bound the cell. The box is enlarged by 1e-9 of its diagonal, so that rounding leaves no gap
+/// between cells.
 pub(crate) fn cell_bounds(mesh: &Mesh, cell: usize) -> Bounds {
     let kind = mesh.kind(cell);
     let local: Vec<usize> = (0..kind.node_count()).collect();

@@ -1,5 +1,5 @@
-//! Faces of cells. Node order is that of VTK and Abaqus. The corner nodes of each face are ordered so that its
-//! normal, by the right-hand rule, points outwards.
+//! Faces of cells. Node order is that of VTK and Abaqus. The corner nodes of each face are ordered so that
+//! its normal, by the right-hand rule, points outwards.
 
 use crate::CellKind;
 

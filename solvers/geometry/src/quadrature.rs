@@ -2,7 +2,8 @@
 //!
 //! Simplex rules are fully symmetric, so that an integral does not depend on the order of a cell's corners.
 //! All weights are positive, and all points lie strictly inside. Cube and square rules are tensor products of
-//! Gauss-Legendre rules, prism rules are products of one with a triangle rule. Weights sum to the measure of the reference cell.
+//! Gauss-Legendre rules, prism rules are products of one with a triangle rule. Weights sum to the measure of
+//! the reference cell.
 
 mod divided;
 mod gauss;

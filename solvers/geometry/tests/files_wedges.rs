@@ -1,5 +1,5 @@
-//! Wedges in mesh files: the orders of nodes of each format, both orders of VTK files, hexahedra and wedges in one
-//! body.
+//! Wedges in mesh files: the orders of nodes of each format, both orders of VTK files, hexahedra and wedges
+//! in one body.
 
 use std::path::{Path, PathBuf};
 
@@ -29,8 +29,8 @@ fn vtk(kind: CellKind, order: &[usize]) -> String {
     )
 }
 
-/// VTK's documentation lets the normal of the first triangle of a wedge point away from the second. Gmsh and others
-/// write the mirror image, as the numbering of VTK's quadratic wedge also is.
+/// VTK's documentation lets the normal of the first triangle of a wedge point away from the second. Gmsh and
+/// others write the mirror image, as the numbering of VTK's quadratic wedge also is.
 #[test]
 fn wedges_of_either_order_are_read_from_vtk_files() {
     for kind in [CellKind::Wedge6, CellKind::Wedge15] {
@@ -77,8 +77,8 @@ fn hexahedra_and_wedges_of_a_file_are_one_body() {
             let mesh = files::read(&file, 1.0).unwrap_or_else(|bad| panic!("{bad}"));
             assert_eq!((mesh.uniform_kind(), counts(&mesh)), (None, kinds.to_vec()), "{}", file.display());
             assert!((quality::check(&mesh).unwrap().volume - 2.0).abs() < 1e-12, "{}", file.display());
-            // Nothing is open between the two boxes: ten sides of four quadrilaterals, of which two are of eight
-            // triangles.
+            // Nothing is open between the two boxes: ten sides of four quadrilaterals, of which two are of
+            // eight triangles.
             assert_eq!(mesh.boundary().len(), 8 * 4 + 2 * 8, "{}", file.display());
             // Written and read again, it is the same in every format.
             let folder = tempfile::tempdir().unwrap();
@@ -107,8 +107,8 @@ fn the_order_of_mixed_cells_is_raised_and_they_become_tetrahedra() {
     assert!(!is_convertible(&linear, CellKind::Hex8) && !is_convertible(&linear, CellKind::Wedge6));
 }
 
-/// Three hexahedra around an edge, each with other local axes. The first is cut along the edge; the others, whose
-/// row around the edge does not cross it, are cut along this row.
+/// Three hexahedra around an edge, each with other local axes. The first is cut along the edge; the others,
+/// whose row around the edge does not cross it, are cut along this row.
 #[test]
 fn hexahedra_around_an_edge_become_wedges() {
     let at = |k: usize, z: f64| {

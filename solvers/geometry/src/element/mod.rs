@@ -1,5 +1,6 @@
-//! Elements, one file each: shape functions, used by quality checks, point location, tables and kernels, and an
-//! [`Entry`] of all other facts. A new element needs a file, its lines here, and its name in the catalogue.
+//! Elements, one file each: shape functions, used by quality checks, point location, tables and kernels, and
+//! an [`Entry`] of all other facts. A new element needs a file, its lines here, and its name in the
+//! catalogue.
 
 mod cube;
 mod entry;
@@ -60,8 +61,9 @@ elements! {
     Wedge15 = 15,
 }
 
-/// A Lagrange element of `N` nodes on its reference cell: the tetrahedron (0,0,0), (1,0,0), (0,1,0),
-/// (0,0,1), the cube `[-1, 1]^3`, or the triangle (0,0), (1,0), (0,1) between z = -1 and z = 1. The same functions map the reference cell to space: `x(xi) = sum_a N_a(xi) x_a`.
+/// A Lagrange element of `N` nodes on its reference cell: the tetrahedron (0,0,0), (1,0,0), (0,1,0), (0,0,1),
+/// the cube `[-1, 1]^3`, or the triangle (0,0), (1,0), (0,1) between z = -1 and z = 1. The same functions map
+/// the reference cell to space: `x(xi) = sum_a N_a(xi) x_a`.
 pub trait Element<const N: usize> {
     /// Kind of mesh cell, which also defines the node order.
     const KIND: CellKind;

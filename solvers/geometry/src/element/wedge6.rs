@@ -4,11 +4,11 @@ use super::prism::PRISM;
 use super::{Element, Entry, FileCodes, Points, in_order};
 use crate::CellKind;
 
-/// 6-node wedge on the triangle (0,0), (1,0), (0,1) between z = -1 and z = 1: bottom 012 counter-clockwise seen
-/// from above, 345 above.
+/// 6-node wedge on the triangle (0,0), (1,0), (0,1) between z = -1 and z = 1: bottom 012 counter-clockwise
+/// seen from above, 345 above.
 ///
-/// `N_a = L_a (1 + z z_a) / 2` with the barycentric coordinates `L` of the triangle. Source: Hughes, The Finite
-/// Element Method, section 3.6 (wedge as a degenerate brick).
+/// `N_a = L_a (1 + z z_a) / 2` with the barycentric coordinates `L` of the triangle. Source: Zienkiewicz &
+/// Taylor, The Finite Element Method, vol. 1 (triangular prism elements).
 pub struct Wedge6;
 
 impl Element<6> for Wedge6 {

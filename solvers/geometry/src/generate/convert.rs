@@ -14,8 +14,9 @@ pub fn is_convertible(mesh: &Mesh, kind: CellKind) -> bool {
 }
 
 /// Converts a mesh to cells of `kind`, or returns `None` if a cell cannot be converted. Any cell can become
-/// straight-edged tet4, most meshes of hex8 can become wedge6, and cells that can become linear cells can become
-/// the quadratic cells of the same shape unless they are quadratic. New nodes lie halfway along their edges.
+/// straight-edged tet4, most meshes of hex8 can become wedge6, and cells that can become linear cells can
+/// become the quadratic cells of the same shape unless they are quadratic. New nodes lie halfway along their
+/// edges.
 pub fn converted(mesh: Mesh, kind: CellKind) -> Option<Mesh> {
     if mesh.uniform_kind() == Some(kind) {
         return Some(mesh);
@@ -47,8 +48,8 @@ pub fn to_tets(mesh: &Mesh) -> Mesh {
     divided(mesh, TET, nodes, &first)
 }
 
-/// Mesh of the parts of the cells of a mesh, all of one kind. `nodes` has the nodes of all parts; cell `c` has
-/// the parts `first[c]..first[c + 1]`. Regions and groups are kept, unused nodes are dropped.
+/// Mesh of the parts of the cells of a mesh, all of one kind. `nodes` has the nodes of all parts; cell `c`
+/// has the parts `first[c]..first[c + 1]`. Regions and groups are kept, unused nodes are dropped.
 pub(super) fn divided(mesh: &Mesh, kind: CellKind, mut nodes: Vec<u32>, first: &[usize]) -> Mesh {
     let parts = nodes.len() / kind.node_count();
     let mut regions = Vec::with_capacity(parts);
@@ -117,8 +118,8 @@ fn facets_within(mesh: &Mesh, facet: Facet, kind: CellKind, nodes: &[u32], first
     found
 }
 
-/// Raises cells to the quadratic kind of the same shape; quadratic cells are unchanged. New nodes lie halfway along their edges. They are numbered after the existing nodes,
-/// in the order in which cells first use them.
+/// Raises cells to the quadratic kind of the same shape; quadratic cells are unchanged. New nodes lie halfway
+/// along their edges. They are numbered after the existing nodes, in the order in which cells first use them.
 pub fn raise_order(mesh: &Mesh) -> Mesh {
     let mut points = mesh.points().to_vec();
     let mut middle: HashMap<(u32, u32), u32> = HashMap::new();

@@ -1,9 +1,9 @@
 //! Divides hexahedra into wedges, two each.
 //!
-//! A plane through a diagonal of one face and of the opposite face cuts a hexahedron into two wedges. These two
-//! faces become triangles, the other four stay whole. Neighbours agree if all hexahedra of a row, through
-//! opposite faces, are cut along the row, or none is. Every hexahedron is in three rows, and one of them is cut.
-//! Rows are chosen one after the other; a hexahedron that two rows without cuts cross leaves no choice.
+//! A plane through a diagonal of one face and of the opposite face cuts a hexahedron into two wedges. These
+//! two faces become triangles, the other four stay whole. Neighbours agree if all hexahedra of a row, through
+//! opposite faces, are cut along the row, or none is. Every hexahedron is in three rows, and one of them is
+//! cut. Rows are chosen one after the other; a hexahedron that two rows without cuts cross leaves no choice.
 
 use std::collections::HashMap;
 

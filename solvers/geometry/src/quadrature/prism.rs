@@ -6,7 +6,8 @@ use super::{Rule, gauss_legendre, tri};
 pub const PRISM_RULES: [(usize, usize, usize); 6] =
     [(1, 1, 1), (6, 3, 2), (9, 3, 3), (18, 6, 3), (21, 7, 3), (48, 12, 4)];
 
-/// Returns the rule with this number of points on the triangle (0,0), (1,0), (0,1) between z = -1 and z = 1, or
+/// Returns the rule with this number of points on the triangle (0,0), (1,0), (0,1) between z = -1 and z = 1,
+/// or
 /// `None` if [`PRISM_RULES`] has no such rule. The weights sum to 1; the points of one triangle are adjacent.
 pub fn prism(points: usize) -> Option<Rule<3>> {
     let (_, across, along) = PRISM_RULES.into_iter().find(|rule| rule.0 == points)?;

@@ -1,8 +1,8 @@
 //! The natural monotonicity test (Deuflhard 2004, ch. 3.3): the same factor applied to the new residual gives
 //! the rest of the step, which must be shorter than the step.
 //!
-//! No energy falls along a step of the pressure's saddle point. The test is independent of the scales of force
-//! and volume.
+//! No energy falls along a step of the pressure's saddle point. The test is independent of the scales of
+//! force and volume.
 
 use super::{Line, REFINED, norm};
 use crate::nonlinear::StaticError;
@@ -30,7 +30,8 @@ impl Line<'_, '_> {
         }
     }
 
-    /// Returns the length of a step, which consists of displacements, and of pressures divided by their scale.
+    /// Returns the length of a step, which consists of displacements, and of pressures divided by their
+    /// scale.
     fn length_of(&self, step: &[f64]) -> f64 {
         let (displacements, pressures) = step.split_at(self.equations.system.free);
         norm(displacements).hypot(norm(pressures) / self.equations.system.pressure_scale)
