@@ -30,8 +30,8 @@ impl Affine {
         Affine { elastic, gradient, shift }
     }
 
-    /// A field whose nine components and shift are all nonzero and different, with strains of about 1e-3:
-    /// a patch test that no symmetry of the body can pass by luck.
+    /// A field whose nine components and shift are all nonzero and different, with strains of about 1e-3. No
+    /// symmetry of the body can let a wrong method pass this patch test by chance.
     pub fn generic(elastic: Elastic) -> Affine {
         let gradient = Matrix3::new(1.1, -0.4, 0.7, 0.9, -1.3, 0.2, -0.6, 0.5, 0.8) * 1e-3;
         Affine { elastic, gradient, shift: Vector3::new(1.0e-5, -2.0e-5, 3.0e-5) }

@@ -84,7 +84,7 @@ impl Exact for CantileverPlaneStrain {
         scale * h
     }
 
-    /// Cauchy stress, Pa, written out: Hooke's law loses digits as nu nears 0.5.
+    /// Cauchy stress, Pa, in closed form: Hooke's law loses digits as nu nears 0.5.
     fn stress(&self, p: &Point3) -> Matrix3 {
         let inertia = self.inertia();
         let axial = -self.load * (self.length - p.x) * p.y / inertia;

@@ -13,7 +13,7 @@
 //! Field       x = r(X) cos(k Y) - r(0), y = r(X) sin(k Y); stretches r', k r, 1.
 //! Equations   dP_r / dX = k P_t(r', k r, 1), P_r = 0 on both faces X = -h/2, h/2.
 //! Conditions  faces X = -h/2, h/2 free; planes Y = 0 and Z slip; the exact displacement at another Y.
-//! Must hold   displacements converge; the fibre of stretch 1 is not the middle one.
+//! Must hold   displacements converge; the fibre of stretch 1 is not the middle fibre.
 //! ```
 
 use super::{

@@ -6,8 +6,8 @@
 //! J   = l_1 l_2 l_3
 //! ```
 //!
-//! Source: Ogden, Non-linear Elastic Deformations (1984), ch. 4.3. Solvers work with tensors; here there are
-//! only three numbers, so a solver's material is never its own judge.
+//! Source: Ogden, Non-linear Elastic Deformations (1984), ch. 4.3. Solvers work with tensors, and this file
+//! works with three stretches only, so a solver's material is never judged by itself.
 
 use super::{Elastic, Matrix3, Vector3};
 

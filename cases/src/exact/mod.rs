@@ -1,9 +1,9 @@
 //! Exact solutions, each a closed form in three dimensions, by which the solvers are judged.
 //!
-//! Every solution is a file with a card, a field (displacement, displacement gradient, stress and body force
-//! at a point) and the [`SolutionEntry`] by which scenes name it, and a line of the list below. Stresses
-//! follow from laws written out here ([`Elastic`], [`Hyperelastic`]), so that a solver's material is never
-//! its own judge.
+//! Every solution is a file and a line of the list below. The file has a card, a field (displacement,
+//! displacement gradient, stress and body force at a point), and the [`SolutionEntry`] by which scenes name
+//! the solution. Stresses follow from laws that are implemented here ([`Elastic`], [`Hyperelastic`]), so that
+//! a solver's material is never judged by itself.
 //!
 //! A solution may move ([`BarWave`]), vibrate ([`LameCube`], [`RollerBox`]) or relax
 //! ([`RelaxingCompression`]). It is then the field at one time and gives the field at any other time. It may
@@ -140,7 +140,7 @@ pub struct Contact {
 pub fn exact_by_name(name: &str, medium: &Medium, given: &[(&str, f64)]) -> Result<Box<dyn Exact>, Problem> {
     let entry = find(SOLUTIONS, name)?;
     let mut values = Values::new(entry.parameters);
-    // A file keeps the text of its values; here the message is built from the number.
+    // A scene keeps its values as text. Here the message is built from the number.
     let with_value = |bad: Problem, name: &str| match given.iter().find(|(given, _)| *given == name) {
         Some((name, value)) if bad.found.is_none() => bad.found(format!("{name} = {value}")),
         _ => bad,

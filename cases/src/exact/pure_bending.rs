@@ -47,7 +47,7 @@ impl Exact for PureBending {
         self.curvature * h
     }
 
-    /// Cauchy stress `sigma_xx = E k y`, Pa, written out: Hooke's law loses digits as nu nears 0.5.
+    /// Cauchy stress `sigma_xx = E k y`, Pa, in closed form: Hooke's law loses digits as nu nears 0.5.
     fn stress(&self, p: &Point3) -> Matrix3 {
         Matrix3::from_diagonal(&Vector3::new(self.elastic.young() * self.curvature * p.y, 0.0, 0.0))
     }

@@ -94,7 +94,8 @@ impl Exact for RelaxingCompression {
         Matrix3::from_diagonal(&Vector3::new(lateral, lateral, -strain))
     }
 
-    /// Stress of the strain history; Hooke's law of the present gradient would give another.
+    /// Cauchy stress (Pa) of the strain history. Hooke's law for the present gradient would give another
+    /// value.
     fn stress(&self, _x: &Point3) -> Matrix3 {
         Matrix3::from_diagonal(&Vector3::new(0.0, 0.0, -self.state().1))
     }

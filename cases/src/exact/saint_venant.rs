@@ -136,7 +136,7 @@ impl Exact for SaintVenantFlexure {
         self.scale * h
     }
 
-    /// Cauchy stress, Pa, written out: Hooke's law loses digits as nu nears 0.5.
+    /// Cauchy stress, Pa, in closed form: Hooke's law loses digits as nu nears 0.5.
     fn stress(&self, p: &Point3) -> Matrix3 {
         let (y, z, nu) = (p.y, p.z, self.elastic.poisson());
         let (chi_y, chi_z) = self.warping_slope(y, z);

@@ -9,10 +9,11 @@
 //!      '.  '-'  .'
 //!        '-...-'
 //!
-//! Field       u = (A + B / r^3) x,   A = (p a^3 - q b^3) / (3 kappa (b^3 - a^3)),  B = (p - q) a^3 b^3 / (4 mu (b^3 - a^3)).
+//! Field       u = (A + B / r^3) x,
+//!             A = (p a^3 - q b^3) / (3 kappa (b^3 - a^3)),  B = (p - q) a^3 b^3 / (4 mu (b^3 - a^3)).
 //! Conditions  the two pressures; symmetry planes of an octant (u_n = 0), or rigid motion removed otherwise.
-//! Must hold   sigma_rr = -p at a and -q at b; the mean stress is constant, (p a^3 - q b^3) / (b^3 - a^3), whatever
-//!             nu is, so locking shows at once in the pressure. Defined for r > 0.
+//! Must hold   sigma_rr = -p at a and -q at b; the mean stress is constant, (p a^3 - q b^3) / (b^3 - a^3), for
+//!             any nu, so locking shows at once in the pressure. Defined for r > 0.
 //! ```
 
 use super::{
@@ -29,7 +30,8 @@ pub struct ThickSphere {
 }
 
 impl ThickSphere {
-    /// Radii `0 < inner < outer` (m) and the pressures on the inner and the outer wall (Pa, positive pushes).
+    /// A sphere with the radii `0 < inner < outer` (m), under pressures on the inner and the outer wall (Pa,
+    /// positive if they push on the wall).
     pub fn new(
         elastic: Elastic,
         [inner, outer]: [f64; 2],
@@ -73,7 +75,8 @@ impl Exact for ThickSphere {
         a * Matrix3::identity() + b * quadrupole(x, r)
     }
 
-    /// Mean stress plus `2 mu B / r^3 (I - 3 n n^T)`, written out: Hooke's law would lose digits as nu nears 0.5.
+    /// Cauchy stress, Pa: the mean stress plus `2 mu B / r^3 (I - 3 n n^T)`. Hooke's law would lose digits as
+    /// nu nears 0.5.
     fn stress(&self, x: &Point3) -> Matrix3 {
         let r = x.coords.norm();
         self.mean_stress * Matrix3::identity() + 0.5 * self.source / r.powi(3) * quadrupole(x, r)

@@ -45,7 +45,7 @@ impl Exact for UniaxialCompression {
         Matrix3::from_diagonal(&self.stretches())
     }
 
-    /// Cauchy stress `sigma_zz = -E e`, Pa, written out: Hooke's law loses digits as nu nears 0.5.
+    /// Cauchy stress `sigma_zz = -E e`, Pa, in closed form: Hooke's law loses digits as nu nears 0.5.
     fn stress(&self, _x: &Point3) -> Matrix3 {
         Matrix3::from_diagonal(&Vector3::new(0.0, 0.0, -self.elastic.young() * self.strain))
     }

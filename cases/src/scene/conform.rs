@@ -44,8 +44,8 @@ fn any(value: &DeValue<'_>, span: Range<usize>, path: &str, schema: &Value, find
     match (value, fitting.as_slice()) {
         (_, []) if forms.is_empty() => {}
         (_, []) => add(wrong_type(value, &forms)),
-        // Only one form is a text, and it is a word, as if "1 kPa" is given for [x, y, z] or "exact". The
-        // other forms give a better message.
+        // Only one form is a text, and this text is a word: "1 kPa" may stand where [x, y, z] or "exact" is
+        // expected. The other forms give a better message.
         (DeValue::String(text), [form])
             if forms.len() > 1 && words_of(form).is_some_and(|words| nearest(text, words).is_none()) =>
         {

@@ -75,7 +75,7 @@ pub(crate) fn check(all_of: Option<&str>, left_out: &[LeftOutKeys], runs: &[&Pat
     }
 }
 
-/// Most files and folders to search: a larger folder is the wrong one, such as `/`.
+/// Largest number of files and folders to search. A larger folder, such as `/`, is taken for a mistake.
 const MOST_FILES: usize = 10_000;
 
 /// Finds the TOML files in a folder and below it; returns false if there are more than [`MOST_FILES`]

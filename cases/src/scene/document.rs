@@ -17,7 +17,7 @@ use super::error::{ErrorKind, SceneError};
 use super::limits;
 use super::sources::{Files, Place, Sources};
 
-/// Places of the keys of a file by line and column, for messages long after reading.
+/// Locations of the keys of a file by line and column, for messages long after reading.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Origin {
     files: Files,

@@ -3,7 +3,7 @@
 //! The usual rules: `^` binds before a sign, a sign before `*` and `/`, these before `+` and `-`. Powers
 //! associate from the right, all other operators from the left. The reader is our own, in 200 lines, for two
 //! reasons. The crate tried first (exmex 0.21) takes `sqrt(x^2 + y^2 + 3)` for `x^2 + sqrt(y^2 + 3)`, `-x^2`
-//! for `(-x)^2` and doesn't know `1e-3`. And a message must point at the place of an error.
+//! for `(-x)^2` and doesn't know `1e-3`. And a message must point at the location of an error.
 
 use std::borrow::Cow;
 use std::iter::Peekable;
@@ -72,9 +72,9 @@ const ONE: [(&str, OfOne); 19] = [
 const TWO: [(&str, OfTwo); 4] =
     [("min", f64::min), ("max", f64::max), ("atan2", f64::atan2), ("hypot", f64::hypot)];
 
-/// Deepest nesting allowed. It bounds the recursion of the reader and the stack of the evaluation, with four
-/// values per level: those that wait for the rest of a sum, a product and a power, and for the second
-/// argument.
+/// Deepest nesting allowed. The limit bounds the recursion of the reader and the stack of the evaluation. Up
+/// to four values per level are on the stack: the left operands of a sum, a product and a power, and the
+/// first argument of a function.
 const MAX_DEPTH: usize = 40;
 const STACK: usize = 4 * (MAX_DEPTH + 1);
 

@@ -9,7 +9,7 @@ use toml::de::DeValue;
 
 use super::conform::join;
 
-/// Longest file, bytes: the verification's study has 40,000.
+/// Longest file, bytes. The study of the verification has 40,000 bytes.
 pub(crate) const MOST_BYTES: usize = 1 << 18;
 /// Most entries of a list or table.
 const MOST_ENTRIES: usize = 1000;

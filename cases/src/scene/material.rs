@@ -1,5 +1,5 @@
-//! Materials of a scene: a law with its constants, density and relaxation, and the parts of the body with their
-//! own material.
+//! Materials of a scene: laws with their constants, density and relaxation, and the parts of the body with
+//! their own material.
 
 use std::borrow::Cow;
 

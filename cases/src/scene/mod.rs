@@ -1,11 +1,11 @@
-//! Scene and study files: parsed, checked and turned into SI numbers, or refused with all findings at their
-//! places.
+//! Scene and study files: parsed, checked and converted to SI numbers, or refused with all errors and their
+//! locations.
 //!
-//! A scene is one TOML file. A part of a scene (the body, a material, a method) is one file here: its keys, as
-//! types from which the schema is generated; its value, as the program uses it; the reader that turns keys
-//! into the value; and its demands on other parts. A file is checked against the schema, so the two cannot
-//! diverge. A valid file becomes a [`Scene`], which has no text left to parse. Methods that several scenes
-//! share are in a separate file (`shared`).
+//! A scene is one TOML file. Each part of a scene (the body, a material, a method) has one file here. It
+//! defines the keys of the part, as types from which the schema is generated; the value that the program
+//! uses; the reader that converts the keys; and the demands on other parts. Every scene is checked against
+//! the schema, so the reader and the schema cannot diverge. A valid file becomes a [`Scene`], which has no
+//! text left to parse. Methods that several scenes share are in a separate file (`shared`).
 
 mod available;
 mod axis;

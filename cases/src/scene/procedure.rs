@@ -1,4 +1,4 @@
-//! How a scene is solved: the procedures, the keys of each, and how keys become values.
+//! Procedures of a scene: their keys, their values, and the conversion of keys into values.
 
 use catalogue::Problem;
 use schemars::JsonSchema;
@@ -28,12 +28,13 @@ words! {
 }
 
 impl ProcedureKind {
-    /// Whether there is one solution only, or none: no load steps and no time axis.
+    /// Whether the procedure has neither load steps nor a time axis: it solves once or not at all.
     pub(crate) fn has_no_steps(self) -> bool {
         matches!(self, ProcedureKind::Prepare | ProcedureKind::Linear | ProcedureKind::Modes)
     }
 
-    /// The problem with a request for displacements, and help; `None` if the procedure solves for them.
+    /// Problem and help for a request that needs displacements; `None` if the procedure solves for
+    /// displacements.
     pub(crate) fn lacks_displacements(self) -> Option<(&'static str, &'static str)> {
         match self {
             ProcedureKind::Prepare => Some((
@@ -104,10 +105,10 @@ pub(crate) enum ProcedureKeys {
     ImplicitDynamic(ImplicitKeys),
 }
 
-/// How the scene is solved: one procedure with its own settings. In a static procedure loads, prescribed
-/// displacements and drives of tools grow in proportion over its steps. In dynamics they grow over the duration
-/// or a time of their own, and a tool over that of its drive. Loads are dead loads, per undeformed area and
-/// volume and of fixed direction.
+/// Procedure of a scene with its settings. In a static procedure, loads, prescribed displacements and tool
+/// drives grow in proportion over the steps. In dynamics, loads and displacements grow over the duration or
+/// over the time `over`, and a tool moves over the time of its drive. Loads are dead loads: per undeformed
+/// area or volume, with a fixed direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Procedure {
     /// Tables only; nothing is solved.
@@ -254,20 +255,21 @@ table! {
     }
 }
 
-/// Default spectral radius without tools: motion that a step cannot resolve loses a fifth per step. With tools
-/// the default is 0. Above 0 a step balances a mean of the forces at both its ends: a tool that has left the
-/// tissue pushes on for a step, and stiff contact gains energy (a block between plates of 5 MPa/mm swung by
-/// 38 mm at 0.5, and should move by 3 mm).
+/// Default spectral radius without tools: a motion that a step cannot resolve loses a fifth per step. With
+/// tools the default is 0. Above 0, a step balances a mean of the forces at both of its ends. A tool that has
+/// left the tissue then pushes for one more step, and stiff contact gains energy: at 0.5, a block between
+/// plates of 5 MPa/mm swung by 38 mm instead of 3 mm.
 const SPECTRAL_RADIUS: f64 = 0.8;
 
-/// Default mass of a driven tool over the body's: a tenth hardly slows the motion of the tool, and is heavy
-/// enough for the steps that a soft body takes.
+/// Default mass of a tool driven by a force, as a fraction of the body's mass. A tenth hardly slows the tool,
+/// and is heavy enough for the time steps of a soft body.
 const TOOL_MASS: f64 = 0.1;
 
-/// Most steps: each is solved, reported and stored, so a larger number is a slip of the pen.
+/// Largest number of steps. Each step is solved, reported and stored, so a larger number is taken for a
+/// mistake.
 const MOST_STEPS: usize = 100_000;
 
-/// Most iterations: a step that has not converged by then does not converge.
+/// Largest number of iterations: a step that has not converged by then will not converge.
 const MOST_ITERATIONS: usize = 10_000;
 
 /// Default number of reported modes.

@@ -10,7 +10,7 @@ use super::conform::join;
 use super::document::{Origin, sorted};
 use super::error::{ErrorKind, SceneError};
 
-/// Collector of findings about one file, at the table that is read. Every key is given relative to this table;
+/// Collector of findings about one file, at the table that is being read. Keys are relative to this table;
 /// the empty key is the table itself.
 pub(crate) struct Report<'o> {
     origin: &'o Origin,
@@ -25,7 +25,7 @@ impl<'o> Report<'o> {
         Report { origin, table: String::new(), found: Rc::default() }
     }
 
-    /// The collector at a table below this one.
+    /// The collector at a table below this table.
     pub fn at(&self, key: &str) -> Report<'o> {
         Report { origin: self.origin, table: self.key(key), found: self.found.clone() }
     }

@@ -1,5 +1,5 @@
-//! A scene: its keys, and the scene as the program uses it, in which every quantity is an `f64` in SI and every
-//! choice an enum.
+//! A scene: its keys, and the form that the program uses, in which every quantity is an `f64` in SI units and
+//! every choice is an enum.
 
 use catalogue::Problem;
 use schemars::JsonSchema;
@@ -204,7 +204,7 @@ pub(crate) struct SoundParts {
 }
 
 impl SoundParts {
-    /// Reports errors in these parts, so that an error in one part hides none in another.
+    /// Reports errors in these parts, so that an error in one part does not hide errors in another.
     pub fn check(self, report: &Report) {
         let body = self.body.and_then(|keys| keys.read(&report.at("body")));
         self.material.map(|keys| keys.read(&report.at("material")));

@@ -12,7 +12,7 @@ use toml::de::{DeTable, DeValue};
 use super::document::{Document, moved};
 use super::error::{ErrorKind, SceneError};
 
-/// A key of the scene and the value that replaces the one in the file, as given by `KEY=VALUE`.
+/// A key of the scene and the value that replaces the file's value, as given by `KEY=VALUE`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Override {
     /// Key in the form of messages, such as `method[0].size.level`. `method[tet4]` is the method with that

@@ -222,7 +222,7 @@ fn with<'t>(
         *id = name;
     }
     for (key, value) in own.into_iter().filter(|(key, _)| key.get_ref() != "use") {
-        // The key is removed first, so that the new one has the scene's place.
+        // The key is removed first, so that the new key has the location in the scene.
         table.remove(key.get_ref().as_ref());
         table.insert(key, value);
     }

@@ -98,7 +98,7 @@ impl Size {
     }
 }
 
-/// Largest number of nodes or cells: beyond it the memory of a large machine could not hold the matrix.
+/// Largest number of nodes or cells. A larger matrix would not fit into the memory of a large machine.
 const MOST: usize = 20_000_000;
 
 /// Checks the number of nodes at the key `nodes`.

@@ -56,9 +56,9 @@ impl FemKeys {
 }
 
 impl Fem {
-    /// Refuses dilations that do not suit the element. A mixed pressure field, linear between corners, is stable with
-    /// elements of second order only. With these, the functions of the corners are negative in most of a cell, so
-    /// nodal means average over negative volumes.
+    /// Reports dilations that do not suit the element. A mixed pressure field, linear between the corners, is
+    /// stable with second-order elements only. In second-order elements the functions of the corners are
+    /// negative in most of a cell, so nodal means would average over negative volumes.
     pub(super) fn demands(&self, report: &Report) {
         let (name, linear) = (self.element.name(), self.element.order() == 1);
         let (found, problem, help) = match self.dilation {
