@@ -12,7 +12,7 @@
 //! Field       u = (A + B / r^3) x,
 //!             A = (p a^3 - q b^3) / (3 kappa (b^3 - a^3)),  B = (p - q) a^3 b^3 / (4 mu (b^3 - a^3)).
 //! Conditions  the two pressures; symmetry planes of an octant (u_n = 0), or rigid motion removed otherwise.
-//! Must hold   sigma_rr = -p at a and -q at b; the mean stress is constant, (p a^3 - q b^3) / (b^3 - a^3), for
+//! Must hold   sigma_rr = -p at a and -q at b; the mean stress (p a^3 - q b^3) / (b^3 - a^3) is constant for
 //!             any nu, so locking shows at once in the pressure. Defined for r > 0.
 //! ```
 

@@ -59,7 +59,7 @@ pub(crate) struct LoadKeys {
     on: Option<Names>,
     #[serde(rename = "where")]
     place: Option<Region>,
-    /// Force per area: for one along the inner normal take pressure = "1 kPa"
+    /// Force per area as a vector; for a force along the inner normal take pressure = "1 kPa"
     traction: Option<VectorKeys<Pressure>>,
     /// Force per area along the inner normal
     pressure: Option<FieldKeys<Pressure>>,

@@ -51,41 +51,41 @@ impl ProcedureKind {
 }
 
 words! {
-    /// What follows if a static path finds no equilibrium.
+    /// Behaviour of a static path that finds no equilibrium.
     pub enum OnStall {
         /// The path ends there; used unless given.
         Stop = "stop",
-        /// Dynamic relaxation to the ends of the remaining load steps: from a limit point tissue slips or snaps
-        /// to its next rest. Finite elements without a pressure field only; a cloud stops.
+        /// Dynamic relaxation to the ends of the remaining load steps: from a limit point the tissue slips or
+        /// snaps to its next equilibrium. For finite elements without a pressure field only; a cloud stops.
         Relax = "relax",
     }
 }
 
 words! {
-    /// What solves the equations of a linear procedure.
+    /// Solver of the equations of a linear procedure.
     pub enum LinearSolver {
         /// By size, Poisson's ratio and supports, as the plan says; used unless given.
         Auto = "auto",
         /// A factor, sparse or dense.
         Direct = "direct",
-        /// Conjugate gradients with algebraic multigrid, to a relative residual of 1e-8. Not with multipliers or
-        /// elimination.
+        /// Conjugate gradients with algebraic multigrid, to a relative residual of 1e-8. Not available with
+        /// multipliers or elimination.
         Amg = "amg",
     }
 }
 
-/// How the scene is solved; kind = "linear" unless given
+/// Procedure that solves the scene; kind = "linear" unless given
 #[derive(Deserialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
 pub(crate) enum ProcedureKeys {
-    /// Shape functions and integration rows only: what a method costs before anything is solved
+    /// Shape functions and integration rows only: the cost of a method before anything is solved
     Prepare {
         /// Ignored here; allowed so that you can switch `kind` without deleting it
         steps: Option<u32>,
     },
     /// One linear solve
     Linear {
-        /// What solves the equations; "auto" unless given
+        /// Solver of the equations; "auto" unless given
         linear_solver: Option<LinearSolver>,
         /// Ignored here; allowed so that you can switch `kind` without deleting it
         steps: Option<u32>,
@@ -176,16 +176,17 @@ table! {
         /// Newton's method in each step
         #[serde(flatten)]
         newton: Newton as NewtonKeys,
-        /// Part of the load to within which a limit point is located, if the path loses its stability: steps are halved
-        /// down to it. Unless given, a limit point is reported at the end of the load step that passes it
+        /// Fraction of the load to within which a limit point is located, if the path loses its stability, by
+        /// halving load steps. Unless given, a limit point is reported at the end of the load step that
+        /// passes it
         limit_within: Option<f64>,
-        /// What follows if no equilibrium is found
+        /// Behaviour if no equilibrium is found; "stop" unless given
         on_stall: OnStall = OnStall::Stop,
     }
 }
 
 table! {
-    /// How a step is solved by Newton's method
+    /// Settings of Newton's method in a step
     pub struct Newton from NewtonKeys {
         /// Relative residual of a step by Newton's method; 1e-8 unless given
         tolerance: f64 = Newton::STANDARD.tolerance,
@@ -206,7 +207,8 @@ table! {
     pub struct Ramp from RampKeys {
         /// End of the time axis
         duration: f64 as Q<Time>,
-        /// Time over which loads and supports grow before they are constant; the duration unless given, "0 s" is at once
+        /// Time over which loads and supports grow before they are constant; the duration unless given. "0 s"
+        /// applies them at once
         over: Option<f64> as Option<Q<Time>>,
         /// Equal intervals of time at whose ends results are reported; 1 unless given
         steps: usize as u32 = 1,
@@ -228,9 +230,9 @@ table! {
         /// Time axis and growth of the loads
         #[serde(flatten)]
         ramp: Ramp as RampKeys,
-        /// Time step over the critical one; 0.9 unless given
+        /// Time step over the critical time step; 0.9 unless given
         safety: f64 = 0.9,
-        /// Time step; safety times the critical one unless given
+        /// Time step; safety times the critical time step unless given
         step: Option<f64> as Option<Q<Time>>,
         /// Mass of a tool driven by a force over that of the body; 0.1 unless given
         tool_mass: f64 = TOOL_MASS,
@@ -250,7 +252,7 @@ table! {
         inertia: bool = true,
         /// Spectral radius at infinite frequency, 0 to 1; 0.8 unless given, and 0 with tools
         spectral_radius: f64 = SPECTRAL_RADIUS,
-        /// Local error of a displacement that a time step may make; unlimited unless given
+        /// Largest local error of a displacement in a time step; unlimited unless given
         accuracy: Option<f64> as Option<Q<Length>>,
     }
 }

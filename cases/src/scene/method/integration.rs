@@ -25,8 +25,8 @@ pub(crate) enum IntegrationKeys {
     CellSmoothed {
         /// Points per face: 1, 3 or 6; 1 unless given, and 6 with order 2
         points: Option<u32>,
-        /// Order of exactness: 1 (unless given) for linear displacements, 2 for quadratic ones (variationally
-        /// consistent integration of second order), as the quadratic basis needs
+        /// Order of exactness: 1 (unless given) for linear displacements, 2 for quadratic displacements
+        /// (variationally consistent integration of second order), as the quadratic basis requires
         order: Option<u32>,
     },
     /// Strain smoothing over the quarters of the tetrahedra around each vertex of the background mesh
