@@ -36,8 +36,7 @@ fn sides_are_free_up_to_the_edges() {
     }
 }
 
-/// Gauss points clustered by `t = (3 s - s^3) / 2` at both ends, the location of the shear's corner
-/// singularities.
+/// Gauss points clustered by `t = (3 s - s^3) / 2` at both ends, at which the shear has corner singularities.
 fn drawn(points: usize, half: f64) -> Vec<(f64, f64)> {
     let (s, w) = gauss_legendre(points);
     s.iter()

@@ -60,8 +60,8 @@ impl Write for Stdout {
     }
 }
 
-/// Whether a terminal only displays this character. Control characters can move the cursor, erase and send;
-/// bidirectional marks can make a text read as another one.
+/// Whether a terminal only displays this character. Control characters can move the cursor, erase text and
+/// send input; bidirectional marks can disguise a text.
 fn is_plain(c: char) -> bool {
     match c {
         '\n' | '\t' => true,

@@ -50,8 +50,8 @@ fn loads_and_supports_that_are_not_those_of_the_solution_are_told() {
     let beside = format!("{}, {{ on = \"y-max\", pressure = \"200 Pa\" }}", pressed("1 kPa"));
     near(misfit(&patch(ROLLERS, &beside)), 0.2, "y-max", "traction");
     let clamped = ROLLERS.replace("fix = \"z\"", "fix = \"xyz\"");
-    // The difference is 0.3 of 0.05 along x and y, relative to the largest displacement on a face: z-max,
-    // where 0.05 along z is added.
+    // The difference is 0.3 of 0.05 along x and y. It is relative to the largest displacement on a face,
+    // z-max, which also moves by 0.05 along z.
     let sideways = (0.06_f64 / 1.06).sqrt();
     near(misfit(&patch(&clamped, &pressed("1 kPa"))), sideways, "z-min", "displacement");
 }

@@ -147,7 +147,7 @@ fn every_step_has_the_body_and_its_tools() {
             assert!(far.map(f64::abs).fold(0.0, f64::max) < 1e-12);
         }
     }
-    // A series with fewer steps removes the files of the longer one.
+    // A series with fewer steps removes the files of the longer series.
     fields(&dir, &UNDER_A_BALL.replace("steps = 3", "steps = 2"));
     assert_eq!(series(&out, "hex20").len(), 4);
     assert_eq!(fs::read_dir(out.join("hex20")).unwrap().count(), 4);

@@ -113,7 +113,7 @@ fn a_scene_is_replaced_only_by_force() {
     drop(dir);
 }
 
-/// Cells of a coarse mesh cut off the tip of a pyramid, where a probe would lie outside the mesh.
+/// Cells of a coarse mesh cut off the tip of a pyramid. A probe there would lie outside the mesh.
 #[test]
 fn a_body_with_a_tip_has_its_probes_inside() {
     let corners = [[0, 0, 0], [30, 0, 0], [0, 30, 0], [0, 0, 30]];
@@ -133,8 +133,8 @@ fn a_body_with_a_tip_has_its_probes_inside() {
     assert_eq!(done.code, 0, "{}", done.stderr);
 }
 
-/// A tip under the plate, and a blade: faces of different directions meet there. No run takes the plate for
-/// one that pushes out of the body from within.
+/// A tip and a blade under the plate, at which faces of different directions meet. No run mistakes the plate
+/// for a tool that pushes out of the body from within.
 #[test]
 fn a_plate_on_a_tip_is_carried_from_outside() {
     let dir = tempfile::tempdir().unwrap();

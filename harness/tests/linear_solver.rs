@@ -47,7 +47,7 @@ fn iterations_that_are_asked_for_come_to_what_a_factor_gives() {
         assert_eq!(factorisation(b), "one, for all load levels (requested)");
         let count = metric(a, "linear-iterations").unwrap();
         // The parameters of a cloud are not displacements, and rough parameter fields are nearly as soft as
-        // smooth ones.
+        // smooth parameter fields.
         let most = if a["method"] == "efg" { 250.0 } else { 25.0 };
         assert!((5.0..=most).contains(&count), "{count} iterations: {a}");
         assert!(metric(a, "operator-complexity").is_some_and(|c| c > 1.0 && c < 2.5), "{a}");

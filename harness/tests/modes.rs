@@ -47,9 +47,9 @@ fn a_free_box_has_six_rigid_modes_and_its_mass() {
     assert!(metric(&runs[0], "critical-step") < metric(&runs[1], "critical-step"));
 }
 
-/// Linear elements give frequencies above the exact ones with a consistent mass, and below with a lumped
-/// mass. On equal hexahedra the discrete modes are sines with either mass, so that the two frequencies differ
-/// by the factor `sqrt(9 / ((2 + cos ah) (2 + cos bh)))`, a = pi / 4h, b = pi / 3h.
+/// Linear elements give frequencies above the exact frequencies with a consistent mass, and below them with a
+/// lumped mass. On equal hexahedra the discrete modes are sines with either mass, so that the two frequencies
+/// differ by the factor `sqrt(9 / ((2 + cos ah) (2 + cos bh)))`, a = pi / 4h, b = pi / 3h.
 #[test]
 fn a_box_on_rollers_vibrates_as_known() {
     let runs = metrics(&format!("{BOX}{ROLLERS}"));

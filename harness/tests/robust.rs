@@ -52,7 +52,7 @@ fn answers(scene: &str, length: f64) -> Vec<(String, [f64; 3])> {
 fn units_and_origin_do_not_matter() {
     let known = answers(&block(20.0, "mm", 0.0), 0.02);
     assert_eq!(known.len(), 5);
-    // A cube of 1 um, a cube of 10 m, and the first cube at a distance of 1000 lengths, where coordinates
+    // A cube of 1 um, a cube of 10 m, and the first cube at a distance of 1000 lengths, at which coordinates
     // have lost three digits.
     for (length, unit, corner, metres, tolerance) in [
         (1.0, "um", 0.0, 1e-6, 1e-9),

@@ -235,8 +235,8 @@ const NO_CIRCLES: [&str; 10] = [
     "xtask/src",
 ];
 
-/// Modules on circles, and those that use them: the rest after modules that use none of the rest are taken
-/// away, again and again.
+/// Returns the modules on circles, and the modules that use them. A module that uses no remaining module is
+/// removed, until no further module can be removed.
 fn circles(modules: &[(String, String)]) -> BTreeSet<&str> {
     let known = modules.iter().map(|(module, _)| module.as_str()).filter(|module| *module != "crate");
     let known: BTreeSet<&str> = known.collect();

@@ -299,7 +299,7 @@ fn bad_static_scenes_name_file_line_and_key() {
         for command in ["run", "plan"] {
             let done = tissuebench(&[command, &path]);
             assert_fails(&done, code, says);
-            // Without the procedure's line, the following lines move up.
+            // Without the line of the procedure, the following lines move up.
             let line = if name == "tool-linear" { line - 1 } else { line };
             assert!(done.stderr.contains(&format!("{path}:{line}:")), "{name}: {}", done.stderr);
         }

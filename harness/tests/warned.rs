@@ -36,7 +36,7 @@ procedure = { kind = "static", steps = 2 }
 method = [{ id = "hex8", family = "fem", element = "hex8", dilation = "element-mean", size = { cells = [3, 3, 3] } }]
 "#;
 
-/// The relevant travel starts where the plate meets the block: 3 of 4 mm.
+/// The relevant travel starts when the plate meets the block: 3 of 4 mm.
 #[test]
 fn a_penalty_that_lets_a_tool_sink_in_is_told() {
     let soft = run(&UNDER_A_PLATE.replace("PENALTY", "0.002"));
@@ -104,7 +104,7 @@ method = [{{ id = "hex8", family = "fem", element = "hex8", size = {{ cells = [4
     }
 }
 
-/// Symmetry planes prescribe a displacement of exactly zero, where the exact solution has 1e-17 m.
+/// Symmetry planes prescribe a displacement of exactly zero; the exact solution has 1e-17 m there.
 #[test]
 fn an_exact_solution_that_is_rounding_on_a_plane_is_no_other_problem() {
     let dir = tempfile::tempdir().unwrap();
@@ -275,7 +275,7 @@ method = [{{ id = "beam", {method} }}]
         assert_eq!(found.is_some(), few, "{method}: {runs:?}");
         assert!(found.is_none_or(|(cells, _)| cells < 3.1), "{method}: {runs:?}");
     }
-    // Points of node smoothing lie on the surface, where the count starts.
+    // Points of node smoothing lie on the surface, at which the count starts.
     let means = "family = \"efg\", kernel = \"cubic-spline\", support_scale = 1.4, basis = \"linear\", essential = \"nitsche\", \
                  integration = { rule = \"node-smoothed\", stabilisation = 0.3 }, size = { cells = [20, 2, 2] }";
     let runs = beam(bent, means);

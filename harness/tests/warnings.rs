@@ -261,8 +261,9 @@ method = [{{ id = "hex8", family = "fem", element = "hex8", size = {{ cells = {c
     assert!(!codes(&fine).contains(&"few-contact-points"), "{fine}");
 }
 
-/// Gauss points with a dilation for each node need a factor near 86 at a Poisson's ratio of 0.4999. Below it
-/// there is no Cholesky factor; slightly above it there is one, and pressures are wrong by a factor of 200.
+/// Gauss points with a dilation for each node need a factor near 86 at a Poisson's ratio of 0.4999. Below
+/// this factor there is no Cholesky factor; slightly above, a Cholesky factor exists and pressures are wrong
+/// by a factor of 200.
 #[test]
 fn a_factor_of_nitsche_s_method_near_the_one_needed_is_told() {
     let dir = tempfile::tempdir().unwrap();

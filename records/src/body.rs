@@ -82,7 +82,7 @@ pub struct BodyState {
     /// Contact points inside a tool: three coordinates and the penetration depth of each (m), packed.
     #[serde(default)]
     pub touching: String,
-    /// Largest depth (m) of a node inside a tool, where contact does not act.
+    /// Largest depth (m) of a node inside a tool. Contact acts at contact points, not at nodes.
     #[serde(default)]
     pub deepest_node: f64,
     /// Pressure (Pa, positive in compression), von Mises stress (Pa) and determinant of the deformation

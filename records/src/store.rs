@@ -257,7 +257,7 @@ pub fn slug(name: &str) -> String {
 }
 
 /// Removes the files with these suffixes that are not in `kept`, so that no file of an earlier run passes for
-/// a current one.
+/// a current file.
 pub fn remove_files(dir: &Path, endings: &[&str], kept: &[PathBuf]) -> Result<(), RecordError> {
     for old in files_ending(dir, endings)?.iter().filter(|old| !kept.contains(old)) {
         disk::remove(old).map_err(|source| unwritten(old, source))?;

@@ -114,7 +114,7 @@ pub fn list(items: &[String]) -> String {
     }
 }
 
-/// Plural `s`, empty for a count of one.
+/// Plural ending `s`; empty for a count of 1.
 pub fn plural(count: usize) -> &'static str {
     if count == 1 { "" } else { "s" }
 }

@@ -1,9 +1,10 @@
-//! How often `tissuebench compare` is wrong on this machine: folders of results of one study, run again and again, in the order in which
-//! they were made.
+//! Error rate of `tissuebench compare` on this machine, from folders of results of one study, which was run
+//! repeatedly. The folders are given in the order in which they were made.
 //!
 //! `cargo run --release --package tissuebench-reports --example noise -- FOLDER...`
 //!
-//! Neighbours are compared, one pair of folders at a time and several, as they are and with 10 % added to every time after.
+//! Neighbouring folders are compared, in one pair or in several pairs. They are compared unchanged, and with
+//! 10 % added to the times of the second folder of each pair.
 
 use std::path::PathBuf;
 
@@ -42,7 +43,8 @@ fn row(runs: &[RunSet], pairs: usize) -> String {
     )
 }
 
-/// Times of neighbours, every second one after the one before it; phases that are `slow` take 10 % longer there.
+/// Comparison of the times of neighbouring folders, in pairs of before and after. Phases for which `slow` is
+/// true take 10 % longer after.
 fn times(chosen: &[RunSet], slow: impl Fn(&str) -> bool) -> Times {
     let longer = |set: &RunSet| {
         let mut set = RunSet { records: set.records.clone(), ..RunSet::default() };

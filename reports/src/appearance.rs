@@ -3,7 +3,7 @@
 //! The name determines the colour and the marker, the family the dash and the filling. External solvers have
 //! a colour each and the marker of the element. A name that is not in the table takes the colour of its
 //! longest known prefix, as `efg-gauss-lumped` does of `efg-gauss`, and a marker by a hash. Two labels of one
-//! figure never look the same: [`distinct`] gives the less known label another marker or shade.
+//! figure never look the same: [`distinct`] gives the label of lower precedence another marker or shade.
 
 use records::Family;
 
@@ -11,7 +11,7 @@ use records::Family;
 pub(crate) const MARKERS: [&str; 7] =
     ["circle", "square", "triangle", "diamond", "down", "pentagon", "hexagon"];
 
-/// Colours of Okabe and Ito (2008) without yellow, which vanishes on white, followed by darker ones of Tol
+/// Colours of Okabe and Ito (2008) without yellow, which vanishes on white, followed by darker colours of Tol
 /// (2021).
 const COLOURS: [u32; 12] = [
     0xd55e00, 0x0072b2, 0xe69f00, 0x56b4e9, 0x009e73, 0xcc79a7, 0x4d4d4d, 0x882255, 0x999933, 0x332288,

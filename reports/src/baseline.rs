@@ -1,7 +1,7 @@
 //! Baseline: the accuracy numbers of a study as last accepted, compared with those of a new run.
 //!
-//! Bounds in a scene state what must hold. A bug that changes a number by a thousandth satisfies them all,
-//! but differs from the baseline.
+//! Bounds in a scene state requirements. A bug that changes a number by a thousandth meets all of them, but
+//! is a difference from the baseline.
 //!
 //! A baseline is a folder with a TOML file for each case, in which each run has a table with one line per
 //! number. Times and memory are excluded.
@@ -36,7 +36,8 @@ impl Baseline {
     /// Reads the files of a folder.
     ///
     /// # Errors
-    /// A folder without files of a baseline, a file that is not one, or files made by several processors.
+    /// A folder without files of a baseline, a file that is not part of a baseline, or files made by several
+    /// processors.
     pub fn load(folder: &Path) -> Result<Baseline, RecordError> {
         let bad = |path: &Path, reason| RecordError::Content { path: path.into(), reason };
         let mut whole: Option<Baseline> = None;

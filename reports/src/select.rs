@@ -181,7 +181,7 @@ pub(crate) fn runs<'r>(records: impl IntoIterator<Item = &'r Record>) -> Vec<Run
     runs
 }
 
-/// Kernel shown among several compared ones: the published one.
+/// Kernel that is shown if several kernels are compared: that of the publication.
 const USUAL_KERNEL: &str = "cubic-spline";
 
 /// Returns the series of a case without meshfree series that only vary the kernel, and all series of the

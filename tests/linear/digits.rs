@@ -183,8 +183,8 @@ fn a_free_body_is_refused_however_small_what_moves_it() {
 }
 
 /// `A^-1 = diag(2, 1, 1, 1, 1) + c v v^T` with `v` orthogonal to the vector of ones and to the first axis.
-/// The rounds of the estimate search along these two only, and find 2. The norm of the inverse is that of a
-/// later column, `1 + 4 c`.
+/// The rounds of the estimate search along these two vectors only, and find 2. The norm of the inverse is
+/// that of a later column, `1 + 4 c`.
 #[test]
 fn what_the_rounds_of_the_estimate_do_not_see_its_last_vector_does() {
     let (c, v) = (1e6, [0.0, 1.0, -1.0, 1.0, -1.0]);

@@ -209,7 +209,8 @@ fn the_field_far_from_a_contact_is_in_equilibrium() {
 
 #[test]
 fn stresses_of_prescribed_loads_do_not_depend_on_poisson() {
-    // Two of these have stresses independent of nu. Locking is judged by them, so no digit may be lost.
+    // Two of these solutions have stresses independent of nu. Locking is judged by these stresses, so no
+    // digit may be lost.
     let x = Point3::new(0.7, 0.2, -0.4);
     for name in ["pure-bending", "uniaxial-compression"] {
         let sample = SAMPLES.iter().find(|s| s.0 == name).unwrap();

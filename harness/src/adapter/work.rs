@@ -1,4 +1,4 @@
-//! Folders: a temporary one for each call, and one for the user's installed adapters.
+//! Folders: a temporary folder for each call, and the folder of the user's installed adapters.
 
 use std::collections::BTreeSet;
 use std::fs::DirBuilder;
@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
-/// Environment variable with the folder for installations, instead of the system's usual one.
+/// Environment variable with the folder for installations, in place of the system's usual folder.
 const DATA: &str = "TISSUEBENCH_DATA";
 
 /// Attempts to remove a folder in which processes being killed may still write, and the pause between

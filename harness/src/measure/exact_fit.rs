@@ -44,8 +44,8 @@ struct Covered {
 #[derive(Clone, Copy, Default)]
 struct Sums([f64; 3]);
 
-/// Relative rounding of the displacement compared with the stress as a displacement across the body, and of
-/// the stress compared with the displacement as a stress.
+/// Relative level of rounding. Displacements are relative to the displacement that the stress causes across
+/// the body, and stresses to the stress that the displacement causes.
 const ROUNDING: f64 = 1e-12;
 
 /// Sums over a surface of the mesh.

@@ -12,10 +12,10 @@ use crate::outcome::{Metric, Warning};
 
 /// Number of cells across below which the warning is given.
 const ENOUGH: usize = 3;
-/// This number for linear tetrahedra without a projection: with three cells across, slender parts bend 30 to
-/// 45 % too little.
+/// The same number for linear tetrahedra without a projection: with three of them across, slender parts bend
+/// 30 to 45 % too little.
 const ENOUGH_STIFF: usize = 4;
-/// Margin of both, because oblique cells look wider.
+/// Margin that is subtracted from both numbers, because oblique cells appear wider.
 const MARGIN: f64 = 0.5;
 /// Stress jump below which few cells suffice, because the stress is uniform, or linear as in a beam of
 /// quadratic cells. With few cells the jump underestimates the error, so this limit is below that of

@@ -16,11 +16,11 @@ const SLOW: f64 = 0.9;
 /// Fraction of the frequency of a shear wave across the body below which a mode is rigid. Rounding leaves
 /// 1e-6.
 const RIGID: f64 = 1e-3;
-/// Fraction of the square of that frequency below which it is rounding, which leaves 1e-10; a cantilever 1000
-/// times as long as thick has 1e-8.
+/// Fraction of the shear wave's squared frequency below which a mode's squared frequency is rounding.
+/// Rounding leaves 1e-10; a cantilever 1000 times as long as thick has 1e-8.
 const NO_ENERGY: f64 = 1e-9;
-/// Ratio of squared frequencies, that of the shape under finer integration over the mode's own, above which
-/// the mode is an artefact of the method.
+/// Ratio of squared frequencies above which a mode is an artefact of the method: that of the mode's shape
+/// under finer integration, over the mode's own.
 const UNSEEN: f64 = 4.0;
 /// Multiple of the exact frequency up to which its mode is searched.
 const FAST: f64 = 1.5;
@@ -114,7 +114,7 @@ fn without_energy(run: &Solved, modes: &statics::Modes, count: usize) -> Result<
     let mut unseen = 0;
     for (n, (shape, &square)) in modes.shapes.iter().zip(&modes.squared).enumerate() {
         let square = square.max(0.0);
-        // The shape has a mass of one.
+        // The shape is scaled to unit mass.
         let finer = (square + 2.0 * hidden(shape)) / inertia(shape);
         if finer > UNSEEN * square.max(NO_ENERGY * modes.scale) {
             worst.get_or_insert([square, finer]);

@@ -136,8 +136,8 @@ fn values(
     Some(points.all.iter().zip(j).map(value).collect())
 }
 
-/// Difference (m) of surface points from the reference or the exact solution at the end, interpolated with
-/// inverse squared distances from the points where it is known, usually nodes.
+/// Difference (m) of surface points from the reference or the exact solution at the end. It is interpolated
+/// with inverse squared distances from the points where it is known, usually the nodes.
 fn off<'a>(
     run: &Solved,
     field: &Field,

@@ -22,8 +22,8 @@ const TOLERANCE: f64 = 1e-8;
 const UNKNOWNS: f64 = 20_000.0;
 
 /// Largest `lambda / mu` at which the iterations are as few as for a compressible body (nu = 0.45): 20 to 35.
-/// Beyond this ratio they grow with its square root (94 at nu = 0.495, where the ratio is 11 times as large),
-/// and so does the size from which iterations pay off.
+/// Beyond this ratio their number grows with the square root of the ratio (94 at nu = 0.495, at which the
+/// ratio is 11 times as large), and so does the size from which iterations pay off.
 const COMPRESSIBLE: f64 = 9.0;
 
 /// Smallest `lambda / mu` at which elements whose points share dilations are iterated with pressures. At nu =

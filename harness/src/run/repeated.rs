@@ -18,7 +18,7 @@ use crate::prepare::Prepared;
 use crate::procedure::{solves, static_params, with_static_problem};
 
 /// Fraction of the loading in a frame. It rises from `2 / cycle` to 1 in half a cycle and falls again. It
-/// never reaches zero, where a force-controlled tool would have no force.
+/// never reaches zero, because a force-controlled tool would then have no force.
 fn part(frame: usize, cycle: usize) -> f64 {
     let (half, at) = (cycle / 2, frame % cycle);
     let step = if at < half { at + 1 } else { cycle - at };

@@ -147,7 +147,7 @@ fn array(file: &MeshFile) -> Result<Vec<Point3>, Failure> {
 fn duplicate(points: &[Point3]) -> Option<[usize; 2]> {
     let mut seen = HashMap::with_capacity(points.len());
     points.iter().enumerate().find_map(|(node, p)| {
-        // Adding zero turns a negative zero into a positive one.
+        // Adding zero turns a negative zero into a positive zero.
         let bits = [p.x, p.y, p.z].map(|c| (c + 0.0).to_bits());
         seen.insert(bits, node).map(|first| [first, node])
     })

@@ -1,8 +1,8 @@
 //! Estimates nodes, steps, memory and time of a method before any mesh is made. Nodes follow from the body's
 //! volume, steps from the procedure, and memory and time from measured runs.
 //!
-//! Estimates are good to a factor of about three. They serve to distribute the runs of a study and to refuse
-//! a run that a typing error has made a thousand times too large.
+//! Estimates are accurate to within a factor of about three. They serve to distribute the runs of a study and
+//! to refuse a run that a typing error has made a thousand times too large.
 
 use cases::scene::{
     Body, Cloud, ErrorKind, External, Family, MeshFile, Method, Procedure, Reference, Scene, SceneError, Size,
@@ -92,7 +92,7 @@ fn refuse(scene: &Scene, method: &Method, size: Option<String>, factor: f64) -> 
     Some(scene.error(ErrorKind::Invalid, &key, &problem, Some(help)))
 }
 
-/// Returns the memory of this machine, bytes; if unknown, that of a large one.
+/// Returns the memory of this machine, bytes; if unknown, the memory of a large machine.
 fn memory() -> f64 {
     let known = || {
         let text = std::fs::read_to_string("/proc/meminfo").ok()?;

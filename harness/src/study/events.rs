@@ -1,4 +1,4 @@
-//! Events of a study as they happen, one JSON object per line, for programs that watch.
+//! Events of a study as they happen, one JSON object per line, for programs that monitor the study.
 
 use std::io::{self, Write};
 use std::path::Path;

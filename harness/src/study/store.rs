@@ -172,7 +172,7 @@ impl Store {
         }
     }
 
-    /// Removes all results except finished ones of this program on this machine. From then on, all results
+    /// Removes all results except finished results of this program on this machine. From then on, all results
     /// come from processes that work on the study together. Call it only in the first of them.
     pub(super) fn sweep(&self) {
         for path in files(&self.folder, &["json"]) {

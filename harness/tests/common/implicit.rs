@@ -1,11 +1,13 @@
-//! Closed surfaces in STL: of functions that are negative inside, and of outlines that turn about an axis.
+//! Closed surfaces in STL, from functions that are negative inside, and from outlines that turn about an
+//! axis.
 
 use std::fmt::Write as _;
 
 pub type Vector = [f64; 3];
 type Triangle = [Vector; 3];
 
-/// The shortest part of an edge of the grid that a triangle's corner is away from its ends: none is a needle.
+/// Smallest distance of a triangle's corner from the ends of its grid edge, relative to the edge. It prevents
+/// needles.
 const OFF: f64 = 0.05;
 
 pub fn sub(a: Vector, b: Vector) -> Vector {
@@ -24,20 +26,20 @@ fn cross(a: Vector, b: Vector) -> Vector {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
-/// About the distance to an ellipsoid with these half axes.
+/// Approximate distance to an ellipsoid with these half axes.
 pub fn ellipsoid(p: Vector, at: Vector, half: Vector) -> f64 {
     let scaled: Vector = std::array::from_fn(|x| (p[x] - at[x]) / half[x]);
     (length(scaled) - 1.0) * half.into_iter().fold(f64::MAX, f64::min)
 }
 
-/// About the distance to a rod with round ends, of the two radii.
+/// Approximate distance to a rod with round ends and these radii at its ends.
 pub fn rod(p: Vector, [a, b]: [Vector; 2], [from, to]: [f64; 2]) -> f64 {
     let (along, off) = (sub(b, a), sub(p, a));
     let t = (dot(off, along) / dot(along, along)).clamp(0.0, 1.0);
     length(std::array::from_fn(|x| off[x] - t * along[x])) - (from + (to - from) * t)
 }
 
-/// The union, with fillets of about this size.
+/// Union of bodies, with fillets of about this size.
 pub fn union(parts: impl IntoIterator<Item = f64>, fillet: f64) -> f64 {
     let join = |a: f64, b: f64| {
         let h = (0.5 + 0.5 * (b - a) / fillet).clamp(0.0, 1.0);
@@ -46,8 +48,8 @@ pub fn union(parts: impl IntoIterator<Item = f64>, fillet: f64) -> f64 {
     parts.into_iter().reduce(join).unwrap()
 }
 
-/// The surface where a function is zero, in a box, on a grid with this many cells along the longest side:
-/// marching tetrahedra.
+/// Zero surface of a function in a box, by marching tetrahedra on a grid with this many cells along the
+/// longest side.
 pub fn surface(inside: &dyn Fn(Vector) -> f64, [low, high]: [Vector; 2], cells: usize) -> String {
     let size = sub(high, low);
     let step = size.into_iter().fold(0.0, f64::max) / cells as f64;

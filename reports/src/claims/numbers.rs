@@ -102,7 +102,7 @@ impl Ours {
     }
 }
 
-/// A published number with the computed one.
+/// A published number with the computed number.
 pub(crate) struct Pair<'a, 'r> {
     pub(crate) number: &'static Number,
     pub(crate) run: &'a Run<'r>,

@@ -41,7 +41,7 @@ pub fn trends(history: &Path) -> Result<Vec<Trend>, ReportError> {
 /// Checks that a folder contains a history.
 ///
 /// # Errors
-/// A folder without a history, or with one that cannot be read.
+/// A folder without a history, or with a history that cannot be read.
 pub fn check(history: &Path) -> Result<(), ReportError> {
     if !trends(history)?.is_empty() {
         return Ok(());

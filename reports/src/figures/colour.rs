@@ -34,7 +34,8 @@ const BLUE_RED: [Colour; 11] = [
     [103, 0, 31],
 ];
 
-/// Number of shades on a body: more than an eye distinguishes, and few enough for neighbours to share one.
+/// Number of shades on a body: more than an eye distinguishes, and few enough for neighbours to share a
+/// shade.
 const SHADES: f64 = 48.0;
 
 /// Map from values to colours.

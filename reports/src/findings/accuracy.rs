@@ -13,7 +13,8 @@ use crate::select::{Run, by_case, competing, labels, series};
 /// Ratio of the errors of the least and the most compressible material above which a method locks.
 const LOCKS: f64 = 2.0;
 
-/// Sentences on the methods that lock, the worst first with their errors, and on those that do not.
+/// Sentences on the methods that lock, the worst first with their errors, and on the methods that do not
+/// lock.
 pub(super) fn locking(runs: &[Run]) -> Vec<String> {
     let mut out = Vec::new();
     for case in competing(runs) {
@@ -107,7 +108,7 @@ pub(super) fn patch(runs: &[Run]) -> Vec<String> {
 /// Shortfall of an order from theory above which it is mentioned.
 const SLACK: f64 = 0.15;
 
-/// Sentences on the observed orders that agree with theory and those that do not.
+/// Sentences on the observed orders that agree with theory, and on the orders that do not agree.
 pub(super) fn orders(runs: &[Run]) -> Vec<String> {
     let (mut held, mut below, mut short) = (0, Vec::new(), 0);
     for (name, group) in cases(runs) {

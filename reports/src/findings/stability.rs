@@ -3,8 +3,8 @@
 use records::text::{list, short};
 use records::{Axis, AxisVerdict as Verdict, RunSet};
 
-/// One sentence per axis: the methods that hold over the whole axis, those that fail, and those wrong without
-/// a warning.
+/// One sentence per axis: the methods that hold over the whole axis, the methods that fail, and the methods
+/// that are wrong without a warning.
 pub(super) fn stability(set: &RunSet) -> Vec<String> {
     set.axes.iter().filter(|axis| !axis.trials.is_empty()).map(sentence).collect()
 }

@@ -218,7 +218,7 @@ mod tests {
         assert_eq!(fitted(7039), [("small", 3, 0), ("large", 1, 2)]);
         assert_eq!(fitted(3839), [("small", 1, 2), ("large", 1, 2)]);
         assert_eq!(fitted(3000), [("small", 1, 2)]);
-        // A fine mesh is omitted before load steps of a coarser one.
+        // A fine mesh is omitted before load steps of a coarser mesh.
         let mut all = vec![view("coarse", 10), view("fine", 100)];
         all.iter_mut().for_each(|b| b.series = "one");
         fit(&mut all, 3839);

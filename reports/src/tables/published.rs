@@ -1,4 +1,4 @@
-//! Tables of computed numbers next to the published ones.
+//! Tables of computed numbers next to published numbers.
 
 use super::millimetres;
 use crate::claims::{pairs, splits};

@@ -280,8 +280,8 @@ fn kidney(set: &mut RunSet) {
     }
 }
 
-/// Adds a tool closing on a block: two methods step by step, a finer level of one, and a reference with its
-/// uncertainty.
+/// Adds a tool closing on a block: two methods step by step, a finer level of one method, and a reference
+/// with its uncertainty.
 fn grasp(set: &mut RunSet) {
     for (method, family, nodes, stiffness) in [
         ("hex8", Family::Fem, 225, 1.08),

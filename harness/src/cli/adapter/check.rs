@@ -16,7 +16,7 @@ const EXACT: f64 = 1e-8;
 const BALANCE: f64 = 10.0;
 /// Bound of the relative difference from this program's element.
 const AGREEMENT: f64 = 1e-6;
-/// Bound of the relative difference at large strain, where each solver chooses its own steps.
+/// Bound of the relative difference at large strain, because each solver chooses its own steps there.
 const LARGE: f64 = 1e-5;
 
 /// A test problem on a body of distorted cells, and its compared quantity.

@@ -28,7 +28,7 @@ fn row(run: &Planned) -> [String; 4] {
     [format!("{} {}", run.case, run.name), nodes, seconds(run.takes.seconds), memory]
 }
 
-/// Formats a time with one digit: the estimate is good to a factor of three.
+/// Formats a time with one digit: the estimate is accurate to within a factor of three.
 fn seconds(seconds: f64) -> String {
     // Rounded through text: a product of 6 and 0.1 has more than one digit.
     let rounded: f64 = format!("{:.0e}", seconds.max(1e-3)).parse().unwrap_or(seconds);

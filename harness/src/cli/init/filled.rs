@@ -12,7 +12,7 @@ use super::organ::Organ;
 const GRID: usize = 24;
 /// Number of point layers in the end of the body on one side.
 const END: usize = 2;
-/// Smallest fraction of the body in a blunt end; a cap of a ball has 2 %, the tip of a cone .06 %.
+/// Smallest fraction of the body in a blunt end; the cap of a ball has 2 %, the tip of a cone 0.06 %.
 const BLUNT: f64 = 0.012;
 /// Smallest fraction of an end directly above the constrained part. The rest overhangs and bends away.
 const BACKED: f64 = 0.5;

@@ -32,8 +32,8 @@ use scene_text::{Drive, Hold, Size, Wanted};
 const HELD: f64 = 0.2;
 /// Default displacement of the plate over the body's height.
 const CLOSURE: f64 = 0.05;
-/// Node counts of each method's sizes over the finest one, and factors on the requested node count. The first
-/// entry that gives valid meshes is used.
+/// Node counts of each method's sizes relative to its finest size, and factors on the requested node count.
+/// The first entry that gives valid meshes is used.
 const FINENESS: [([f64; 3], f64); 7] = [
     ([0.25, 0.5, 1.0], 1.0),
     ([0.4, 0.6, 1.0], 1.0),

@@ -14,8 +14,8 @@ pub(super) struct Questions {
 }
 
 impl Questions {
-    /// Returns the value of an option: the given one, the answer, or the default. An invalid answer is asked
-    /// for again.
+    /// Returns the value of an option: the given value, the answer, or the default. An invalid answer is
+    /// asked for again.
     pub fn value<T>(
         &mut self,
         option: &str,

@@ -15,7 +15,7 @@ const FINER: f64 = 6.0;
 /// height. A tip of few contact points then sinks in by up to 4 % of the plate's travel, a broad surface by
 /// 0.2 to 0.5 %. A tenth of this stiffness costs a quarter less time, but a tip sinks in by 20 %.
 const STIFF: f64 = 5000.0;
-/// Fraction of the height that is displaced or loaded at small strain, where no contact is computed.
+/// Fraction of the height that is displaced or loaded at small strain, in place of contact with a plate.
 const PRESSED: f64 = 0.1;
 
 /// All values of the scene.
@@ -39,7 +39,7 @@ pub(super) struct Wanted {
     pub gap: f64,
     pub methods: Vec<Method>,
     pub size: Size,
-    /// Node counts of each method's sizes over the finest one.
+    /// Node counts of each method's sizes relative to its finest size.
     pub parts: [f64; 3],
     /// Probes close to the plate and in the middle, m.
     pub probes: [Point3; 2],

@@ -46,7 +46,7 @@ fn tag(keys: &Map<String, Value>) -> Option<(&str, &str)> {
     keys.iter().find_map(|(key, schema)| Some((key.as_str(), schema["const"].as_str()?)))
 }
 
-/// Returns the item of a word or of a table, which is named by its word if it has one.
+/// Returns the item of a word or of a table. A table with a word is named by the word.
 fn items(form: &Value) -> Option<Item> {
     let meaning = form["description"].as_str().unwrap_or_default();
     if let Some(word) = form["const"].as_str() {
