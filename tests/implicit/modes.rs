@@ -20,7 +20,7 @@ fn problem<'a>(block: &'a Cuboid, laws: &'a [LinearElastic], fixed: &'a [FixedDo
     LinearProblem { body, loads: &[], fixed, constraints: &[], weak: &[] }
 }
 
-/// Returns the relative difference between a squared frequency and the nearest computed one.
+/// Returns the relative difference between a squared frequency and the nearest computed squared frequency.
 fn missed(modes: &Modes, squared: f64) -> f64 {
     modes.squared.iter().map(|s| (s / squared - 1.0).abs()).fold(f64::INFINITY, f64::min)
 }

@@ -3,7 +3,7 @@
 //! A law, a kernel, an exact solution or a metric is an [`Entry`]: a name, a meaning, a source, its
 //! [`Parameter`]s with dimension, default and range, and a constructor from checked SI values. Entries are
 //! defined next to their implementations. This crate defines their types and the units of their parameters,
-//! and finds the nearest known name of a mistyped one. Scene files, their schema, messages, lists and
+//! and finds the nearest known name of a mistyped name. Scene files, their schema, messages, lists and
 //! property tests all use the same slices of entries.
 //!
 //! The [metrics](metric), [warnings](warning) and names of [elements](element) are defined here, because

@@ -13,7 +13,7 @@ pub struct Parameter {
     pub dimension: Dimension,
     /// Kind of value.
     pub kind: Kind,
-    /// Default of a number or a flag (1 for true); `None` without one.
+    /// Default of a number or a flag (1 for true); `None` without a default.
     pub default: Option<f64>,
     /// Whether a value must be given.
     pub required: bool,

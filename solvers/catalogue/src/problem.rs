@@ -1,4 +1,4 @@
-//! Errors in a value, with a hint at the right one.
+//! Errors in a value, with a hint at the right value.
 
 use std::fmt;
 

@@ -15,8 +15,8 @@ pub enum Value {
     Flag(bool),
 }
 
-/// Values of an entry's parameters: the given ones, each known and in its range, and the defaults of the
-/// rest.
+/// Values of an entry's parameters: the given values, each known and in its range, and defaults for the other
+/// parameters.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Values {
     parameters: &'static [Parameter],

@@ -246,7 +246,7 @@ fn bent(rows: &SurfaceRows) -> Vec<bool> {
 fn two_beside(rows: &SurfaceRows, q: u32, near: &[u32]) -> [u32; 2] {
     let normal = rows.normals()[q as usize];
     let way = |other: u32| rows.points()[other as usize] - rows.points()[q as usize];
-    // Points beyond an edge, where the normal differs, are excluded.
+    // Points beyond an edge are excluded, because the normal differs there.
     let alike = |p: u32| normal.dot(&rows.normals()[p as usize]) > ALIKE;
     let mut flat: Vec<u32> = near.iter().copied().filter(|&p| p != q && alike(p)).collect();
     flat.sort_by(|&a, &b| way(a).norm().total_cmp(&way(b).norm()));

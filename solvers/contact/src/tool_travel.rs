@@ -1,7 +1,7 @@
 //! Detection of tools that jumped over the surface in a step.
 //!
 //! Contact depends on a state, not on how the state was reached. A tool that travels farther in a step than
-//! its own thickness ends beyond the surface, where nothing touches it. Relative to the tool every point
+//! its own thickness ends beyond the surface, and nothing touches it there. Relative to the tool every point
 //! moves on a straight line during a step, and the distance to a convex shape is convex along that line. Its
 //! minimum is found by bisection on the sign of the slope.
 

@@ -142,7 +142,7 @@ impl Group {
                 // A quotient of selected numbers; a selected quotient would be compiled as a branch.
                 let at_node = !(product > 0.0);
                 inverse[l] = if at_node { 0.0 } else { 1.0 } / if at_node { 1.0 } else { product };
-                // Rounding must not raise q above 1, where kernels written for q < 1 need not vanish.
+                // Rounding must not raise q above 1, because kernels written for q < 1 need not vanish there.
                 q[l] = (square * inverse[l]).min(1.0);
             }
             (chain[k], relative[k]) = (inverse, q);

@@ -124,7 +124,7 @@ const FACE_POINTS: usize = 6;
 const CONTACT_POINTS: usize = 3;
 
 /// Distance from the cells, over the mean spacing of the nodes, beyond which a point takes the value of the
-/// nearest one in a cell where its own neighbours do not determine the functions.
+/// nearest point in a cell if its own neighbours do not determine the functions.
 const BEYOND: f64 = 0.5;
 
 /// A cloud as a source of tables: its shape functions over a background of linear tetrahedra.
@@ -172,8 +172,8 @@ impl CloudSource {
 }
 
 impl CloudSource {
-    /// Rows at points, and how many of these lie beyond the cells and took the value of the nearest point:
-    /// coarse cells leave out thin parts of a body, where few nodes are in reach.
+    /// Rows at points, and the number of points beyond the cells that took the value of the nearest point in
+    /// a cell. Coarse cells leave out thin parts of a body, in which few nodes are in reach.
     fn near<T>(
         &self,
         points: &[Point3],

@@ -233,7 +233,8 @@ fn separate_regions_share_the_vertices_of_their_border_alone() {
                 assert!((value - kinked(x)).abs() < 1e-8, "{x}: {value}");
                 assert!((slope - exact).norm() < 1e-5, "{x}: {slope}");
             }
-            // The nodes of both halves vanish on the border, where the field is single-valued.
+            // The functions of the nodes of both halves vanish on the border, so the field is single-valued
+            // there.
             let on: Vec<Point3> =
                 (0..9).map(|k| Point3::new(0.0044 * k as f64, 0.0033 * k as f64, 0.015)).collect();
             let (rows, _) = separate.point_rows(&on).unwrap();

@@ -141,7 +141,7 @@ fn fields_of_the_basis_are_reproduced_and_gradients_are_those_of_the_values() {
             let (exact, slope) = field(basis, &rows.points()[q]);
             assert!((value - exact).abs() < 1e-10 && (grad - slope).norm() < 1e-5, "{name} at {q}");
         }
-        // Points around the end of the slit, where detours are neither zero nor infinite.
+        // Points around the end of the slit, at which detours are neither zero nor infinite.
         let near = |q: &usize| (rows.points()[*q] - Point3::new(HALF + 2.6e-3, 5e-3, 7.5e-3)).norm() < 4e-3;
         let some: Vec<usize> = (0..rows.weights().len()).filter(near).step_by(3).collect();
         assert!(some.len() > 20);

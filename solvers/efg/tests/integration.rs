@@ -288,7 +288,7 @@ fn traces_are_exact_and_bounded() {
         };
         let mut sharpest = 0.0f64;
         for seed in 0..50u32 {
-            // Arbitrary values at the volume's points, not only smooth ones.
+            // Arbitrary values at the volume's points, not only smooth fields.
             let f = |q: usize| f64::from((q as u32 * 7919 + seed * 104_729) % 1009) / 504.0 - 1.0;
             for cell in facets.iter().map(|f| f.cell as usize) {
                 let own = |s: &usize| facets[s / 6].cell as usize == cell;

@@ -131,7 +131,7 @@ fn traces_are_exact_and_bounded() {
                 on / (0..volume.weights().len()).map(inside).sum::<f64>()
             };
             for seed in 0..50u32 {
-                // Arbitrary values at the volume's points, not only smooth ones.
+                // Arbitrary values at the volume's points, not only smooth fields.
                 let f = |q: usize| f64::from((q as u32 * 7919 + seed * 104_729) % 1009) / 504.0 - 1.0;
                 assert!(bound(&f) <= 1.0 + 1e-12, "{stabilisation} {face_points}: {:e}", bound(&f));
             }

@@ -208,7 +208,7 @@ impl<'a, 'b> Dynamics<'a, 'b> {
 
     /// Returns the critical step at the current displacements, or the last estimate if the body has hardly
     /// changed its shape since. An estimate takes thirty evaluations of the internal forces, the comparison
-    /// of shapes about one.
+    /// of shapes as long as about one evaluation.
     ///
     /// # Errors
     ///

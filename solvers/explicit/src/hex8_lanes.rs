@@ -115,7 +115,7 @@ fn strain<const FMA: bool>(d: &[[[Lanes; 4]; 3]; 3], map: &[Lanes; 9], q: usize,
     }
 }
 
-/// Computes the stress coefficients of a point. `good` becomes 0 in lanes where `J` is not positive.
+/// Computes the stress coefficients of a point. `good` becomes 0 in lanes in which `J` is not positive.
 #[inline(always)]
 fn law<const FMA: bool>(
     w: &Lanes,

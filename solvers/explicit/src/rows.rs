@@ -169,7 +169,7 @@ fn internal_lanes<const FMA: bool>(
     *not_inverted = good == [1.0; LANES];
 }
 
-/// Replaces `H` by `w P`. `good` becomes 0 in lanes where `J` is not positive.
+/// Replaces `H` by `w P`. `good` becomes 0 in lanes in which `J` is not positive.
 #[inline(always)]
 fn neo_hookean<const FMA: bool>(
     batch: &Batch,

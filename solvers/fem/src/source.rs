@@ -83,10 +83,10 @@ impl RowSource for Elements {
         Ok(surface_rows(&self.mesh, facets, &SurfaceRule::FINE)?)
     }
 
-    /// Divides quadratic triangles into 4 x 4 parts. At the corners of Saint-Venant's square section, where
-    /// derivatives are unbounded, a rule of any degree loses h^3, as much as the displacement of a quadratic
-    /// element. On 2 x 2 squares of two faces each, the error of tet10 was larger by 3.4 %; with the parts it
-    /// is larger by 0.05 %.
+    /// Divides quadratic triangles into 4 x 4 parts. At the corners of Saint-Venant's square section
+    /// derivatives are unbounded. A rule of any degree loses h^3 there, as much as the displacement of a
+    /// quadratic element. On 2 x 2 squares of two faces each, the error of tet10 was larger by 3.4 %; with
+    /// the parts it is larger by 0.05 %.
     fn field_surface(&self, facets: &[Facet]) -> Result<SurfaceRows, SourceError> {
         let parts = |facet: &Facet| match self.mesh.facet_kind(*facet) {
             FaceKind::Tri6 => Parts::Inside(4),

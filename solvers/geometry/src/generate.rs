@@ -25,7 +25,7 @@ use crate::{CellKind, Mesh, MeshError, quality::InvertedElement};
 /// Errors of mesh generation.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum GenerateError {
-    /// A number of cells that is zero or beyond what 32-bit indices can count.
+    /// A number of cells that is zero or exceeds the range of 32-bit indices.
     #[error("{what} is {found}; it has to be between 1 and {most}")]
     Cells {
         /// Name of the count.

@@ -70,8 +70,8 @@ fn a_cell_may_be_in_several_groups() {
     assert!(bad.contains("element 4 has the same nodes as element 3"), "{bad}");
 }
 
-/// A deck with its own model: every part that is not in the mesh is reported with its line, beginning with
-/// those that join parts.
+/// A deck with its own model: every part that is not in the mesh is reported with its line, first the cards
+/// that join parts.
 #[test]
 fn what_a_deck_has_beside_its_mesh_is_named() {
     let deck = format!(

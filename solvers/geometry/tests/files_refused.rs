@@ -154,7 +154,7 @@ fn ranges_end_at_nodes_and_elements_that_are_there() {
     let mesh = read("a.inp", DECK).unwrap();
     assert_eq!(mesh.region_names(), ["all"]);
     assert_eq!(mesh.facet_group_nodes(mesh.group("face").unwrap()), [0, 1, 2]);
-    // Node 50 and element 200 do not exist: the sets contain the existing ones.
+    // Node 50 and element 200 do not exist: the sets contain the existing nodes and elements only.
     assert_eq!(mesh.facet_group_nodes(mesh.group("most").unwrap()), [1, 2, 3, 4]);
     let changes = [
         ("10, 30, 10", "10, 70, 10", "a.inp:11: node set 'face' names node 70, which the file does not have"),

@@ -16,7 +16,7 @@ fn brute(points: &[Point3], at: &Point3) -> Vec<Neighbour> {
     all.into_iter().map(|(s, index)| Neighbour { index, distance: s.sqrt() }).collect()
 }
 
-/// A lattice, where every query at a node has ties at 1, sqrt 2, sqrt 3, ... spacings.
+/// A lattice, in which every query at a node has ties at 1, sqrt 2, sqrt 3, ... spacings.
 fn lattice(n: usize) -> Vec<Point3> {
     let at = |c: usize| 0.1 * c as f64;
     (0..n * n * n).map(|i| Point3::new(at(i % n), at(i / n % n), at(i / n / n))).collect()

@@ -157,7 +157,7 @@ fn spacings_that_make_no_mesh_are_refused() {
     assert!(matches!(refused(7.0), StuffingError::TooCoarse { .. }));
 }
 
-/// Each inner face is shared by two cells: the boundary is closed where the cell size changes.
+/// Each inner face is shared by two cells: the boundary is closed also at changes of the cell size.
 #[test]
 fn cells_of_several_sizes_fit_together() {
     let mesh = filled(&surface(sphere_like(4, |n| n)), 0.06, 3);

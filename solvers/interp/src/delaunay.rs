@@ -319,7 +319,7 @@ mod tests {
         // A rotated lattice: spheres through many nodes, except for rounding.
         let turn = nalgebra::Rotation3::from_euler_angles(0.3, 0.7, -0.4);
         check(&lattice(4, 1.0).iter().map(|p| turn * p).collect::<Vec<_>>(), Some(27.0));
-        // Nodes in a plane, except one.
+        // Nodes in a plane, and one node outside of it.
         let mut plane = lattice(4, 1.0);
         plane.truncate(16);
         plane.push(Point3::new(1.3, 1.4, 0.7));

@@ -21,8 +21,8 @@ use crate::scheme::{SchemeEntry, Source, Transfer, support_scale};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Radial {
     /// `r^2 ln r`, commonly called thin plate. This function minimises bending energy in the plane. In space
-    /// the minimiser would be `r`, but `r^2 ln r` is still valid and smoother (C1 at the nodes, where `r` has
-    /// a kink). A change of length unit adds a multiple of `r^2`, which the side conditions cancel.
+    /// the minimiser would be `r`, but `r^2 ln r` is still valid and smoother (C1 at the nodes, at which `r`
+    /// has a kink). A change of length unit adds a multiple of `r^2`, which the side conditions cancel.
     ThinPlate,
     /// `r^3`: C2 at the nodes.
     Cubic,
@@ -66,7 +66,7 @@ impl Radial {
     }
 
     /// Returns the derivative of the function with respect to the squared distance. It is bounded except for
-    /// `r^2 ln r` at a node, where the gradient is zero.
+    /// `r^2 ln r` at a node; the gradient is zero there.
     #[inline(always)]
     fn slope(self, square: f64, inverse_square: f64) -> f64 {
         match self {

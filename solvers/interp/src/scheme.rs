@@ -13,7 +13,7 @@ use crate::{InterpError, SCHEMES, Scheme, TransferInfo};
 /// A transfer scheme that scene files can name.
 pub type SchemeEntry = Entry<fn(&Values) -> Result<Scheme, Problem>>;
 
-/// Source of a field: its nodes, with a mesh if there is one.
+/// Source of a field: its nodes, and the mesh of the nodes if there is a mesh.
 #[derive(Clone, Copy)]
 pub(crate) struct Source<'a> {
     /// Node positions, m.

@@ -89,7 +89,7 @@ fn linear_and_quadratic_fields_have_their_gradients() {
 #[test]
 fn gradients_are_those_of_differences() {
     let mesh = mesh();
-    // No target is on the border of a tetrahedron, where barycentric gradients jump.
+    // No target is on the border of a tetrahedron, at which barycentric gradients jump.
     let targets = &targets(&mesh)[..40];
     let field =
         |x: &Point3| Vector3::new((90.0 * x.x).sin(), (70.0 * x.y).cos(), (80.0 * (x.z + x.x)).sin()) * 1e-2;

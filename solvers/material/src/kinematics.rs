@@ -173,7 +173,7 @@ mod tests {
 
     #[test]
     fn differences_from_the_logarithm_keep_their_digits() {
-        // Leading terms x^2/2 - x^3/3 + x^4/4 at small x; the direct difference where it is accurate enough.
+        // Leading terms x^2/2 - x^3/3 + x^4/4 at small x; the direct difference if it is accurate enough.
         for x in [1e-12, -1e-9, 3e-6, -2e-5] {
             let series = x * x * (0.5 - x / 3.0 + x * x / 4.0);
             assert!((less_ln_1p(x) - series).abs() < 4e-15 * series, "{x}");

@@ -20,7 +20,7 @@ pub fn length(value: f64) -> String {
     text(&[value], value.abs())
 }
 
-/// Writes numbers (m) in the unit of the largest one, with three significant digits of `size` (m).
+/// Writes numbers (m) in the unit of the largest number, with three significant digits of `size` (m).
 fn text(numbers: &[f64], size: f64) -> String {
     let largest = numbers.iter().fold(size, |most, number| most.max(number.abs()));
     let (unit, metres) = match largest {

@@ -198,7 +198,7 @@ impl Rows {
         &self.values
     }
 
-    /// Common length of all rows, if there is one; hot loops then have a fixed trip count.
+    /// Common length of all rows; `None` if lengths differ. Hot loops use it as a fixed trip count.
     pub fn uniform_len(&self) -> Option<usize> {
         self.uniform_len
     }

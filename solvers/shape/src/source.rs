@@ -84,7 +84,7 @@ pub trait RowSource: Send + Sync {
         self.surface(facets)
     }
 
-    /// Computes shape values on the whole outer boundary, where tools may touch, with the points on parts of
+    /// Computes shape values on the whole outer boundary, which tools may touch, with the points on parts of
     /// the facets: a division for each boundary facet, or an empty list for whole facets.
     fn contact_surface(&self, parts: &[Parts]) -> Result<SurfaceRows, SourceError>;
 

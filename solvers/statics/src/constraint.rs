@@ -76,8 +76,8 @@ impl Row {
         self.terms.iter().filter_map(|&(dof, c)| prescribed[dof].map(|v| c * v)).sum()
     }
 
-    /// Returns the row over the free degrees of freedom; the contribution of the prescribed ones moves to the
-    /// value.
+    /// Returns the row over the free degrees of freedom; the contribution of the prescribed degrees of
+    /// freedom moves to the value.
     pub fn without(&self, prescribed: &[Option<f64>]) -> Row {
         let terms = self.terms.iter().filter(|t| prescribed[t.0].is_none()).copied().collect();
         Row { terms, value: self.value - self.held_part(prescribed) }

@@ -134,8 +134,8 @@ fn solve(
     })
 }
 
-/// Position of the largest coefficient in the rows without a pivot (the first of equal ones); `None` if only
-/// rounding is left.
+/// Position of the largest coefficient in the rows without a pivot (the first of equal coefficients); `None`
+/// if only rounding is left.
 fn largest(table: &[f64], width: usize, n: usize, pivot_of: &[Option<usize>]) -> Option<(usize, usize)> {
     let (mut best, mut place) = (DEPENDENT, None);
     for (r, row) in table.chunks_exact(width).enumerate().filter(|(r, _)| pivot_of[*r].is_none()) {

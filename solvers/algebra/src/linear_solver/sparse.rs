@@ -35,7 +35,7 @@ pub struct Symbolic {
 }
 
 impl Symbolic {
-    /// Orders a matrix by nested dissection and finds where its factor has entries.
+    /// Orders a matrix by nested dissection and finds the entries of its factor.
     ///
     /// # Errors
     ///

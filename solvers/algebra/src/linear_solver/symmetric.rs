@@ -164,7 +164,7 @@ impl Symmetric {
     /// The diagonal entry of column `j`.
     #[inline]
     pub fn diagonal(&self, j: usize) -> f64 {
-        // Rows ascend and the triangle is the upper one: the diagonal entry is the last.
+        // Rows ascend in the upper triangle, so the diagonal entry is the last entry of a column.
         self.values[self.offsets[j + 1] - 1]
     }
 

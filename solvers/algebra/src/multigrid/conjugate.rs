@@ -71,7 +71,7 @@ impl Multigrid {
         let mut image = vec![Vector3::zeros(); nodes];
         let mut inner = Precondition::new(nodes);
         let (mut count, mut last, mut residual, mut at_rounding) = (0, 0.0, 1.0, false);
-        // The recursive residual drifts from the true one. A restart from the true residual needs an
+        // The recursive residual drifts from the true residual. A restart from the true residual needs an
         // iteration or two.
         for _ in 0..3 {
             direction.fill(Vector3::zeros());

@@ -55,7 +55,7 @@ impl Multigrid {
     /// Builds the hierarchy of a positive definite stiffness.
     ///
     /// `nodes` are the node positions, m. `held` marks the constrained degrees of freedom `3 node + axis`.
-    /// `linear` is the mesh of the next level, if there is one.
+    /// `linear` is the linear mesh of the next level, for quadratic elements.
     ///
     /// # Errors
     ///

@@ -150,7 +150,7 @@ impl Pressures {
         let mut rest = Pair { u: b.to_vec(), p: vec![0.0; self.schur.len()] };
         let mut cycles = Precondition::new(nodes);
         let (mut count, mut residual, mut at_rounding) = (0, 1.0, false);
-        // The recursive residual drifts from the true one. A restart takes the true residual, with the
+        // The recursive residual drifts from the true residual. A restart takes the true residual, with the
         // pressures that belong to the displacements.
         for _ in 0..3 {
             self.descend(multigrid, &mut cycles, (&mut x, &mut rest), tolerance * size, &mut count);

@@ -169,7 +169,8 @@ fn a_cycle_is_symmetric_and_positive() {
     assert!(once > 0.0 && twice > 1.01 * once, "{once} and {twice}");
 }
 
-/// Uses both triangles from one, across two chunks: residuals, and the sweeps that update them.
+/// Checks that one stored triangle serves as both, across two chunks: in residuals, and in the sweeps that
+/// update them.
 #[test]
 fn sweeps_leave_the_residual_and_are_transposes() {
     let (lower, _) = grid(26);

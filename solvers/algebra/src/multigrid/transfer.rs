@@ -291,7 +291,8 @@ fn in_rows<T: Send>(offsets: &[usize], entries: &mut [T], run: impl Fn(Range<usi
 
 impl Transfer<Diagonal> {
     /// Builds the prolongation between nested meshes. It couples the degrees of freedom `3 node + axis` that
-    /// are free at the fine node and at the coarse node; `held` marks the constrained ones of the fine mesh.
+    /// are free at the fine node and at the coarse node; `held` marks the constrained degrees of freedom of
+    /// the fine mesh.
     pub fn nested(coarser: &Coarser, held: &[bool]) -> Transfer<Diagonal> {
         let (mut offsets, mut columns, mut weights) = (vec![0], Vec::new(), Vec::new());
         for i in 0..coarser.rows.len() {

@@ -2,9 +2,9 @@
 //! out.
 //!
 //! Each shape has a file with its distance and its [`ToolShapeEntry`], and a line in the list below. Outside
-//! and near the surface the distances are exact. On the medial axis, where the nearest point is not unique,
-//! one of the nearest points is taken (each file states which), and the infinite part of the Hessian is left
-//! out: no value is NaN.
+//! and near the surface the distances are exact. On the medial axis the nearest point is not unique. One of
+//! the nearest points is taken there (each file states which), and the infinite part of the Hessian is left
+//! out, so that no value is NaN.
 
 mod outline;
 

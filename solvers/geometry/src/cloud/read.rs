@@ -48,7 +48,7 @@ pub enum PointFileError {
 /// A problem with one value of a line.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum PointProblem {
-    /// Text where a number belongs.
+    /// Text in place of a number.
     #[error("is '{found}', not a number")]
     NotANumber {
         /// Text found.

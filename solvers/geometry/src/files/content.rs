@@ -106,7 +106,7 @@ impl Content {
         self.points.len() + self.nodes.len() + self.facets.len() + self.faces.len() + free + sets
     }
 
-    /// Number of elements so far, including those that are not cells.
+    /// Number of elements so far, including elements that are not cells.
     pub(super) fn element_count(&self) -> usize {
         self.cell_of_element.len()
     }

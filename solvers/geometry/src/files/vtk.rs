@@ -82,7 +82,8 @@ pub(super) fn parse(bytes: &[u8]) -> Parsed<Content> {
     content(&scanner, found)
 }
 
-/// Reads the section that begins with this word, and returns the kind of items described by the next ones.
+/// Reads the section that begins with this word, and returns the kind of items described by the next
+/// sections.
 fn section(scanner: &mut Scanner, found: &mut Found, of: Of, word: &str) -> Parsed<Of> {
     let values = match of {
         Of::Grid => 0,

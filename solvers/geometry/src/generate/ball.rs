@@ -4,7 +4,7 @@
 use super::{GenerateError, check_cells, check_positive, check_total, into_kind, lattice, surfaces};
 use crate::{CellKind, Mesh, Point3, Vector3, quality, shapes::Kidney};
 
-/// Half side of the inner cube in the parameter space, where the whole ball is the cube [-1, 1]^3.
+/// Half side of the inner cube in the parameter space, in which the whole ball is the cube [-1, 1]^3.
 const INNER: f64 = 0.5;
 /// Fraction by which the corners of the inner cube are drawn in towards a sphere: 0 leaves a cube, 1 makes a
 /// ball.

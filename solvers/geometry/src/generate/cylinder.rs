@@ -3,7 +3,7 @@
 use super::{GenerateError, check_cells, check_positive, check_total, graded, into_kind, lattice, surfaces};
 use crate::{CellKind, Mesh, Point3};
 
-/// Half side of the inner square in the parameter space, where the section is the square [-1, 1]^2.
+/// Half side of the inner square in the parameter space, in which the section is the square [-1, 1]^2.
 const INNER: f64 = 0.5;
 /// Radius at which the core's sides cross the axes, and the fraction by which its corners are drawn in (0:
 /// square, 1: disc).

@@ -1,7 +1,7 @@
 //! Lattice of tetrahedra between the centres and corners of cubes (Labelle and Shewchuk 2007, section 3).
 //!
 //! Two cubes of equal size that share a face have four tetrahedra between them, one for each edge of the
-//! face. All their angles are 60 or 90 degrees. Where the cube size changes, these tetrahedra are cut into
+//! face. All their angles are 60 or 90 degrees. At changes of the cube size, these tetrahedra are cut into
 //! two or four parts, or a pyramid on the smaller face is cut into two.
 
 use std::collections::HashMap;
@@ -16,7 +16,7 @@ pub(super) struct Lattice {
     /// corners of their common face. The edge between the centres and the edge between the corners are as
     /// long as the edge of a cube; the other four edges are shorter.
     pub regular: Vec<[u32; 4]>,
-    /// All other tetrahedra, as indices into `points`: between larger cubes, and where the cube size changes.
+    /// All other tetrahedra, as indices into `points`: between larger cubes, and at changes of the cube size.
     pub coarse: Vec<[u32; 4]>,
     index: HashMap<[i32; 3], u32>,
 }

@@ -1,5 +1,5 @@
-//! Octree of cubes: the smallest along a surface, larger ones inside, with a ratio of at most two between
-//! touching cubes.
+//! Octree of cubes: the smallest cubes along a surface and larger cubes inside, with a ratio of at most two
+//! between touching cubes.
 
 use std::collections::HashMap;
 

@@ -1,4 +1,4 @@
-//! Face-connected parts of a mesh, without those that the lattice does not resolve.
+//! Face-connected parts of a mesh, without parts that the lattice does not resolve.
 
 use super::stencil::Side;
 

@@ -76,7 +76,7 @@ pub enum SurfaceProblem {
         triangles: [u32; 2],
         /// Centre of the first triangle.
         at: Point3,
-        /// Number of triangles that cross a later one.
+        /// Number of triangles that cross a later triangle.
         places: usize,
     },
     /// A part with the wrong orientation: clockwise as seen from outside, or counter-clockwise for a cavity.

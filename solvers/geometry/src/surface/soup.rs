@@ -42,7 +42,7 @@ impl Soup {
         let mut same: HashMap<[u64; 3], u32> = HashMap::new();
         let bin = |p: &Point3| [p.x, p.y, p.z].map(|x| (x / tolerance).floor() as i64);
         let mut place = |p: &Point3| {
-            // The sum turns a negative zero into a positive one.
+            // The sum turns a negative zero into a positive zero.
             let bits = [p.x, p.y, p.z].map(|x| (x + 0.0).to_bits());
             if let Some(&known) = same.get(&bits) {
                 return known;

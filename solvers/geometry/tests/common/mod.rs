@@ -68,7 +68,7 @@ pub fn block(size: [f64; 3]) -> Soup {
     Soup { points: points.collect(), triangles, faces: (1..=12).collect(), ..Soup::default() }
 }
 
-/// Two soups merged into one.
+/// Two soups merged into one soup.
 pub fn joined(a: Soup, b: Soup) -> Soup {
     let (first, count) = (a.points.len() as u32, a.triangles.len() as u32);
     let mut all = a;

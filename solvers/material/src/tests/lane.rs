@@ -62,7 +62,7 @@ proptest! {
         }
     }
 
-    // Equal stretches and rotated ones, over all lengths of the logarithm's series and beyond.
+    // Equal stretches and rotated stretches, over all lengths of the logarithm's series and beyond.
     #[test]
     fn lanes_know_no_special_stretches(
         stretch in 0.5..1.9f64,

@@ -30,7 +30,7 @@ pub(crate) struct TimeTerms {
 }
 
 /// Inertia and damping of one step of an implicit scheme: the force `carried - M r`. In free degrees of
-/// freedom `r = factor (u - from) + settled`, in constrained ones `r = settled`, m/s^2.
+/// freedom `r = factor (u - from) + settled`, in constrained degrees of freedom `r = settled`, m/s^2.
 #[derive(Clone, Debug)]
 pub(crate) struct InertiaTerms {
     /// Derivative of `r` with respect to `u`, 1/s^2.

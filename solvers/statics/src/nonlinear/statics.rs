@@ -73,8 +73,8 @@ pub struct Step {
     pub iterations: Vec<Iteration>,
     /// Whether the body gave way in this step, as in snap-through: there was no equilibrium nearby, so the
     /// solver followed the energy downhill with an indefinite tangent, further than the Newton step. In a
-    /// search for a limit point the flag is also set if the nearest equilibrium was unstable and the
-    /// solver continued to a stable one.
+    /// search for a limit point the flag is also set if the nearest equilibrium was unstable and the solver
+    /// continued to a stable equilibrium.
     pub gave_way: bool,
     /// Whether the step ends in a stable equilibrium: the last tangent (with friction, its symmetric part)
     /// was positive definite. An unstable equilibrium lies beyond a limit or bifurcation point, and the body

@@ -1,4 +1,5 @@
-//! Lengths of steps: equal output intervals, shorter steps after failures, and longer ones after quick steps.
+//! Lengths of steps: equal output intervals, shorter steps after failures, and longer steps after quick
+//! steps.
 
 /// State of the stepping from 0 to an end.
 pub(crate) struct Stepper {

@@ -102,7 +102,8 @@ fn matrix_and_right_hand_side_make_the_residual() {
     }
 }
 
-/// If the displacement is the prescribed one, only the work of the exact traction remains of the forms.
+/// If the displacement equals the prescribed displacement, only the work of the exact traction remains of the
+/// forms.
 #[test]
 fn the_prescribed_field_leaves_its_traction() {
     let block = Block::new();

@@ -294,7 +294,7 @@ impl Scope {
     pub(super) fn close(&mut self) -> Parsed<()> {
         let mut deciding = self.sections.clone();
         if deciding.is_empty() {
-            // Later sets overwrite earlier ones, so the smallest comes last.
+            // Later sets overwrite earlier sets, so the smallest set comes last.
             let cells = |key: &String| {
                 let members = &self.elsets.lists[key].1;
                 members.iter().filter(|&&number| self.content.cell_of(number).is_some()).count()

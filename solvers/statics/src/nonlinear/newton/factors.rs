@@ -15,8 +15,8 @@ use crate::nonlinear::statics::StaticWork;
 use crate::nonlinear::system::System;
 
 /// Ratio of the multiplications of a factorisation to those of a solution that pays for one iteration with a
-/// kept factor. A factorisation runs in the caches and does nine multiplications in the time in which a
-/// solution does one.
+/// kept factor. A factorisation runs in the caches and does nine multiplications in the time of one
+/// multiplication of a solution.
 const ITERATION: f64 = 9.0;
 /// Largest number of iterations with a kept factor: `MOST` for expensive factors, `LEAST` for cheap factors.
 const MOST: usize = 12;

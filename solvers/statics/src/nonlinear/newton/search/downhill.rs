@@ -1,4 +1,4 @@
-//! Longer steps past a limit point, where the body gives way and the energy falls beyond the Newton step.
+//! Longer steps past a limit point, at which the body gives way and the energy falls beyond the Newton step.
 
 use super::{Line, Secant};
 use crate::nonlinear::StaticError;

@@ -136,7 +136,8 @@ impl Line<'_, '_> {
         state.u.clone_from(&start.0);
         state.pressure.clone_from(&start.1);
         state.closures.clone_from(&start.2);
-        // Constrained degrees of freedom move all the way, whatever fraction of the step the free ones take.
+        // Constrained degrees of freedom take the whole step, whatever fraction of the step the free degrees
+        // of freedom take.
         equations.prescribe(&mut state.u, *time);
         equations.system.scatter_add(&direction.step, length, &mut state.u, &mut state.pressure);
         state.closures.iter_mut().zip(&direction.closures).for_each(|(c, d)| *c += length * d);
