@@ -66,8 +66,8 @@ pub(crate) struct Layer {
 }
 
 /// Returns the node positions (m) of a cloud that is [coupled](crate::Approximation::coupled) to finite
-/// elements. The nodes of the cloud come first, except those at which the hat functions of the vertices sum
-/// to one half or more; the vertices follow.
+/// elements. The nodes of the cloud come first, without the nodes at which the hat functions of the vertices
+/// sum to one half or more. The vertices follow.
 pub fn coupled_nodes(nodes: &[Point3], background: &Mesh, vertices: &[u32]) -> Result<Vec<Point3>, EfgError> {
     let kept = Coupling::new(background, vertices)?.kept(nodes)?;
     let of_cloud = kept.into_iter().map(|(n, _)| nodes[n]);

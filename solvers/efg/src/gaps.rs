@@ -211,9 +211,9 @@ impl Gaps {
         rows.shorten_last(n);
     }
 
-    /// Returns the detour (m) from the point `x` in `cell` to each of `nodes`. Paths are searched up to 1.5
-    /// times the length `farthest` (m). The detour is infinite if no such path reaches a corner of the node's
-    /// cell.
+    /// Returns the detour (m), as defined by `excess`, from the point `x` in `cell` to each of `nodes`.
+    /// Paths are searched up to 1.5 times the length `farthest` (m). The detour is infinite if no such path
+    /// reaches a corner of the node's cell.
     pub fn detours(&self, x: &Point3, cell: u32, nodes: &[Point3], farthest: f64) -> Vec<f64> {
         let mut ways = Ways::new(self.graph.vertices());
         let length = |a: &Point3, b: &Point3| (a - b).norm();
@@ -242,7 +242,8 @@ impl Face {
     }
 }
 
-/// Returns the detour of a path with the straight distance between its ends.
+/// Returns the detour (m) of a path of length `way` (m): `STEEP` times its excess over `STRAIGHT` times
+/// the straight distance of its ends.
 fn excess(way: f64, straight: f64) -> f64 {
     STEEP * (way - STRAIGHT * straight).max(0.0)
 }

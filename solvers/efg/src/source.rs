@@ -138,8 +138,8 @@ pub struct CloudSource {
 }
 
 impl CloudSource {
-    /// Builds the shape functions of a cloud and their supports over a background of tet4. `integration`
-    /// selects the quadrature.
+    /// Builds the shape functions of a cloud and their supports over a background of tet4. Supports do not
+    /// reach across gaps of the background ([`Approximation::within`]). `integration` selects the quadrature.
     ///
     /// If `followed` is given, moving least squares have ellipsoidal supports adapted to its cells. If
     /// `coupled` is given, these background vertices (ascending) become finite-element nodes. With

@@ -22,7 +22,7 @@ const STEPS: usize = 12;
 impl Factored<'_> {
     /// Returns the smallest stabilisation factor `gamma` of Nitsche's method for which the stiffness is
     /// positive definite (dimensionless, at most the `gamma` in use). The result is `None` without Nitsche
-    /// supports.
+    /// supports, or if all parameters are constrained.
     ///
     /// The factor is `C = gamma (1 - alpha)^2`, where `alpha` is the smallest eigenvalue of `K v = alpha M v`
     /// and `M` is `K` without Nitsche's consistency terms.

@@ -17,7 +17,8 @@ const KEPT: f64 = 10.0;
 impl Assembled<'_> {
     /// Builds the multigrid solver as [`Assembled::multigrid`] does, for nearly incompressible bodies with
     /// dilation groups. The part of a group's bulk modulus above ten times its shear modulus is left to a
-    /// pressure. Without dilation groups the result is the same.
+    /// pressure. Without dilation groups, or if no group has such a bulk modulus, the result is that of
+    /// [`Assembled::multigrid`].
     pub fn multigrid_with_pressures(&self, linear: Option<&Coarser>) -> Result<Multigrid, SolveError> {
         let body = &self.body;
         let Some(groups) = body.dilation else { return self.multigrid(linear) };

@@ -73,7 +73,8 @@ impl Pointwise {
         }
     }
 
-    /// Returns the resultant of the nodal forces of each weak support at `factor` times its values, N.
+    /// Returns the resultant (N) of the forces that each weak support exerts on the body, at nodal parameters
+    /// `u` (m) and `factor` times the prescribed values.
     pub fn resultants(&self, u: &[Vector3], factor: f64) -> Vec<Vector3> {
         let each = self.weak.iter().map(|(table, of)| {
             let mut forces = vec![Vector3::zeros(); u.len()];

@@ -139,7 +139,8 @@ impl Factor {
         matches!(&self.0, Numbers::Single(factor) if factor.least_pivot(matrix) > CLEAR_PIVOT)
     }
 
-    /// Rounds the factor to single precision, the form that [`factor_roughly`] returns.
+    /// Rounds a sparse factor to single precision, the form that [`factor_roughly`] returns. A dense factor
+    /// stays as it is.
     pub fn rounded(self) -> Factor {
         match self.0 {
             Numbers::Sparse(factor) => Factor(Numbers::Single(Box::new((*factor).into()))),
@@ -171,7 +172,7 @@ pub struct Factorization {
     pub kind: Kind,
 }
 
-/// Failure of a factorisation. The caller knows why the matrix should have been definite.
+/// Failure of a factorisation. The caller adds the reason for which the matrix should have been definite.
 #[derive(Debug)]
 pub enum FactorError {
     /// A pivot is zero or negative.

@@ -267,7 +267,7 @@ impl Single {
         done.map(|_| factor)
     }
 
-    /// Solves in place, to single precision relative to the largest entry.
+    /// Solves `A x = b` in place in single precision, with `b` scaled by its largest entry.
     pub fn solve(&self, b: &mut [f64]) -> Result<(), AlgebraError> {
         let n = b.len();
         let largest = b.iter().fold(0.0f64, |m, v| m.max(v.abs()));

@@ -217,8 +217,8 @@ impl<const B: usize> Operator<B> {
         value
     }
 
-    /// Returns row `i` of the product with `x` of the additions to the diagonal for couplings between chunks;
-    /// zero if there is one chunk.
+    /// Returns the additions to the diagonal of row `i`, which account for couplings between chunks, times
+    /// `x`; zero if there is one chunk.
     #[inline(always)]
     pub fn added_part(&self, i: usize, x: &Entry<B>) -> Entry<B> {
         self.added.get(i).map_or([0.0; B], |added| std::array::from_fn(|a| added[a] * x[a]))

@@ -24,7 +24,8 @@ impl<const B: usize> Operator<B> {
         }
     }
 
-    /// Sweeps backward, the transpose of the forward sweep. `rest` is overwritten.
+    /// Sweeps backward from `x`, `x = (D + L^T)^-1 (b - L x)`: the transpose of the forward sweep. `rest` is
+    /// workspace.
     pub fn sweep_backward(&self, b: &[Entry<B>], x: &mut [Entry<B>], rest: &mut [Entry<B>]) {
         let path = LanePath::best();
         rest.copy_from_slice(b);

@@ -36,7 +36,7 @@ macro_rules! elements {
             /// All kinds, in the order tables list them.
             pub const ALL: [CellKind; [$($nodes),+].len()] = [$(CellKind::$Name),+];
 
-            /// Facts of the kind's element.
+            /// Entry of the element: its nodes, faces, rules, and codes in mesh files.
             pub const fn entry(self) -> &'static Entry {
                 match self {
                     $(CellKind::$Name => &<$Name as Element<$nodes>>::ENTRY,)+

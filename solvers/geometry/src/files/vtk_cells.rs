@@ -55,7 +55,7 @@ impl Array {
     /// Values as integers. Some programs write region numbers as reals.
     ///
     /// # Errors
-    /// A value that is not whole.
+    /// A value that is not whole, or that exceeds 2^53.
     pub fn whole(&self) -> Parsed<Vec<i64>> {
         // Reals beyond 2^53 have no fractional part.
         let is_whole = |value: f64| value.fract() == 0.0 && value.abs() <= 9_007_199_254_740_992.0;

@@ -48,11 +48,12 @@ struct Normals {
 }
 
 impl Surface {
-    /// Creates a surface of these triangles, with lengths multiplied by `unit` (m).
+    /// Creates a surface of these triangles, with lengths multiplied by `unit` (m). If the triangles cross,
+    /// needles without area are replaced together with their neighbours.
     ///
     /// # Errors
-    /// A surface that is open, crosses itself or is inside out, with the triangle and the position in the
-    /// unit of the triangles.
+    /// Too few triangles, too many parts, or a surface that is open, crosses itself or is inside out. The
+    /// error has the triangle and the position in the unit of the triangles.
     pub fn new(soup: Soup, unit: f64) -> Result<Surface, SurfaceProblem> {
         let (mut soup, mut neighbours) = closed::closed(soup)?;
         if let Err(crossing) = crossing::refuse(&soup) {
