@@ -65,7 +65,8 @@ impl Unsymmetric {
         Ok(Unsymmetric { symmetric, extra, borders, solved, schur: schur.lu(), stable })
     }
 
-    /// Whether the matrix stays positive definite with its borders, if it is so without them.
+    /// Whether the borders keep the matrix positive definite, provided that the matrix without borders is
+    /// positive definite.
     pub fn stable(&self) -> bool {
         self.stable
     }

@@ -26,7 +26,8 @@ pub(super) struct Held<'a> {
 }
 
 impl<'a> Held<'a> {
-    /// Takes `held`, one entry per degree of freedom `3 node + axis`, true if constrained.
+    /// Builds the lower triangle of a stiffness in which the degrees of freedom `3 node + axis` marked in
+    /// `held` are constrained.
     pub fn new(stiffness: &'a Stiffness, held: &'a [bool]) -> Held<'a> {
         let diagonal = |i: usize| *stiffness.row(i).1.last().expect("every row has its diagonal");
         let nodes = stiffness.pattern().node_count();

@@ -155,8 +155,8 @@ pub struct Rest<'a> {
 /// reason.
 ///
 /// # Errors
-/// Errors of the problem itself. One of these is a rigid motion prevented neither by supports nor, at the
-/// end, by tools, because its result is arbitrary.
+/// Errors of the problem itself, such as a rigid motion that neither the supports nor, at the end, the tools
+/// prevent: its result would be arbitrary.
 pub fn solve_static(
     problem: &StaticProblem,
     params: &StaticParams,

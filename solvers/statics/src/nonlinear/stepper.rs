@@ -58,7 +58,8 @@ impl Stepper {
         self.step = (growth * self.step).min(self.longest);
     }
 
-    /// Cuts a failed step to the part `part`. Returns whether the cut step is at least `finest`.
+    /// Cuts a failed step to the fraction `part` of its length. Returns whether the cut step is at least
+    /// `finest`.
     pub fn cut(&mut self, failed: Attempt, part: f64, finest: f64) -> bool {
         self.cut_back += 1;
         self.step = part * failed.length;

@@ -118,7 +118,8 @@ pub(super) struct Policy<'a> {
     /// Treatment of a tangent that is not definite.
     pub descent: Descent,
     /// Whether steps are the frames of a simulator's loop. A frame starts with the last tangent if that is
-    /// expected to suffice, and a step that is cut is extended until a point touches.
+    /// expected to suffice. A step that was cut too far, so that points of the whole step lost contact, is
+    /// lengthened again.
     pub repeats: bool,
     /// Whether the equations have a pressure field.
     pub saddle: bool,
@@ -132,9 +133,10 @@ impl Policy<'_> {
         solutions > self.params.keeps && !self.repeats && !self.saddle
     }
 
-    /// Whether Newton's method gives up. `log` has the iterations of this search for an equilibrium, `best`
-    /// the number of iterations before the last reduction of the residual by a tenth. During descent the
-    /// forces grow at first.
+    /// Whether Newton's method gives up: at the largest number of iterations or, except during descent, after
+    /// too many iterations without progress. `log` has the iterations of this search for an equilibrium,
+    /// `best` the number of iterations before the last reduction of the residual by a tenth. During descent
+    /// the forces may grow at first.
     pub fn gives_up(&self, log: &[Iteration], best: usize) -> bool {
         let stuck = self.descent != Descent::Down && log.len() >= best + patience(log);
         log.len() >= self.params.iterations || stuck

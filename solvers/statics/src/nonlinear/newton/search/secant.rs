@@ -10,7 +10,7 @@ pub(super) struct Secant {
     /// work is left (Matthies & Strang 1979). With more work left, the points that the whole step met are not
     /// in contact. The next tangent then lacks their stiffness, and the next step is cut again.
     pub repeats: bool,
-    /// Work above which a step is accepted, J.
+    /// Work of the residual along the step above which the step is accepted, J; infinity for no such limit.
     pub enough: f64,
 }
 
