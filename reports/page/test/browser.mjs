@@ -1,4 +1,4 @@
-// A headless Chromium driven over a pipe, in the protocol of its developer tools.
+// A headless Chromium that is controlled over a pipe by the protocol of its developer tools.
 import { spawn } from "node:child_process";
 import { mkdtempSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
@@ -6,7 +6,7 @@ import { join } from "node:path";
 
 const NAMES = ["chromium", "chromium-browser", "google-chrome"];
 
-/** A browser, or null where none is installed. */
+/** Starts a browser; null if none is installed. */
 export async function launch() {
   for (const name of process.env.CHROMIUM ? [process.env.CHROMIUM] : NAMES) {
     const profile = mkdtempSync(join(tmpdir(), "tissuebench-page-"));

@@ -1,6 +1,7 @@
-// The page in a browser: `node test/page.mjs REPORT.html`; the CI has it of the quick verification.
+// Tests of the page in a browser: `node test/page.mjs REPORT.html`. Continuous integration tests the page of the
+// quick verification.
 //
-// Skipped, and says so, where no Chromium is installed.
+// If no Chromium is installed, the tests are skipped with a message.
 import assert from "node:assert/strict";
 import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
@@ -16,7 +17,7 @@ const url = `file://${resolve(file)}`;
 const browser = await launch();
 if (!browser) {
   console.log("skipped: no Chromium here (set CHROMIUM to one)");
-  // With CI=true only what .ci/skips names may be left out.
+  // With CI=true, the tests may be skipped only if .ci/skips names chromium.
   const list = readFileSync(new URL("../../../.ci/skips", import.meta.url), "utf8");
   process.exit(process.env.CI === "true" && !/^chromium: /m.test(list) ? 1 : 0);
 }
@@ -51,7 +52,7 @@ test("the first screen asks, answers and draws", async (open) => {
   assert.ok(await page.eval(`${all("#front svg [aria-label=dot] *")}.length > 1`), "no marker is drawn");
   assert.ok(await page.eval(`${all("#front svg .front path, #front svg path.front")}.length > 0`), "no front is drawn");
   assert.match(await page.eval(text("#answer")), /%.*(s|h)[.;, ]/);
-  // An address of the page's own is no request.
+  // Addresses of the page itself are not requests.
   assert.deepEqual(page.requests.filter((r) => !r.startsWith("file:") && !r.startsWith("data:")), []);
 });
 
@@ -133,7 +134,7 @@ test("hovering tells the number itself, however small", async (open) => {
   const ask = await page.eval(`${data}.asks[${at}]`);
   await page.eval(`location.hash = ${JSON.stringify(new URLSearchParams({ case: ask.case, what: ask.what }).toString())}`);
   await page.until(`${text("#answer")}.includes(${JSON.stringify(ask.case)})`);
-  // The lowest marker is drawn at the floor.
+  // The lowest marker is drawn at the smallest error of the axis.
   const place = await page.eval(`(() => { const all = ${all("#front svg [aria-label=dot] *")}.map((e) => e.getBoundingClientRect()).filter((r) => r.width); const r = all.reduce((a, b) => (b.bottom > a.bottom ? b : a)); return [r.x + r.width / 2, r.y + r.height / 2]; })()`);
   await page.move(place[0] - 5, place[1] - 5);
   await page.move(place[0], place[1]);
@@ -149,7 +150,7 @@ test("the cheapest run within the error has its table, case by case", async (ope
   assert.ok(found, "no table");
   await page.until(`${all("#within tbody tr")}.length`);
   const rows = await page.eval(`${all("#within tbody tr")}.map((r) => [...r.cells].map((c) => c.innerText))`);
-  // A method that reaches something has a time, and one that reaches nothing says so.
+  // A method that reaches the error has a time, and a method that never reaches it has "not reached".
   for (const [method, reached, ...cells] of rows) {
     const times = cells.filter((c) => /^[\d.]/.test(c)).length;
     assert.equal(times, Number(reached.split(" ")[0]), `${method}: ${reached} / ${cells}`);
@@ -173,7 +174,7 @@ test("filters hold for the whole page and live in the address", async (open) => 
   await page.until(`${all("#tables tbody tr")}.length`);
   const rows = await page.eval(`(() => { const t = document.querySelector("#tables .sheet table"); const k = [...t.querySelectorAll("th")].findIndex((h) => h.innerText.trim() === "case"); return [...t.querySelectorAll("tbody tr")].map((r) => r.cells[k]?.innerText); })()`);
   assert.ok(rows.length && rows.every((r) => r === undefined || r === name), JSON.stringify(rows));
-  // And back.
+  // An empty address removes the filters.
   await page.eval(`location.hash = ""`);
   await page.until(`${all("#cases > details")}.filter((d) => !d.hidden).length > 1 || ${data}.cases.length === 1`);
 });
@@ -230,14 +231,14 @@ test("two clicks reach what locks, what fails, and where methods break", async (
 
 test("the first screen and two clicks answer a stranger", async (open) => {
   const page = await open();
-  // Which method: the sentence names it with its size and its time, or says that none is right.
+  // Which method is cheapest: the sentence gives its size and its time, or says that no run reaches the error.
   const said = await page.eval(text("#answer"));
   assert.match(said, /^\d+ % of .+: ([^,]+, [\d,]+ nodes, [\d.]+ (ns|µs|ms|s|h)[;.]|no run reaches it)/);
-  // The flagship, where its front is in the results: the force of the jaws on the fair kidney.
+  // The main case, if its front is in the results: the force of the jaws on the fair kidney.
   const flagship = await page.eval(`${data}.asks.some((a) => /^kidney-fair/.test(a.case) && a.what === "tool force" && !a.repeated)`);
   if (flagship) assert.match(said, /^5 % of tool force on kidney-fair.*: (?!no run)/);
   else console.log("        no front of the fair kidney in these results");
-  // Is any solver failing: the header says it, one click tells why.
+  // Whether any solver fails: the header says so, and one click leads to the reasons.
   const counts = await page.eval(`${data}.counts`);
   const failing = counts.failures + counts.partial;
   const link = await page.eval(`${all("header a")}.find((a) => /without a result|part of the load|no run failed/.test(a.innerText))?.innerText`);
@@ -249,7 +250,7 @@ test("the first screen and two clicks answer a stranger", async (open) => {
     const shown = await page.eval(text("#solvers"));
     assert.ok(reasons.some((r) => r && shown.includes(r.trim())), "no reason in sight");
   } else assert.match(await page.eval(text("#solvers")), /Every run gave all of its numbers/);
-  // What locks and where it shows: one click, methods by name with their errors.
+  // Which methods lock: one click leads to their names and errors.
   const locking = await page.eval(`${data}.findings.find(([t]) => t === "Locking")?.[1].find((s) => s.includes("more than doubles")) ?? ""`);
   if (!locking) return console.log("        nothing locks in these results");
   await page.eval(`${all("nav a")}.find((a) => a.innerText.includes("locks")).click()`);
@@ -301,14 +302,14 @@ test("bodies are drawn in three dimensions, moved, cut and compared", async (ope
   const probe = await open();
   const found = await probe.eval(`${all("script[id^=bodies-]")}.map((e) => e.id.slice(7))`);
   if (!found.length) return console.log("        this report has no bodies");
-  // The one with the most curved faces, if there is any.
+  // The first case with curved faces, if there is any.
   const curved = await probe.eval(`${all("script[id^=bodies-]")}.find((e) => JSON.parse(e.textContent).some((b) => b.faces.some((f) => f.nodes > 4)))?.id.slice(7)`);
   const name = curved ?? found[0];
   const page = await open(`#at=case-${name.toLowerCase().replace(/[^a-z0-9]+/g, "-")}`);
   assert.equal(await page.eval("typeof window.showBodies"), "undefined", "it is evaluated when asked for");
   await page.eval(`${all("details[open] button")}.find((b) => b.innerText.includes("three dimensions")).click()`);
   await page.until("document.querySelector('.solid canvas')");
-  // A picture as its colours, coarsely: how many, and a sum that changes with it.
+  // The number of coarse colours of the picture, and a checksum of its pixels.
   const seen = `(() => { const c = document.querySelector(".solid canvas"); const d = document.createElement("canvas"); d.width = 200; d.height = 120; const g = d.getContext("2d"); g.drawImage(c, 0, 0, 200, 120); const p = g.getImageData(0, 0, 200, 120).data; const n = new Set(); let sum = 0; for (let k = 0; k < p.length; k += 4) { if (p[k + 3] > 0) { n.add(p[k] >> 4 << 8 | p[k + 1] >> 4 << 4 | p[k + 2] >> 4); sum = (sum * 31 + p[k] + 7 * p[k + 1] + k) % 1e9; } } return [n.size, sum]; })()`;
   const [colours, before] = await page.eval(seen);
   assert.ok(colours > 15, `${colours} colours: it is blank`);
@@ -328,7 +329,7 @@ test("bodies are drawn in three dimensions, moved, cut and compared", async (ope
     await page.eval(`(() => { const e = document.querySelector('.solid input[aria-label="load step"]'); e.value = 0; e.dispatchEvent(new Event("input")); })()`);
     was = await changed("the load step", was);
   }
-  // Contact points are counted, and told with the deepest of them.
+  // The page shows the number of contact points and the depth of the deepest point.
   const touches = await page.eval(`(() => { const m = document.querySelector('.solid select[aria-label="body"]').value; const b = JSON.parse(document.getElementById(${JSON.stringify(`bodies-${name}`)}).textContent).find((b) => b.method === m); const t = new Float32Array(Uint8Array.from(atob(b.states[b.states.length - 1].touching), (c) => c.charCodeAt(0)).buffer); return [...t].filter((_, k) => k % 4 === 3); })()`);
   if (touches.length) {
     await page.eval(`(() => { const e = document.querySelector('.solid input[aria-label="load step"]'); if (e) { e.value = 1; e.dispatchEvent(new Event("input")); } })()`);
@@ -341,10 +342,10 @@ test("bodies are drawn in three dimensions, moved, cut and compared", async (ope
   const fields = await page.eval(`${all('.solid select[aria-label="field"] option')}.map((o) => o.value)`);
   if (fields.includes("e")) {
     await pick("field", "'e'"); was = await changed("the difference to the reference", was);
-    // It colours the surface, more than one colour of it.
+    // The difference gives the surface several colours.
     assert.ok((await page.eval(seen))[0] > 15);
   }
-  // A cloud's nodes, on request.
+  // The nodes of a cloud appear on request.
   const cloud = await page.eval(`JSON.parse(document.getElementById(${JSON.stringify(`bodies-${name}`)}).textContent).find((b) => b.cloud)?.method ?? ""`);
   if (cloud) {
     const first = await page.eval(`document.querySelector('.solid select[aria-label="body"]').value`);
@@ -359,7 +360,7 @@ test("bodies are drawn in three dimensions, moved, cut and compared", async (ope
   was = await changed("the second body", was);
   assert.ok(Number(await page.eval("document.querySelector('.solid canvas').dataset.triangles")) > triangles);
   if (curved) {
-    // A curved face is drawn in many pieces: triangles of 5 x 5, or more.
+    // A curved face is drawn in at least 5 x 5 triangles.
     const faces = await page.eval(`(() => { const m = document.querySelector('.solid select[aria-label="body"]').value; const b = JSON.parse(document.getElementById(${JSON.stringify(`bodies-${name}`)}).textContent).find((b) => b.method === m); return b.faces.reduce((n, f) => n + atob(f.indices).length / 4 / f.nodes, 0); })()`);
     assert.ok(triangles >= 25 * faces * 0.9, `${triangles} triangles of ${faces} faces`);
   }

@@ -41,7 +41,7 @@ pub fn write(path: &Path, bytes: impl AsRef<[u8]>) -> io::Result<()> {
 pub fn try_create(path: &Path) -> io::Result<()> {
     spare(path)?;
     let exists = match fs::metadata(path) {
-        // The reader of a pipe would take a test for the end of the data.
+        // The reader of a pipe would take a test write for the end of the data.
         Ok(of) if !of.is_file() && !of.is_dir() => return Ok(()),
         found => found.is_ok(),
     };
