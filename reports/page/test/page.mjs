@@ -134,7 +134,7 @@ test("hovering tells the number itself, however small", async (open) => {
   const ask = await page.eval(`${data}.asks[${at}]`);
   await page.eval(`location.hash = ${JSON.stringify(new URLSearchParams({ case: ask.case, what: ask.what }).toString())}`);
   await page.until(`${text("#answer")}.includes(${JSON.stringify(ask.case)})`);
-  // The lowest marker is drawn at the smallest error of the axis.
+  // The lowest marker is drawn at the floor, the smallest error that is drawn.
   const place = await page.eval(`(() => { const all = ${all("#front svg [aria-label=dot] *")}.map((e) => e.getBoundingClientRect()).filter((r) => r.width); const r = all.reduce((a, b) => (b.bottom > a.bottom ? b : a)); return [r.x + r.width / 2, r.y + r.height / 2]; })()`);
   await page.move(place[0] - 5, place[1] - 5);
   await page.move(place[0], place[1]);
