@@ -35,7 +35,7 @@ pub struct Trial {
     pub method: String,
     /// Value of the axis.
     pub value: f64,
-    /// How the run ended.
+    /// End of the run.
     pub ended: Ended,
     /// The deciding error, if the run has one.
     pub error: Option<f64>,
@@ -45,7 +45,7 @@ pub struct Trial {
     pub reason: String,
 }
 
-/// How a run ended.
+/// End of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Ended {

@@ -11,7 +11,8 @@ use crate::record::Record;
 /// `tool-force by step [N]`.
 pub type Numbers = BTreeMap<String, BTreeMap<String, Vec<f64>>>;
 
-/// Collects the numbers of `records` that do not depend on the machine and the moment; a history is one list.
+/// Collects the numbers of `records` that do not depend on the machine and the moment. Each history gives one
+/// list.
 pub fn numbers(records: &[Record]) -> Numbers {
     let mut by_index: BTreeMap<(String, String), BTreeMap<u64, f64>> = BTreeMap::new();
     for record in records.iter().filter(|r| !r.is_measured()) {

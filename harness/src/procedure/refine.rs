@@ -1,5 +1,5 @@
 //! Adaptive clouds: solve, compare the gradients with recovered gradients, place the same number of nodes
-//! anew, and solve again.
+//! again, and solve again.
 
 use cases::scene::{ErrorKind, LinearSolver, Procedure};
 use efg::gradient_error;

@@ -54,7 +54,7 @@ pub enum LocateError {
 const CHUNK: usize = 128;
 
 /// Locates each point among the tetrahedra of `mesh`, with straight edges between their corners. A point in
-/// several cells is assigned to the one with the lowest number. A point outside all cells is assigned to the
+/// several cells is assigned to the cell with the lowest number. A point outside all cells is assigned to the
 /// closest cell and has a positive distance.
 ///
 /// # Errors

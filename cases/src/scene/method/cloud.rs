@@ -177,7 +177,7 @@ impl CloudTable {
 }
 
 impl CloudKeys {
-    /// Whether the nodes are those of cells.
+    /// Whether the nodes of the cloud are the nodes of cells.
     pub fn has_cells(&self) -> bool {
         let file = match &self.cloud {
             Some(SourceKeys::Table(table)) => table.file.as_ref(),

@@ -132,7 +132,7 @@ words! {
 }
 
 impl FunctionKeys {
-    /// Reads the functions on a cloud whose nodes are those of cells if it `has_cells`.
+    /// Reads the functions of a cloud. `has_cells` says whether its nodes are the nodes of cells.
     pub fn read(self, has_cells: bool, report: &Report) -> Option<Functions> {
         let (problem, help) = (
             "follows the cells around each node, but the nodes of this cloud have no cells",

@@ -1,11 +1,11 @@
 //! Finds the spacing that gives a requested number of nodes.
 //!
 //! Inside thin walls the number of nodes jumps, and does not always grow as the spacing shrinks. The spacings
-//! tried therefore come from one tree that depends only on the surface. They go from coarse to fine, then by
-//! bisection between the first spacing with enough nodes and the one before, then over some finer spacings.
-//! The requested number decides only which branch is taken. When the branches of two requests part, both have
-//! tried a spacing whose number of nodes lies between the two requests. So a larger request never gives fewer
-//! nodes.
+//! tried therefore come from one tree that depends only on the surface. The spacings go from coarse to fine,
+//! then by bisection between the first spacing with enough nodes and the spacing before it, then over some
+//! finer spacings. The requested number decides only which branch is taken. When the branches of two requests
+//! part, both have tried a spacing whose number of nodes lies between the two requests. So a larger request
+//! never gives fewer nodes.
 
 use super::{MEAN_EDGE, Stuffed, Stuffing, StuffingError, expected_nodes, stuff};
 use crate::{Mesh, Surface, quality};

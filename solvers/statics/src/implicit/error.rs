@@ -53,7 +53,7 @@ pub enum TimeError {
         time: f64,
         /// Step that failed, s.
         step: f64,
-        /// Why the last trial failed.
+        /// Reason for the failure of the last trial.
         cause: Box<TimeError>,
     },
 }

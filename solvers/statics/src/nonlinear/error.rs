@@ -92,7 +92,7 @@ pub enum StaticError {
         time: f64,
         /// Length of the failed step as a load fraction.
         step: f64,
-        /// Why the last trial failed.
+        /// Reason for the failure of the last trial.
         cause: Box<StaticError>,
     },
     /// A parameter that is not usable.
