@@ -71,9 +71,9 @@ impl Symbolic {
         locked(&self.spare)
     }
 
-    /// Returns a workspace for `scratch`: the previous one if it is large enough, else a new one of zeros.
-    /// The previous factorisation left numbers there, or data of the same kinds in the same places, so no
-    /// zeros are needed.
+    /// Returns a workspace for `scratch`: the previous workspace if it is large enough, else a new workspace
+    /// of zeros. The previous factorisation left numbers there, or data of the same kinds in the same places,
+    /// so no zeros are needed.
     fn workspace(&self, scratch: StackReq) -> Result<MemBuffer, AlgebraError> {
         let kept =
             locked(&self.workspace).take().filter(|kept| kept.len() >= scratch.unaligned_bytes_required());

@@ -197,9 +197,9 @@ impl Unsymmetric {
         Ok((iterations, solved))
     }
 
-    /// Runs one cycle, until the residual is `goal` times the initial one. Returns the x in the Krylov space
-    /// of `A M^-1` that minimises `|rest - A x|`, and the dimension of that space. If `judged`, the cycle
-    /// ends as soon as the convergence rate does not reach `goal` in `most` iterations.
+    /// Runs one cycle, until the residual is `goal` times the initial residual. Returns the x in the Krylov
+    /// space of `A M^-1` that minimises `|rest - A x|`, and the dimension of that space. If `judged`, the
+    /// cycle ends as soon as the convergence rate does not reach `goal` in `most` iterations.
     fn gmres(
         &self,
         factor: &Factor,
