@@ -27,7 +27,7 @@ struct Cli {
 enum Task {
     /// Build, run the quick tier of the verification study, write tables, figures and the report to results/
     Verify {
-        /// Run the whole study instead of the quick tier: about 13 minutes
+        /// Run the whole study instead of the quick tier: about 20 minutes
         #[arg(long)]
         full: bool,
         /// Further arguments of `tissuebench verify` (STUDY, --filter TEXT, --resume, ...)
@@ -255,7 +255,7 @@ fn verify(full: bool, args: &[String]) -> Result<u8> {
     let quick = "--quick".to_string();
     let whole = full || args.contains(&quick) || args.iter().any(|a| a.ends_with(".toml"));
     if full {
-        eprintln!("xtask: all runs of the study, about a quarter of an hour after the build");
+        eprintln!("xtask: all runs of the study, about 20 minutes after the build");
     } else if !whole || args.contains(&quick) {
         eprintln!("xtask: the quick tier of the study, 1 to 2 minutes after the build");
     }
