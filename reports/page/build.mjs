@@ -1,6 +1,8 @@
-// Bundles the page's scripts into `built`, which is committed: nobody needs node to build or run tissuebench.
+// Bundles the page's scripts into `built`. The folder is committed, so tissuebench builds and runs without
+// node.
 //
-// Their first line holds a hash of the sources, which a test of the crate compares without node; `--check` bundles again and compares all.
+// The first line of each script has a hash of the sources, which a test of the crate compares without node.
+// `--check` bundles again and compares whole files.
 import { readdirSync, readFileSync, writeFileSync } from "node:fs";
 import { build } from "esbuild";
 
@@ -9,7 +11,7 @@ const read = (path) => readFileSync(new URL(path, here));
 const sources = readdirSync(new URL("src", here)).filter((n) => n.endsWith(".ts")).sort().map((n) => `src/${n}`);
 sources.push("build.mjs", "package-lock.json", "package.json", "tsconfig.json");
 
-// FNV-1a over all bytes: the crate's test does the same.
+// FNV-1a over the bytes of all sources, as in the crate's test.
 let hash = 0xcbf29ce484222325n;
 for (const path of sources)
   for (const byte of read(path)) hash = ((hash ^ BigInt(byte)) * 0x100000001b3n) & 0xffffffffffffffffn;
@@ -27,11 +29,12 @@ const bundle = (source) => build({
   metafile: true,
   write: false,
 });
-// What draws bodies is twice as large as all the rest: evaluated when it is asked for, and left out of a page without bodies.
+// `solid.js` draws bodies and is twice as large as `page.js`. It is therefore evaluated on first use, and a
+// page without bodies leaves it out.
 const parts = { "page.js": await bundle("src/main.ts"), "solid.js": await bundle("src/solid.ts") };
 const built = Object.fromEntries(Object.entries(parts).map(([name, made]) => [name, mark + made.outputFiles[0].text]));
 
-// The licences of all that is in it.
+// Licences of the bundled packages.
 const packages = new Set();
 for (const path of Object.values(parts).flatMap((made) => Object.keys(made.metafile.inputs))) {
   const found = path.match(/^node_modules\/((?:@[^/]+\/)?[^/]+)\//);
@@ -44,12 +47,12 @@ const licences = [...packages].sort().map((name) => {
   const text = file ? read(`${folder}/${file}`).toString().trim() : `${about.license}, by its package.json`;
   return `${name} ${about.version}\n\n${text}\n`;
 });
-built["LICENSES.txt"] = `What is bundled into page.js and solid.js, with its licences.\n\n${licences.join("\n----\n\n")}`;
+built["LICENSES.txt"] = `Packages bundled into page.js and solid.js, with their licences.\n\n${licences.join("\n----\n\n")}`;
 
 if (process.argv.includes("--check")) {
   const other = Object.keys(built).filter((name) => read(`built/${name}`).toString() !== built[name]);
   if (other.length) {
-    console.error(`${other.join(", ")} in built/ is not what the sources give: run \`npm run build\` in reports/page`);
+    console.error(`${other.join(", ")} in built/ does not match the sources: run \`npm run build\` in reports/page`);
     process.exit(1);
   }
 } else {

@@ -1,4 +1,4 @@
-// Lines with markers over two axes: every plot of the page.
+// Plots of lines and markers; every plot of the page is one of these.
 
 import * as Plot from "@observablehq/plot";
 import { look, name, page, type Axis } from "./data";
@@ -8,13 +8,13 @@ import { duration, digits, linearTicks, logTicks, percent, tick, whole } from ".
 
 export interface Point {
   label: number; x: number; y: number; run: number | null;
-  /** The number itself, where it is drawn at another. */
+  /** Exact value of y, if the marker is drawn at another value. */
   exact?: number;
-  /** Half width of an uncertainty of x. */
+  /** Half-width of the uncertainty bar along x, in the unit of x. */
   spread?: number | null;
-  /** Where a thin line upward ends. */
+  /** Upper end of a thin vertical line from the marker: the effective error of the run. */
   counts?: number;
-  /** What it says of itself, in place of its run and numbers. */
+  /** Description shown in place of the run and its numbers. */
   about?: string;
 }
 
@@ -23,13 +23,13 @@ export interface Chart {
   x: Axis; y: Axis;
   lines: Point[][];
   bands?: { label: number; points: [number, number, number][] }[];
-  /** Drawn below and above the lines, within the ranges of the axes. */
+  /** Marks below and above the lines, for the given ranges of the axes. */
   under?: (x: [number, number], y: [number, number]) => Plot.Markish[];
   over?: (x: [number, number], y: [number, number]) => Plot.Markish[];
-  /** Values that must be in sight. */
+  /** Values that the axes must include. */
   see?: { x?: number[]; y?: number[] };
   joined?: boolean;
-  /** Words in place of numbers along x. */
+  /** Labels of x = 0, 1, 2, ... in place of numbers. */
   named?: string[];
   height?: number;
 }
@@ -54,7 +54,8 @@ function ticks(axis: Axis, ends: [number, number], room: number): number[] {
 const inSeconds = (axis: Axis) => /\[s\]/.test(axis.label);
 const isError = (axis: Axis) => /error.* \[1\]$/.test(axis.label);
 
-/** Poisson's ratio is drawn as 1/(1 − 2ν), which spreads what is nearly incompressible, and read as itself. */
+/** Whether an axis shows Poisson's ratio. Its positions are 1/(1 − 2ν), which spreads nearly incompressible
+ * materials; its labels are ν. */
 const isPoisson = (axis: Axis) => axis.label.startsWith("1/(1 − 2ν)");
 const poisson = (spread: number) => String(Number((0.5 - 0.5 / spread).toPrecision(4)));
 
@@ -65,7 +66,7 @@ function tickText(axis: Axis): (value: number) => string {
   return axis.log ? tick : (v) => digits(v, 3).replace(/(\.\d*?)0+$/, "$1").replace(/\.$/, "");
 }
 
-/** An axis' name without the unit that its ticks have. */
+/** Name of an axis, without the unit if the tick labels have units. */
 const axisName = (axis: Axis) => (isPoisson(axis) ? "Poisson's ratio ν, spaced as 1/(1 − 2ν)" : axis.log && (inSeconds(axis) || isError(axis)) ? axis.label.replace(/ \[(s|1)\]/, "") : axis.label);
 
 function value(axis: Axis, v: number): string {
@@ -75,7 +76,7 @@ function value(axis: Axis, v: number): string {
   return digits(v, 4);
 }
 
-/** What a point says of itself, in lines. */
+/** Lines of a point's tooltip. */
 function said(point: Point, chart: Chart): string {
   if (point.about) return `${name(point.label)}\n${point.about}`;
   const run = point.run;
@@ -85,7 +86,7 @@ function said(point: Point, chart: Chart): string {
   return `${name(point.label)}${nodes}\n${short(chart.x)} ${value(chart.x, point.x)}${around}\n${short(chart.y)} ${value(chart.y, point.exact ?? point.y)}`;
 }
 
-/** A description of the run below the plot, with its numbers and where its records are. */
+/** Description of a point's run, shown below the plot: its numbers and the place of its records. */
 function card(point: Point): (Node | string)[] {
   const r = page.runs;
   const at = point.run;
@@ -158,9 +159,10 @@ function drawn(chart: Chart, width: number): SVGSVGElement | HTMLElement {
   });
 }
 
-/** Puts a chart into a place; it follows the place's width and shows what is pointed at or reached by the arrow keys. */
+/** Draws a chart into an element and returns a function that draws it again. The chart follows the width of
+ * the element and describes the point under the pointer or reached with the arrow keys. */
 export function put(place: HTMLElement, make: () => Chart): () => void {
-  const frame = h("div", { class: "chart", tabindex: 0, role: "group", "aria-label": "Plot: arrow keys go from point to point" });
+  const frame = h("div", { class: "chart", tabindex: 0, role: "group", "aria-label": "Plot: arrow keys move from point to point" });
   const about = h("p", { class: "card", "aria-live": "polite" });
   place.replaceChildren(frame, about);
   let chart = make();
@@ -189,7 +191,7 @@ export function put(place: HTMLElement, make: () => Chart): () => void {
   return () => { chart = make(); at = -1; show(null); redraw(); };
 }
 
-/** Marks the point that the keys have reached. */
+/** Circles the point reached with the arrow keys. */
 function ring(frame: HTMLElement, point: Point) {
   const svg = frame.querySelector("svg.plot, .plot svg") as (SVGSVGElement & Plot.Plot) | null;
   const scales = svg && ((svg as unknown as Plot.Plot).scale ? (svg as unknown as Plot.Plot) : null);
@@ -202,7 +204,7 @@ function ring(frame: HTMLElement, point: Point) {
   svg.append(circle);
 }
 
-/** Labels to switch on and off, each with its look. */
+/** Legend with a button for each label that switches its method off or on. */
 export function legend(labels: number[], off: (label: string) => boolean, click: (label: string) => void): HTMLElement {
   const chip = (label: number) =>
     h("button", { type: "button", class: "chip", "aria-pressed": String(!off(name(label))), "data-label": name(label), click: () => click(name(label)) },

@@ -1,19 +1,22 @@
-// The face of a cut: where a plane across an axis meets the cells of a body, with the field there.
+// Cut face of a body: the section of its cells by a plane across an axis, with the field on it.
 
-/** A cell drawn as tetrahedra: the weights of its nodes at their corners, and which corners make one. */
+/** Division of a cell into tetrahedra: the weights of the cell's nodes at each corner, and the indices of the
+ * four corners of each tetrahedron. */
 interface Pattern { weights: number[][]; tetrahedra: number[][] }
 
-/** Pieces along the edge of a curved cell. */
+/** Number of pieces along an edge of a curved cell. */
 const PIECES = 4;
 
-// Corners of a small cube by bits (x, y, z), cut along its diagonal.
+// Division of a cube into six tetrahedra around its diagonal (Kuhn). The bits of a corner's number are its x,
+// y and z, from the lowest bit.
 const KUHN = [[0, 1, 3, 7], [0, 1, 5, 7], [0, 2, 3, 7], [0, 2, 6, 7], [0, 4, 5, 7], [0, 4, 6, 7]];
 const CORNERS = [[-1, -1, -1], [1, -1, -1], [1, 1, -1], [-1, 1, -1], [-1, -1, 1], [1, -1, 1], [1, 1, 1], [-1, 1, 1]];
 const EDGES = [[0, 1], [1, 2], [2, 3], [3, 0], [4, 5], [5, 6], [6, 7], [7, 4], [0, 4], [1, 5], [2, 6], [3, 7]];
-// A quadratic tetrahedron by its own nodes: one at each corner, four around the line between two opposite edges.
+// Division of a quadratic tetrahedron by its own nodes: one tetrahedron at each corner, and four around the
+// line between the midpoints of two opposite edges.
 const TEN = [[0, 4, 6, 7], [4, 1, 5, 8], [6, 5, 2, 9], [7, 8, 9, 3], [4, 9, 5, 6], [4, 9, 6, 7], [4, 9, 7, 8], [4, 9, 8, 5]];
 
-/** Shape functions of a hexahedron at a place between -1 and 1. */
+/** Shape functions of a hexahedron with 8 or 20 nodes, at local coordinates in [-1, 1]. */
 function hexahedron(nodes: number, at: number[]): number[] {
   const corner = (c: number[]) => c.reduce((product, x, k) => product * (1 + x * at[k]), 1 / 8);
   if (nodes === 8) return CORNERS.map(corner);
@@ -24,7 +27,7 @@ function hexahedron(nodes: number, at: number[]): number[] {
   return [...CORNERS.map((c) => corner(c) * (c.reduce((sum, x, k) => sum + x * at[k], 0) - 2)), ...EDGES.map(middle)];
 }
 
-/** Shape functions of a wedge at a place in its triangle and between -1 and 1 along it. */
+/** Shape functions of a wedge with 6 or 15 nodes; x and y are in the unit triangle, and z is in [-1, 1]. */
 function wedge(nodes: number, [x, y, z]: number[]): number[] {
   const l = [1 - x - y, x, y];
   const sides = [1 - z, 1 + z];
@@ -53,7 +56,8 @@ function ofWedge(nodes: number): Pattern {
       triangles.push([[i, j], [i + 1, j], [i, j + 1]]);
       if (i + j + 1 < n) triangles.push([[i + 1, j], [i, j + 1], [i + 1, j + 1]]);
     }
-  // Corners in one order everywhere, so that neighbours cut their common quadrilateral alike.
+  // The small wedges list their corners in one order, so that neighbours divide their common quadrilateral
+  // along the same diagonal.
   for (let k = 0; k < n; k++)
     for (const [a, b, c] of triangles) {
       const [low, high] = [k, k + 1].map((z) => [a, b, c].map(([i, j]) => at.get(`${i},${j},${z}`)!));
@@ -83,10 +87,11 @@ function pattern(nodes: number): Pattern {
 
 const patterns = new Map<number, Pattern>();
 
-/** Triangles of a cut, their corners' coordinates in turn, and the field at each corner. */
+/** Triangles of a cut face: x, y, z of each corner in turn, and the field at each corner. */
 export interface Face { points: number[]; values: number[] }
 
-/** The face of a cut at a coordinate along an axis; `places` and `values` are those of the nodes. */
+/** Cut face at the coordinate `at` along an axis. `places` and `values` are the positions of the nodes and
+ * the field at them; without a field, the values of the face are NaN. */
 export function face(
   cells: { nodes: number; indices: Uint32Array }[], places: Float32Array, values: Float32Array | null, axis: number, at: number,
 ): Face {
@@ -100,7 +105,7 @@ export function face(
         const x = places[3 * indices[start + k] + axis];
         [low, high] = [Math.min(low, x), Math.max(high, x)];
       }
-      // A curved edge may reach a little beyond its nodes.
+      // A curved edge may extend slightly beyond its nodes.
       const beyond = nodes > 8 ? 0.15 * (high - low) : 0;
       if (at < low - beyond || at > high + beyond) continue;
       const corners = weights.map((row) => {
@@ -117,7 +122,7 @@ export function face(
   return out;
 }
 
-/** Where a plane meets a tetrahedron: nothing, a triangle or two. */
+/** Adds the section of a tetrahedron by a plane: no, one or two triangles. */
 function tetrahedron(corners: number[][], axis: number, at: number, out: Face) {
   const below = corners.filter((c) => c[axis] < at);
   const above = corners.filter((c) => c[axis] >= at);

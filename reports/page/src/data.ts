@@ -1,4 +1,4 @@
-// What the report left in the page: see `reports/src/page`.
+// Types of the data that the report embeds in the page; `reports/src/page` writes and describes them.
 
 export interface Look { colour: string; marker: string; dash: number[]; open: boolean; family: string }
 

@@ -1,9 +1,10 @@
-// Elements in one line.
+// Functions that create HTML elements.
 
 type Child = Node | string | null | false | undefined;
 type Attributes = Record<string, string | number | boolean | ((event: Event) => void) | undefined>;
 
-/** An element with attributes (functions are listeners, `false` leaves out) and children. */
+/** Creates an element with attributes and children. A function is added as an event listener; attributes and
+ * children that are `false` are omitted. */
 export function h<K extends keyof HTMLElementTagNameMap>(
   tag: K, attributes: Attributes = {}, ...children: Child[]
 ): HTMLElementTagNameMap[K] {
@@ -16,7 +17,7 @@ export function h<K extends keyof HTMLElementTagNameMap>(
   return made;
 }
 
-/** A choice of one value. */
+/** Creates a drop-down list. `options` are pairs of value and text; `change` receives the chosen value. */
 export function select(
   label: string, options: [string, string][], value: string, change: (value: string) => void,
 ): HTMLSelectElement {
@@ -25,7 +26,7 @@ export function select(
   return h("select", { "aria-label": label, change: picked }, ...options.map(option));
 }
 
-/** Folded content that is made when it is first opened. */
+/** Creates a folding section, whose content is made when it is first opened. */
 export function folded(summary: Child[], id: string, open: boolean, make: (body: HTMLElement) => void): HTMLDetailsElement {
   const body = h("div", { class: "body" });
   const made = h("details", { id, open }, h("summary", {}, ...summary), body);

@@ -1,4 +1,4 @@
-// The question and its answer: run time against error.
+// First screen: the question, its answer, and the plot of run time against error.
 
 import * as Plot from "@observablehq/plot";
 import { legend, put, type Chart, type Point } from "./chart";
@@ -7,20 +7,20 @@ import { h, select } from "./dom";
 import { change, isOff, listen, state, toggle, WITHIN } from "./state";
 import { duration, percent, whole } from "./text";
 
-/** Fewest runs that have a front. */
+/** Smallest number of runs with a front. */
 const FRONT = 3;
 
 export const asked = (): Ask | undefined =>
   page.asks.find((a) => a.case === state.case && a.what === state.what && a.repeated === (state.clock === "loop") && !a.kernels);
 
-/** The points of a question, a line for each method that is not switched off. */
+/** Points of a question: one line for each method that is not switched off. */
 export function lines(ask: Ask, off: (label: string) => boolean = isOff): Point[][] {
   const points = (line: Ask["lines"][number]) => line.seconds.map((x, i) =>
     ({ label: line.label, x, y: Math.max(line.error[i], page.floor), exact: line.error[i], run: line.run[i], spread: line.spread[i], counts: Math.max(line.counts[i], page.floor) }));
   return ask.lines.filter((line) => !off(name(line.label))).map(points);
 }
 
-/** The fastest run of each method that counts as one within an error, the fastest first. */
+/** Fastest run of each method whose effective error is within `error`, fastest first. */
 export function within(all: Point[][], error: number): Point[] {
   const best = all.map((points) => points.filter((p) => p.counts! <= error).sort((a, b) => a.x - b.x)[0]);
   return best.filter(Boolean).sort((a, b) => a.x - b.x);
@@ -28,7 +28,7 @@ export function within(all: Point[][], error: number): Point[] {
 
 const run = (p: Point) => `${p.run === null ? "" : `${whole(page.runs.nodes[p.run])} nodes, `}${duration(p.x)}`;
 
-/** One sentence. */
+/** Answer to a question, as one sentence. */
 export function answer(ask: Ask, all: Point[][], error: number): string {
   const found = within(all, error);
   const what = `${percent(error, 1)} of ${ask.what} on ${ask.title}`;
@@ -36,22 +36,22 @@ export function answer(ask: Ask, all: Point[][], error: number): string {
   if (!found.length) {
     const nearest = all.flat().sort((a, b) => a.counts! - b.counts!)[0];
     if (!nearest) return `${what}: every method is switched off.`;
-    const chance = nearest.counts! > nearest.y ? `, but as ${percent(nearest.counts!)} by its displacement` : "";
+    const chance = nearest.counts! > nearest.y ? `, but counts with ${percent(nearest.counts!)} because of its displacement` : "";
     return `${what}: no run reaches it. Nearest is ${name(nearest.label)}, ${run(nearest)}, with ${percent(nearest.exact!)}${chance}.`;
   }
   const [best, next] = found;
   const other = found.find((p) => meshfree(p) !== meshfree(best));
   let text = `${what}: ${name(best.label)}, ${run(best)}`;
   if (next) text += `; next ${name(next.label)}, ${run(next)}`;
-  if (other && other !== next) text += `; the first ${meshfree(other) ? "cloud" : "finite element"} is ${name(other.label)}, ${run(other)}`;
+  if (other && other !== next) text += `; the fastest ${meshfree(other) ? "cloud" : "finite element"} is ${name(other.label)}, ${run(other)}`;
   else if (!other && all.some((l) => l.some((p) => meshfree(p) !== meshfree(best)))) text += `; no ${meshfree(best) ? "finite element" : "cloud"} reaches it`;
   return `${text}.`;
 }
 
-/** Runs that have a single number within an error and the displacement far off. */
+/** Runs that are within an error by chance: their effective error is larger. */
 const lucky = (all: Point[][], error: number) => all.flat().filter((p) => p.y <= error && p.counts! > error);
 
-/** The runs that no other beats in time and in the error as which it counts. */
+/** Runs on the Pareto front of time and effective error, fastest first. */
 function best(all: Point[][]): Point[] {
   let least = Infinity;
   return all.flat().sort((a, b) => a.x - b.x || a.counts! - b.counts!).filter((p) => {
@@ -61,7 +61,7 @@ function best(all: Point[][]): Point[] {
   });
 }
 
-/** The chart of a question; `error` is what is wanted, where there is one. */
+/** Chart of a question. `error` is the error asked for, or `null`. */
 export function chart(ask: Ask, error: number | null, off?: (label: string) => boolean): Chart {
   const all = lines(ask, off);
   const times = all.flat().map((p) => p.x);
@@ -86,7 +86,7 @@ export function chart(ask: Ask, error: number | null, off?: (label: string) => b
         .map(([a, b]) => [a, Math.min(b, y[1])]), { stroke: "currentColor", strokeOpacity: 0.16, strokeWidth: 5, strokeLinejoin: "round", className: "front" }),
     ],
     over: (x) => {
-      // To the left of a marker in the right half, where its name would be cut.
+      // In the right half of the plot, the name is to the left of its marker, so that it is not cut off.
       const left = found.some((p) => p.x > Math.sqrt(x[0] * x[1]));
       return [
         Plot.dot(found, { x: "x", y: "y", r: 9, stroke: "var(--accent)", strokeWidth: 2.2 }),
@@ -98,15 +98,15 @@ export function chart(ask: Ask, error: number | null, off?: (label: string) => b
   };
 }
 
-/** The first screen. */
+/** Fills the first screen. */
 export function question(place: HTMLElement) {
   if (!page.asks.length) {
     const trials = page.maps.flatMap((m) => m.cells.map((c) => c[2]));
     const count = (verdict: string) => trials.filter((t) => t === verdict).length;
     place.append(h("h1", { class: "question" }, trials.length ? "Where do methods bend and break?" : "Results"), h("p", { class: "answer", id: "answer" }, trials.length
-      ? `Of ${whole(trials.length)} trials on ${page.maps.length} axes ${whole(count("holds"))} hold, ${whole(count("bends"))} bend, ${whole(count("wrong, warned"))} are wrong and say so, `
-        + `${whole(count("refused"))} are refused, and ${whole(count("wrong, silent"))} are wrong without a word.`
-      : "No two runs here have both a time and an error: there is no front to draw."));
+      ? `Of ${whole(trials.length)} trials on ${page.maps.length} axes ${whole(count("holds"))} hold, ${whole(count("bends"))} bend, ${whole(count("wrong, warned"))} are wrong with a warning, `
+        + `${whole(count("refused"))} are refused, and ${whole(count("wrong, silent"))} are wrong without a warning.`
+      : "No two runs here have both a time and an error, so there is no front to draw."));
     return;
   }
   const line = h("h1", { class: "question" });
@@ -131,13 +131,13 @@ export function question(place: HTMLElement) {
     chips.replaceChildren(legend(ask.lines.map((l) => l.label), isOff, toggle));
     const chance = lucky(all, error);
     note.textContent = [
-      "A line for each method through its sizes; "
-        + (all.flat().length < FRONT ? "of fewer than three runs no front is drawn." : "the grey staircase is the front: no run is both faster and more accurate."),
-      ask.lines.some((l) => l.spread.some((s) => s)) && "Bars: half of the repeats lie within.",
-      ask.scalar && "A single number can be right by chance: a thin line leads up to a third of the displacement's error, and a run counts as that.",
+      "Each line joins the sizes of a method. "
+        + (all.flat().length < FRONT ? "Fewer than three runs have no front." : "The grey staircase is the front: no run is both faster and more accurate."),
+      ask.lines.some((l) => l.spread.some((s) => s)) && "Bars span the middle half of the repeats.",
+      ask.scalar && "A single number can be right by chance: a run counts with at least a third of its displacement's error, at the top of the thin line.",
       chance.length && `Right by chance, not counted at ${percent(error, 1)}: ${[...new Set(chance.map((p) => name(p.label)))].join(", ")}.`,
       ask.reference && `The reference is ${ask.reference}.`,
-      page.machine.quiet === false && `The machine was not quiet: ${ask.time.startsWith("CPU") ? "runs are compared by the seconds of the processors" : "times may be too long"}.`,
+      page.machine.quiet === false && `The machine was not quiet: ${ask.time.startsWith("CPU") ? "runs are compared by CPU time" : "times may be too long"}.`,
     ].filter(Boolean).join(" ");
     const make = () => chart(asked()!, Number(state.within));
     if (redraw) redraw(); else redraw = put(plot, make);
@@ -148,7 +148,7 @@ export function question(place: HTMLElement) {
   });
 }
 
-/** The question as a sentence of choices. */
+/** Question as a sentence with drop-down lists. */
 function choices(): (Node | string)[] {
   const asks = page.asks.filter((a) => !a.kernels);
   const cases = [...new Set(asks.map((a) => a.case))].sort();

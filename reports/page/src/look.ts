@@ -1,8 +1,8 @@
-// One look for each method, as the report's figures on paper have it.
+// Appearance of each method, the same as in the report's figures for print.
 
 import { look, page } from "./data";
 
-/** A variable of the style sheet for each label's colour: it changes with the page from light to dark. */
+/** Style sheet with a variable for each label's colour, in a light and a dark version. */
 export function colours(): string {
   const each = page.labels.map((_, i) => [i, look(i).colour] as const);
   const light = each.map(([i, c]) => `--m${i}:${c}`).join(";");
@@ -17,7 +17,7 @@ const corners: Record<string, [number, number, number]> = {
   pentagon: [5, 0, 1.15], hexagon: [6, 0, 1.1],
 };
 
-/** The outline of a marker, radius `r`, in any drawing context. */
+/** Draws the outline of a marker of radius `r` into a drawing context. */
 export function outline(context: { moveTo(x: number, y: number): void; lineTo(x: number, y: number): void;
   closePath(): void; arc(x: number, y: number, r: number, a: number, b: number): void }, marker: string, r: number) {
   const [n, turn, scale] = corners[marker] ?? corners.circle;
@@ -34,12 +34,12 @@ export function outline(context: { moveTo(x: number, y: number): void; lineTo(x:
   context.closePath();
 }
 
-/** As Observable Plot takes a symbol, of the area it asks for. */
+/** Marker of a label as a symbol of Observable Plot, with the requested area. */
 export const symbol = (label: number) => ({
   draw: (context: CanvasPath, size: number) => outline(context, look(label).marker, Math.sqrt(size / Math.PI)),
 });
 
-/** A small picture of a line and its marker. */
+/** Small picture of a label's line and marker, for a legend. */
 export function key(label: number): SVGSVGElement {
   const { marker, dash, open } = look(label);
   const steps: string[] = [];

@@ -1,4 +1,4 @@
-// The page: the question first, then all that it rests on.
+// The page: first the question, then the sections with the results behind its answer.
 
 import { colours } from "./look";
 import { legend, put, type Chart, type Point } from "./chart";
@@ -18,7 +18,7 @@ declare global {
 
 const main = document.getElementById("page")!;
 
-/** Something that is shown while a filter leaves it, with a test. */
+/** Elements that filters may hide, each with a test whether it is shown. */
 const filtered: [HTMLElement, () => boolean][] = [];
 
 function keep(element: HTMLElement, test: () => boolean): HTMLElement {
@@ -28,7 +28,7 @@ function keep(element: HTMLElement, test: () => boolean): HTMLElement {
 
 const ofCase = (it: string) => !state.only || !it || it === state.only;
 
-/** Opens and shows a section. */
+/** Opens a section, scrolls to it and focuses its heading. */
 function go(id: string) {
   const found = document.getElementById(id);
   if (!found) return;
@@ -55,7 +55,7 @@ function header(): HTMLElement {
     c.known > 0 && h("li", {}, link("table-checks", `${c.known} known not to pass`)),
     c.not_run > 0 && h("li", {}, link("table-checks", `${c.not_run} not run`)),
     c.failures > 0 && h("li", { class: "bad" }, link("solvers", `${plural(c.failures, "run")} without a result`)),
-    c.partial > 0 && h("li", { class: "bad" }, link("solvers", `${plural(c.partial, "run")} of a part of the load`)),
+    c.partial > 0 && h("li", { class: "bad" }, link("solvers", `${plural(c.partial, "run")} with only part of the load`)),
     c.warnings > 0 && h("li", {}, link("table-warnings", plural(c.warnings, "warning"))),
     c.failures + c.partial === 0 && h("li", {}, link("solvers", "no run failed")),
   ];
@@ -80,10 +80,10 @@ function toolbar(): HTMLElement {
   shown();
   listen(shown);
   return h("div", { class: "toolbar", role: "search", "aria-label": "Filters of the whole page" },
-    only, field("method", "Methods shown: words, or -word to leave out", "methods, e.g. hex"), field("find", "Search in tables and findings", "search"), clear);
+    only, field("method", "Methods shown: words to find, or -word to exclude", "methods, e.g. hex"), field("find", "Search in tables and findings", "search"), clear);
 }
 
-/** One of the report's plots. */
+/** Chart of one of the report's plots. */
 function plain(data: PlotData): Chart {
   const points = (curve: PlotData["curves"][number]): Point[] => {
     const out: Point[] = [];
@@ -96,20 +96,20 @@ function plain(data: PlotData): Chart {
     bands: shown.filter((c) => c.band).map((c) => ({ label: c.label, points: c.band! })) };
 }
 
-/** A plot under its title, with its legend; redrawn as methods go on and off. */
+/** Figure with title, legend and plot, which is drawn again when a method is switched off or on. */
 function figure(title: string, labels: number[], make: () => Chart, file: string | null): HTMLElement {
   const place = h("div");
   const chips = h("div");
   const fill = () => chips.replaceChildren(legend(labels, isOff, toggle));
   fill();
   let redraw: (() => void) | null = null;
-  // Drawn when it comes near the window: a case has a dozen of them.
+  // A case has a dozen figures, so each is drawn only when it comes near the window.
   const draw = () => {
     redraw ??= put(place, make);
     seen.disconnect();
   };
   const seen = new IntersectionObserver((entries) => { if (entries.some((e) => e.isIntersecting)) draw(); }, { rootMargin: "600px" });
-  // Paper has all that is unfolded.
+  // Figures in unfolded sections are drawn before printing.
   addEventListener("beforeprint", () => { if (made.checkVisibility()) draw(); });
   const made = h("figure", {}, h("h4", {}, title), chips, place, file && files(file));
   seen.observe(made);
@@ -132,7 +132,7 @@ const front = (ask: Ask) =>
   figure(`${ask.kernels ? ask.title : ask.what + ask.title.slice(ask.case.length)}${ask.repeated ? ", solved in a loop" : ""}: run time against error`, ask.lines.map((l) => l.label),
     () => chart(ask, null), `efficiency${ask.repeated ? "-repeated" : ""}${efficiency[ask.what]}`);
 
-/** A place for the bodies of a case in three dimensions, where the page has them: made at a click. */
+/** Button that draws the bodies of a case in three dimensions; `null` if the page has none. */
 function turned(of: string): HTMLElement | null {
   const data = document.getElementById(`bodies-${of}`);
   if (!data) return null;
@@ -143,9 +143,9 @@ function turned(of: string): HTMLElement | null {
       window.showBodies!(place, JSON.parse(data.textContent!));
       button.remove();
     } catch (bad) {
-      place.textContent = `This browser draws no bodies in three dimensions (${bad instanceof Error ? bad.message : bad}).`;
+      place.textContent = `This browser cannot draw bodies in three dimensions (${bad instanceof Error ? bad.message : bad}).`;
     }
-  } }, "Turn it, cut it, see its stress: in three dimensions");
+  } }, "Show in three dimensions, to turn, cut and see the stress");
   return h("div", {}, button, place);
 }
 
@@ -180,7 +180,7 @@ function caseSection(it: (typeof page.cases)[number]): HTMLElement {
       ...maps.map((m) => link(`map-${slug(`${m.case} ${m.name}`)}`, `Where methods bend and break: ${m.name}`, "block")),
       ...(found.length ? [folded([plural(found.length, "more finding")], "", false, (inner) => inner.append(bullets(found)))] : []),
     );
-    if (!body.childElementCount) body.append(h("p", { class: "soft" }, "Its numbers are in the tables."));
+    if (!body.childElementCount) body.append(h("p", { class: "soft" }, "The numbers of this case are in the tables."));
   });
   return keep(made, () => ofCase(it.name) && fits(`${it.name} ${it.title}`, state.find));
 }
@@ -195,12 +195,13 @@ function locks(): HTMLElement | null {
   const plots = page.plots.filter((p) => p.figure === "locking");
   if (!topic && !plots.length) return null;
   const show = (p: PlotData) => keep(plotted(p), () => ofCase(p.case));
-  return section("locking", "What locks, and where it shows",
-    h("p", { class: "soft" }, "A method that locks is good for compressible material and wrong for tissue: its error climbs to the right."),
+  return section("locking", "Locking",
+    h("p", { class: "soft" }, "A method that locks is accurate for compressible materials and wrong for nearly incompressible tissue: its error grows to the right."),
     topic ? bullets(topic[1]) : null, h("div", { class: "figures" }, ...plots.map(show)));
 }
 
-/** Which method is cheapest: a row for each, a column for each case, and their profile. */
+/** Section on the cheapest method: a table with a row for each method and a column for each case, and their
+ * performance profile. */
 function cheapest(): HTMLElement | null {
   const rows = table("within");
   if (!rows) return null;
@@ -232,9 +233,9 @@ function solvers(): HTMLElement {
   const failed = table("failed-runs");
   const reasons = failed ? [...new Set(failed.columns.find((c) => c.head === "case")?.words ?? [])] : [];
   const text = failed
-    ? `${plural(failed.columns[0].rows.length, "run")} ended early or gave no numbers, on ${list(reasons)}. The table says why.`
+    ? `${plural(failed.columns[0].rows.length, "run")} ended early or gave no numbers, in ${list(reasons)}. The table gives the reasons.`
     : "Every run gave all of its numbers.";
-  return section("solvers", "Solvers, and what failed", h("p", {}, text),
+  return section("solvers", "Solvers and failed runs", h("p", {}, text),
     ...found.map((t) => tableSection(t, t.name === "solvers" || t.name === "failed-runs")));
 }
 
@@ -243,7 +244,7 @@ function commits(): HTMLElement | null {
   const rows = table("over-commits");
   const labels = page.trends.map((t) => t.label);
   return section("commits", "Over commits",
-    h("p", { class: "soft" }, "As ratios to the first commit, of the runs that both have. A ring marks a step outside of noise."), steps(),
+    h("p", { class: "soft" }, "Values are relative to the first commit, over the runs of both commits. A ring marks a step beyond the noise."), steps(),
     h("div", { class: "figures" }, ...MEASURES.map((m) => figure(m.title, labels, () => over(m), "over-commits"))),
     rows ? tableSection(rows) : null);
 }
@@ -257,7 +258,7 @@ function provenance(): HTMLElement {
   if (m.load !== null) facts.push(["load at the start", `${m.load}${m.quiet === false ? ": not quiet" : m.quiet ? ": quiet" : ""}`]);
   const terms = (all: [string, string][]) => h("dl", {}, ...all.flatMap(([a, b]) => [h("dt", {}, a), h("dd", {}, b)]));
   return section("provenance", "Provenance", terms(facts),
-    page.scenes.length ? folded([`Content of the ${page.scenes.length} scene files (BLAKE3)`], "", false, (body) => body.append(terms(page.scenes.map((s) => [s.case, s.blake3])))) : null,
+    page.scenes.length ? folded([`Hashes of the ${page.scenes.length} scene files (BLAKE3)`], "", false, (body) => body.append(terms(page.scenes.map((s) => [s.case, s.blake3])))) : null,
     folded([`${page.figures.length} figures as files, for print`], "", false, (body) => body.append(h("ul", {}, ...page.figures.map(([name, title, csv]) =>
       h("li", {}, `${title}: `, ...["svg", "png", "pdf", ...(csv ? ["csv"] : [])].flatMap((e) => [h("a", { href: `figures/${name}.${e}` }, e.toUpperCase()), " "])))))));
 }
@@ -275,7 +276,7 @@ function build() {
     locks(),
     page.maps.length ? section("stability", "Where methods bend and break", ...page.maps.map((m) =>
       keep(folded([h("b", {}, m.case), `, ${m.name} `, h("span", { class: "soft small" }, tally(m))], `map-${slug(`${m.case} ${m.name}`)}`, false, (body) => body.append(
-        h("p", { class: "soft small" }, `Numbers: ${m.judge} in per cent, colours: its classes. A method bends where it is twice that at ${m.base} or more; from ${100 * m.wrong} % on it is wrong.`), mapKey(m), map(m))),
+        h("p", { class: "soft small" }, `Numbers: ${m.judge}, in per cent. Colours: classes of this error. A method bends if the error is at least twice that at ${m.base}, and is wrong from ${100 * m.wrong} % on.`), mapKey(m), map(m))),
       () => ofCase(m.case) && fits(`${m.case} ${m.name}`, state.find)))) : null,
     solvers(),
     claims.length ? section("claims", "Published claims", ...claims.map(([, all]) => bullets(all))) : null,

@@ -1,4 +1,4 @@
-// Where methods bend and break: a row for each method, a column for each value of an axis.
+// Map of where methods bend and break: a row for each method, and a column for each value of an axis.
 
 import type { StabilityMap } from "./data";
 import { h } from "./dom";
@@ -13,7 +13,8 @@ function number(error: number | null): string {
   return e < 1e-3 ? "0" : e >= 1e4 ? ">9999" : e >= 100 ? e.toFixed(0) : digits(e, 2);
 }
 
-/** Ways of being wrong or none come last among the classes; what is not wrong has the colours of its error. */
+/** Number of classes of wrong or missing results, which come last. The classes before them are ranges of the
+ * error. */
 const BAD = 3;
 const kind = (of: StabilityMap, place: number) =>
   (place < of.classes.length - BAD ? `good${of.classes.length - BAD - 1 - place}` : `bad${place - of.classes.length + BAD}`);
@@ -43,11 +44,11 @@ export function map(of: StabilityMap): HTMLElement {
   return made;
 }
 
-/** What the colours of a map mean. */
+/** Legend of the colours of a map. */
 export const mapKey = (of: StabilityMap): HTMLElement => h("p", { class: "mapkey small" },
-  ...of.classes.map((name, place) => h("span", { class: kind(of, place) }, name)), h("b", {}, "bold"), " it bends");
+  ...of.classes.map((name, place) => h("span", { class: kind(of, place) }, name)), h("b", {}, "bold"), " bends");
 
-/** How many of a map's trials came out each way, worst first. */
+/** Number of a map's trials with each verdict, worst verdict first. */
 export function tally(of: StabilityMap): string {
   const count = (verdict: string) => of.cells.filter((c) => c[2] === verdict).length;
   return [...VERDICTS].reverse().map((v) => [count(v), v] as const).filter(([n]) => n).map(([n, v]) => `${n} ${v}`).join(", ");

@@ -1,4 +1,5 @@
-// Bodies in three dimensions: turned, zoomed, cut, two of them under one camera. Evaluated when a reader first asks for one.
+// Bodies in three dimensions. The reader can turn, zoom and cut them, and compare two under one camera. The
+// script is evaluated on first use.
 
 import {
   AmbientLight, BufferAttribute, BufferGeometry, Color, DirectionalLight, DoubleSide, Float32BufferAttribute, Group, IcosahedronGeometry,
@@ -10,23 +11,25 @@ import { face } from "./cut";
 import { h, select } from "./dom";
 import { digits } from "./text";
 
-/** A body's surface at the states kept of a run; arrays are base64 of little-endian numbers. */
+/** Body of a method at the recorded states of its run. Arrays are base64 of little-endian numbers; lengths
+ * are in metres, stresses in pascals. */
 export interface Body {
   method: string; title: string; points: string; faces: { nodes: number; indices: string }[];
   tools: { points: string; quads: string; along: [number, number, number] }[];
   states: { time: number; u: string; closures: number[]; touching: string; deepest_node: number; values: [string, string, string] | null }[];
   left_out: number;
-  /** How far each point is from the reference or the exact solution at the end; empty where neither is known. */
+  /** Distance of each point from its position in the reference or exact solution at the end; empty if neither
+   * is known. */
   off: string;
-  /** Cells, and points on no face at the same states: what a cut shows. */
+  /** Cells, and points on no face, at the same states; shown by a cut. */
   inside: { points: string; cells: { nodes: number; indices: string }[]; states: { u: string; values: [string, string, string] | null }[] } | null;
-  /** Nodes of a cloud at the end. */
+  /** Positions of a cloud's nodes at the end. */
   cloud: string;
-  /** The method whose points and faces it has, which come with that one. */
+  /** Method of an earlier body with the same points and faces, which are stored there. */
   like?: string;
-  /** The method whose tools it has. */
+  /** Method of an earlier body with the same tools, which are stored there. */
   tools_like?: string;
-  /** On the first body of a case: methods whose bodies had no room. */
+  /** Methods whose bodies were left out of the page; stored with the first body of a case. */
   without?: string[];
 }
 
@@ -35,10 +38,10 @@ const floats = (text: string) => new Float32Array(bytes(text));
 const joined = (a: Float32Array, b: Float32Array) => Float32Array.from([...a, ...b]);
 const whole = (text: string) => new Uint32Array(bytes(text));
 
-/** Points of a face to a side: a curved one is drawn in so many straight pieces. */
+/** Number of straight pieces along an edge of a curved face. */
 const PIECES = 5;
 
-/** Shape functions of a face by its number of nodes, at a place of the unit triangle or square. */
+/** Shape functions of a face with 3, 4, 6 or 8 nodes, at a point of the unit triangle or square. */
 function shapes(nodes: number, a: number, b: number): number[] {
   if (nodes === 3) return [1 - a - b, a, b];
   if (nodes === 4) return [(1 - a) * (1 - b), a * (1 - b), a * b, (1 - a) * b];
@@ -52,7 +55,8 @@ function shapes(nodes: number, a: number, b: number): number[] {
     ((1 - x * x) * (1 - y)) / 2, ((1 + x) * (1 - y * y)) / 2, ((1 - x * x) * (1 + y)) / 2, ((1 - x) * (1 - y * y)) / 2];
 }
 
-/** A face cut into triangles: where its points are, which make a triangle, and which lie along its edges. */
+/** Division of a face into triangles: the weights of the face's nodes at each point, and the indices of the
+ * points of each triangle and of each piece of an edge. */
 interface Pattern { weights: number[][]; triangles: number[]; edges: number[] }
 
 function pattern(nodes: number): Pattern {
@@ -80,23 +84,24 @@ function pattern(nodes: number): Pattern {
 }
 
 const FIELDS: [string, string, string, number][] = [
-  ["u", "displacement", "mm", 1e3], ["e", "difference to the reference", "mm", 1e3], ["d", "depth of contact points", "mm", 1e3], ["p", "pressure", "kPa", 1e-3], ["m", "von Mises stress", "kPa", 1e-3], ["j", "volume over its own, J", "", 1],
+  ["u", "displacement", "mm", 1e3], ["e", "difference to the reference", "mm", 1e3], ["d", "depth of contact points", "mm", 1e3], ["p", "pressure", "kPa", 1e-3], ["m", "von Mises stress", "kPa", 1e-3], ["j", "volume ratio J", "", 1],
 ];
 
-// From pale to dark, so that most of a body is bright: after ColorBrewer's yellow, green and blue; and blue over white to red (ColorBrewer).
+// The rising scale goes from pale to dark, so that most of a body is bright; it follows ColorBrewer's yellow,
+// green and blue. The signed scale is ColorBrewer's, from blue over white to red.
 const RISING = ["#fdf6c9", "#dcecb2", "#a5d8b5", "#5fbcc0", "#3494c2", "#3f64b0", "#552b8c"];
 const SIGNED = ["#2166ac", "#4393c3", "#92c5de", "#f7f7f7", "#f4a582", "#d6604d", "#b2182b"];
 const isSigned = (field: string) => field === "p" || field === "j";
-/** The part of the values, at each end of a scale, that has the colour of the end. */
+/** Fraction of the values that lies beyond each end of a scale; these values have the colour of the end. */
 const CLIPPED = 0.02;
 
-/** The field of points apart from the surface, which is then seen through. */
+/** Field at the contact points. The surface is transparent while it is shown. */
 const OF_POINTS = "d";
 const GREY = new Color(0xb0b0b0);
 const DOT = new Color(0x101010);
 const NODE = new Color(0xd6604d);
 
-/** One method's body in a scene of its own. */
+/** Body of one method in its own three.js scene. */
 class Solid {
   readonly scene = new Scene();
   readonly reference: Float32Array;
@@ -110,16 +115,16 @@ class Solid {
   private readonly cells: { nodes: number; indices: Uint32Array }[];
   private readonly cap = new Mesh(new BufferGeometry(), new MeshBasicMaterial({ vertexColors: true, side: DoubleSide }));
   private readonly skin: Mesh;
-  /** Of the state shown: places of the nodes, and the field at them. */
+  /** Positions of the nodes at the state shown, and the field at them. */
   private places = new Float32Array();
   private field: Float32Array | null = null;
-  /** The field at the corners of what is drawn. */
+  /** Field at the drawn vertices of the surface and of the cut face. */
   private readonly drawn = { skin: new Float32Array(), cap: new Float32Array() };
   readonly material = new MeshLambertMaterial({ vertexColors: true, side: DoubleSide, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 });
   readonly wire = new LineBasicMaterial({ color: 0x101010, transparent: true, opacity: 0.3 });
   readonly dots = new MeshBasicMaterial();
 
-  /** `grain`: radius of a contact point. */
+  /** Creates the scene of a body; `grain` is the radius at which contact points and nodes are drawn, m. */
   constructor(readonly body: Body, grain: number) {
     this.reference = joined(floats(body.points), floats(body.inside?.points ?? ""));
     this.cells = (body.inside?.cells ?? []).map((c) => ({ nodes: c.nodes, indices: whole(c.indices) }));
@@ -165,7 +170,7 @@ class Solid {
     return this.surface.index!.count / 3;
   }
 
-  /** Contact points within a tool at a state: place and depth of each. */
+  /** Contact points within a tool at a state: x, y, z and depth of each, m. */
   touching(state: number): Float32Array {
     return floats(this.body.states[state].touching);
   }
@@ -182,7 +187,7 @@ class Solid {
     return joined(floats(this.body.states[state].u), floats(this.body.inside?.states[state]?.u ?? ""));
   }
 
-  /** The field at each node at a state, on the surface and then inside; none of what the body itself does not have. */
+  /** Field at each node at a state, on the surface and then inside; `null` if the body lacks the field. */
   values(field: string, state: number): Float32Array | null {
     const { body } = this;
     if (field === OF_POINTS) return null;
@@ -193,11 +198,11 @@ class Solid {
     }
     const of = (values: [string, string, string] | null | undefined) => floats(values?.["pmj".indexOf(field)] ?? "");
     const own = of(body.states[state].values);
-    // Results of an earlier version have a value for each face.
+    // Results of an earlier version have a value for each face; these values are not shown.
     return 3 * own.length === floats(body.points).length ? joined(own, of(body.inside?.states[state]?.values)) : null;
   }
 
-  /** Moves the body to a state, in colours of a field. */
+  /** Moves the body to a state and colours it by a field. */
   show(field: string, state: number, colour: (value: number) => Color, view: { mesh: boolean; dots: boolean; cloud: boolean }) {
     const u = this.moved(state);
     this.places = this.reference.map((x, k) => x + u[k]);
@@ -226,7 +231,7 @@ class Solid {
     this.edges.visible = view.mesh;
     const ofPoints = field === OF_POINTS;
     const cloud = view.cloud && this.isEnd(state) ? this.cloud : new Float32Array();
-    // What is marked is within the body, or between it and a tool.
+    // The marked points lie within the body, or between it and a tool, so the surface becomes transparent.
     this.material.transparent = ofPoints || cloud.length > 0;
     this.material.opacity = this.material.transparent ? 0.3 : 1;
     this.material.depthWrite = !this.material.transparent;
@@ -255,7 +260,8 @@ class Solid {
     return this.cells.length > 0;
   }
 
-  /** Closes the body where a plane across an axis cuts it, in colours of the field inside; opens it again for an axis below 0. */
+  /** Draws the cut face at the coordinate `at` along an axis, coloured by the field; removes the face if the
+   * axis is negative. */
   slice(axis: number, at: number, colour: (value: number) => Color) {
     const { points, values } = axis < 0 ? { points: [], values: [] } : face(this.cells, this.places, this.field, axis, at);
     this.drawn.cap = Float32Array.from(values);
@@ -266,7 +272,7 @@ class Solid {
     this.cap.visible = points.length > 0 && !this.material.transparent;
   }
 
-  /** The nearest place that a ray meets and the field there, of what `isSeen`. */
+  /** Nearest point of a ray on the cut face or on the surface where `isSeen` holds, with the field there. */
   met(ray: Raycaster, isSeen: (place: Vector3) => boolean): { place: Vector3; value: number } | null {
     const found = ray.intersectObjects(this.cap.visible ? [this.skin, this.cap] : [this.skin], false)
       .find((hit) => hit.object === this.cap || isSeen(hit.point));
@@ -277,7 +283,7 @@ class Solid {
   }
 }
 
-/** Puts the bodies of a case into a place. */
+/** Draws the bodies of a case into an element. */
 export function show(place: HTMLElement, packed: Body[]) {
   const of = (method: string | undefined, body: Body) => packed.find((b) => b.method === method) ?? body;
   const bodies = packed.map((b) => {
@@ -295,7 +301,7 @@ export function show(place: HTMLElement, packed: Body[]) {
   canvas.setAttribute("role", "img");
   canvas.setAttribute("aria-label", "The deformed body: drag or use the arrow keys to turn it");
   const camera = new PerspectiveCamera(28, 1, 1e-4, 100);
-  // As in the scene, z is up.
+  // z is up, as in the scene.
   camera.up.set(0, 0, 1);
   const controls = new OrbitControls(camera, canvas);
   const plane = new Plane(new Vector3(-1, 0, 0), 0);
@@ -314,7 +320,7 @@ export function show(place: HTMLElement, packed: Body[]) {
     if (!made.has(method)) made.set(method, new Solid(bodies.find((b) => b.method === method)!, 0.006 * size));
     return made.get(method)!;
   };
-  // Curved faces first: they show what this view is for.
+  // The first body has curved faces if there are any, because this view draws them curved.
   const best = [...bodies].sort((a, b) => Math.max(...b.faces.map((f) => f.nodes)) - Math.max(...a.faces.map((f) => f.nodes)));
   const view = { left: best[0].method, right: "", field: "u", part: 1, axis: "", cut: 0.5, mesh: true, dots: false, cloud: false };
   const shown = () => [view.left, view.right].filter(Boolean).map(solid);
@@ -325,7 +331,7 @@ export function show(place: HTMLElement, packed: Body[]) {
   const said = h("p", { class: "soft small" });
   const label = h("span", { class: "small" });
 
-  /** Ends of the scale; and whether values lie beyond them. */
+  /** Ends of the colour scale, and whether values lie beyond them. */
   function range(): { low: number; high: number; clipped: boolean } {
     if (view.field === OF_POINTS) return { low: 0, high: Math.max(...shown().flatMap((s) => [...s.depths(stateOf(s))]), 0) || 1, clipped: false };
     let [low, high, most, least] = [Infinity, -Infinity, -Infinity, Infinity];
@@ -346,13 +352,13 @@ export function show(place: HTMLElement, packed: Body[]) {
 
   const isKnown = (s: Solid) => view.field === OF_POINTS || !!s.values(view.field, stateOf(s));
 
-  /** Where contact acts, and how deep the body is in a tool there and at its nodes. */
+  /** Sentence on contact: the number of points, and the depths of the deepest point and the deepest node. */
   function marks(s: Solid): string {
     const [at, depths] = [s.body.states[stateOf(s)], s.depths(stateOf(s))];
     if (!depths.length) return "";
     const mm = (metres: number) => `${digits(1e3 * metres, 2)} mm`;
     return `Contact acts at the ${depths.length} points${view.dots || view.field === OF_POINTS ? " marked" : ""}${view.right ? ` on ${s.body.method}` : ""}, at most ${mm(Math.max(...depths))} deep in a tool; `
-      + (at.deepest_node ? `the deepest node is ${mm(at.deepest_node)} in. ` : "no node is in one. ");
+      + (at.deepest_node ? `the deepest node is ${mm(at.deepest_node)} deep. ` : "no node is in a tool. ");
   }
 
   let scale = { low: 0, high: 1, clipped: false };
@@ -375,16 +381,16 @@ export function show(place: HTMLElement, packed: Body[]) {
     const gradient = h("span", { class: "ramp" });
     gradient.style.background = `linear-gradient(to right,${(isSigned(view.field) ? SIGNED : RISING).join(",")})`;
     bar.replaceChildren(h("span", {}, `${name}: ${digits(scale.low * times, 3)}`), gradient,
-      h("span", {}, `${digits(scale.high * times, 3)} ${unit}${scale.clipped ? ", 2 % beyond" : ""}`), here);
+      h("span", {}, `${digits(scale.high * times, 3)} ${unit}${scale.clipped ? "; 2 % lie beyond" : ""}`), here);
     const first = solid(view.left);
     const state = first.body.states[stateOf(first)];
     label.textContent = first.body.states.length > 1 ? `state ${stateOf(first) + 1} of ${first.body.states.length}, at ${digits(state.time, 3)}` : "";
     const states = shown().filter((s) => s.body.left_out > 0).map((s) => `${s.body.left_out} of ${s.body.left_out + s.body.states.length} states of ${s.body.method}`);
     const lost = [...states, ...(bodies[0].without ?? [])];
-    said.textContent = `${shown().map((s) => s.body.title).join(" and ")}. True deformation; the faces of quadratic elements are curved. `
+    said.textContent = `${shown().map((s) => s.body.title).join(" and ")}. The deformation is not magnified; the faces of quadratic elements are curved. `
       + [...new Set(shown().map(marks))].join("")
       + (shown().some((s) => !isKnown(s)) ? "Grey: the field is not known at this state. " : "")
-      + (view.axis && shown().some((s) => !s.hasInside) ? `The inside of ${shown().filter((s) => !s.hasInside).map((s) => s.body.method).join(" and ")} is not kept. ` : "")
+      + (view.axis && shown().some((s) => !s.hasInside) ? `The inside of ${shown().filter((s) => !s.hasInside).map((s) => s.body.method).join(" and ")} is not stored. ` : "")
       + (lost.length ? `Left out to keep the page small: ${lost.join(", ")}.` : "");
     canvas.dataset.triangles = String(shown().reduce((n, s) => n + s.triangles, 0));
     draw();
@@ -406,7 +412,7 @@ export function show(place: HTMLElement, packed: Body[]) {
 
   function home() {
     controls.target.copy(middle);
-    // The longer side of the body is seen, and tools from the side.
+    // The view is across the travel of a horizontal tool, or else towards the longer side of the body.
     const up = new Vector3(0, 0, 1);
     const tool = new Vector3(...(bodies[0].tools[0]?.along ?? [0, 0, 1])).setZ(0);
     const across = tool.length() > 0.5 ? tool : high.x - low.x > high.y - low.y ? new Vector3(1, 0, 0) : new Vector3(0, 1, 0);
@@ -426,7 +432,7 @@ export function show(place: HTMLElement, packed: Body[]) {
     canvas.dataset.cut = String(shown().reduce((n, s) => n + s.cutTriangles, 0));
   }
 
-  /** Writes the field under the pointer. */
+  /** Shows the field under the pointer. */
   function point(event: PointerEvent) {
     const box = canvas.getBoundingClientRect();
     const sides = shown();
@@ -443,7 +449,7 @@ export function show(place: HTMLElement, packed: Body[]) {
   const methods: [string, string][] = bodies.map((b) => [b.method, b.title]);
   const slider = (name: string, value: number, input: (value: number) => void) =>
     h("input", { type: "range", min: 0, max: 1, step: 0.01, value, "aria-label": name, input: (e) => input(Number((e.target as HTMLInputElement).value)) });
-  const depth = slider("place of the cut", 0.5, (to) => { view.cut = to; cut(); draw(); });
+  const depth = slider("position of the cut", 0.5, (to) => { view.cut = to; cut(); draw(); });
   depth.hidden = true;
   const check = (name: string, checked: boolean, take: (on: boolean) => void) => {
     const box = h("input", { type: "checkbox", checked, change: () => { take(box.checked); update(); } });

@@ -1,19 +1,19 @@
-// What the reader chose. It lives in the address, so that a link shows what its sender saw.
+// Choices of the reader. They are part of the address, so a copied link shows the same view.
 
 import { page } from "./data";
 
 export interface State {
-  /** The question. */
+  /** Question: the case, the quantity, the error and the kind of time. */
   case: string; what: string; within: string; clock: string;
-  /** Filters that hold for the whole page. */
+  /** Filters of the whole page: the case, the words for methods, and the search. */
   only: string; method: string; find: string;
-  /** Labels switched off. */
+  /** Labels that are switched off, separated by commas. */
   off: string;
-  /** The section to be read. */
+  /** Section to scroll to. */
   at: string;
 }
 
-/** Errors to choose from, falling. */
+/** Errors to choose from, in descending order. */
 export const WITHIN = [0.3, 0.2, 0.1, 0.05, 0.03, 0.02, 0.01, 0.005, 0.003, 0.001];
 
 const first = [...page.asks].filter((a) => !a.kernels).sort((a, b) => compare(b.rank, a.rank))[0];
@@ -23,7 +23,8 @@ function compare(a: (boolean | number)[], b: (boolean | number)[]): number {
   return k < 0 ? 0 : Number(a[k]) - Number(b[k]);
 }
 
-/** The error that a page asks for at first: the least from the wanted one on that any run of the first question is within. */
+/** Error of the question when the page opens: the smallest choice, not below `page.wanted`, that a run of the
+ * first question is within. */
 function opening(): number {
   const counts = first?.lines.flatMap((l) => l.counts) ?? [];
   return WITHIN.filter((error) => error >= page.wanted && counts.some((c) => c <= error)).pop() ?? page.wanted;
@@ -38,7 +39,7 @@ const listeners: ((changed: (keyof State)[]) => void)[] = [];
 
 export const listen = (listener: (changed: (keyof State)[]) => void) => listeners.push(listener);
 
-/** Changes the state and the address, and says what changed. */
+/** Changes the state and the address, and passes the names of the changed entries to the listeners. */
 export function change(to: Partial<State>) {
   const changed = (Object.keys(to) as (keyof State)[]).filter((key) => state[key] !== to[key]);
   Object.assign(state, to);
@@ -46,7 +47,7 @@ export function change(to: Partial<State>) {
   if (changed.length) listeners.forEach((listener) => listener(changed));
 }
 
-/** The address of a state that differs from this one. */
+/** Address of the present state with the given changes. */
 export function address(to: Partial<State>): string {
   const all = { ...state, ...to };
   const kept = (Object.keys(usual) as (keyof State)[]).filter((key) => all[key] !== usual[key]);
@@ -63,7 +64,7 @@ function read(): State {
 Object.assign(state, read());
 window.addEventListener("hashchange", () => change(read()));
 
-/** Whether a text has all words that a filter is made of; one that begins with `-` must be missing. */
+/** Whether a text contains all words of a filter. A word that begins with `-` must be absent. */
 export function fits(text: string, filter: string): boolean {
   const lower = text.toLowerCase();
   return filter.toLowerCase().split(/\s+/).filter(Boolean)

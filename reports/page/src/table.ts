@@ -1,4 +1,4 @@
-// Tables that sort, filter and are copied as CSV, Markdown or LaTeX.
+// Tables that can be sorted, filtered, and copied as CSV, Markdown or LaTeX.
 
 import type { Column, Table } from "./data";
 import { h } from "./dom";
@@ -8,7 +8,7 @@ import { plural, whole } from "./text";
 const SHOWN = 100;
 const WHO = ["method", "series", "source", "label"];
 
-/** Number of the rows that the page's filters leave. */
+/** Indices of the rows that pass the page's filters. */
 export function rowsLeft(table: Table): number[] {
   const rows = table.columns[0]?.rows.length ?? 0;
   const text = (heads: string[]) => table.columns.filter((c) => heads.includes(c.head));
@@ -28,7 +28,8 @@ export function rowsLeft(table: Table): number[] {
 const texts = (table: Table, rows: number[], exact: boolean): string[][] =>
   rows.map((row) => table.columns.map((c) => (exact && c.values ? String(c.values[row] ?? "") : c.words[c.rows[row]])));
 
-/** A cell that a spreadsheet would run as a formula has an apostrophe before it, as in the files of tables. */
+/** Text of a CSV cell. As in the tables' files, an apostrophe precedes text that a spreadsheet would run as a
+ * formula. */
 const guarded = (t: string) => (/^'*[=+\-@\t\r]/.test(t) && !/^[-+]?[\d.]+(e[-+]?\d+)?$/i.test(t) ? `'${t}` : t);
 
 const csv = (rows: string[][]): string =>
@@ -62,7 +63,7 @@ async function copy(text: string) {
   }
 }
 
-/** A table with its tools. */
+/** Table with buttons that sort and copy it. */
 export function sheet(table: Table): HTMLElement {
   let sorted: { column: number; down: boolean } | null = null;
   let all = false;
@@ -73,7 +74,7 @@ export function sheet(table: Table): HTMLElement {
     const { words, rows, values } = table.columns[sorted.column];
     const by = (a: number, b: number) => {
       if (!values) return words[rows[a]].localeCompare(words[rows[b]], "en", { numeric: true });
-      // What is absent comes last, whichever way.
+      // Missing values come last in both directions.
       const [x, y] = [values[a], values[b]];
       return x === null || y === null ? (Number(x === null) - Number(y === null)) * (sorted!.down ? -1 : 1) : x - y;
     };

@@ -1,6 +1,6 @@
-// Numbers for a person.
+// Numbers as text for readers.
 
-/** So many significant digits, plain from 0.001 to 100,000. */
+/** Number with `n` significant digits: a decimal from 0.001 to 100,000, otherwise with a power of ten. */
 export function digits(value: number, n = 3): string {
   if (value === 0) return "0";
   const size = Math.abs(value);
@@ -27,7 +27,7 @@ export const whole = (value: number): string => value.toLocaleString("en-US");
 
 export const plural = (n: number, word: string): string => `${whole(n)} ${word}${n === 1 ? "" : "s"}`;
 
-/** A tick of a logarithmic axis: plain from 0.0001 to 1000. */
+/** Tick label of a logarithmic axis: a decimal from 0.0001 to below 10,000, otherwise with a power of ten. */
 export function tick(value: number): string {
   const power = Math.floor(Math.log10(value) + 1e-9);
   if (power >= -4 && power <= 3) return String(Number(value.toPrecision(3)));
@@ -35,7 +35,7 @@ export function tick(value: number): string {
   return `${mantissa === 1 ? "" : `${mantissa}×`}10${raised(power)}`;
 }
 
-/** Ticks that leave room to be read: decades, and 2 and 5 in between where there are few. */
+/** Ticks of a logarithmic axis, at most about `room`: decades, with 2 and 5, or 3, between a few decades. */
 export function logTicks(low: number, high: number, room: number): number[] {
   const decades = Math.log10(high / low);
   const steps = decades * 3 <= room ? [1, 2, 5] : decades * 2 <= room ? [1, 3] : [1];
@@ -62,5 +62,5 @@ export function list(items: string[]): string {
   return items.length < 2 ? items.join("") : `${items.slice(0, -1).join(", ")} and ${items[items.length - 1]}`;
 }
 
-/** As an id of an element. */
+/** Text as the id of an element. */
 export const slug = (text: string): string => text.toLowerCase().replace(/[^a-z0-9]+/g, "-");

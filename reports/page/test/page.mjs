@@ -108,17 +108,17 @@ test("methods are switched off and on, and the answer follows", async (open) => 
   assert.equal(await page.eval(text("#answer")), before);
 });
 
-test("the axis of times names the clock, and the note tells why", async (open) => {
+test("the axis of times names the clock, and the note gives the reason", async (open) => {
   const change = (d) => {
     d.machine.quiet = false;
     d.asks.forEach((a) => { if (!a.repeated) a.time = "CPU time, median [s]"; });
   };
   const page = await open("", { at: altered(change) });
   assert.ok((await page.eval(`${all("#front svg text")}.map((t) => t.textContent)`)).includes("CPU time, median"));
-  assert.match(await page.eval(text("#question")), /The machine was not quiet: runs are compared by the seconds of the processors/);
+  assert.match(await page.eval(text("#question")), /The machine was not quiet: runs are compared by CPU time/);
 });
 
-test("hovering tells of a run, with its record", async (open) => {
+test("hovering shows a run with its record", async (open) => {
   const page = await open();
   const at = await page.eval(`(() => { const r = ${all("#front svg [aria-label=dot] *")}[0].getBoundingClientRect(); return [r.x + r.width / 2, r.y + r.height / 2]; })()`);
   await page.move(at[0] - 30, at[1]);
@@ -127,7 +127,7 @@ test("hovering tells of a run, with its record", async (open) => {
   assert.match(await page.eval(text("#front .card")), /run [0-9a-zA-Z(].* in records\.csv/);
 });
 
-test("hovering tells the number itself, however small", async (open) => {
+test("hovering shows the exact number, however small", async (open) => {
   const page = await open();
   const [at, tiny] = await page.eval(`(() => { const d = ${data}; const k = d.asks.findIndex((a) => !a.kernels && !a.repeated && a.lines.some((l) => l.error.some((e) => e < d.floor))); return [k, k < 0 ? [] : d.asks[k].lines.flatMap((l) => l.error).filter((e) => e < d.floor)]; })()`);
   if (at < 0) return console.log("        no error here is below the least that is drawn");
@@ -214,10 +214,10 @@ test("copied CSV has no formulas", async (open) => {
   assert.deepEqual((await page.eval("window.copied")).trim().split("\n").slice(1), cells.map((c) => `${c},${c}`));
 });
 
-test("two clicks reach what locks, what fails, and where methods break", async (open) => {
+test("two clicks reach the sections on locking and on failed runs", async (open) => {
   const page = await open();
   const links = await page.eval(`${all("nav a")}.map((a) => a.innerText)`);
-  for (const [word, id] of [["locks", "locking"], ["failed", "solvers"]]) {
+  for (const [word, id] of [["Locking", "locking"], ["failed", "solvers"]]) {
     const k = links.findIndex((l) => l.includes(word));
     if (k < 0) continue;
     await page.eval(`${all("nav a")}[${k}].click()`);
@@ -242,7 +242,7 @@ test("the first screen and two clicks answer a stranger", async (open) => {
   const counts = await page.eval(`${data}.counts`);
   const failing = counts.failures + counts.partial;
   const link = await page.eval(`${all("header a")}.find((a) => /without a result|part of the load|no run failed/.test(a.innerText))?.innerText`);
-  assert.equal(link, failing ? (counts.failures ? `${counts.failures} run${counts.failures === 1 ? "" : "s"} without a result` : `${counts.partial} run${counts.partial === 1 ? "" : "s"} of a part of the load`) : "no run failed");
+  assert.equal(link, failing ? (counts.failures ? `${counts.failures} run${counts.failures === 1 ? "" : "s"} without a result` : `${counts.partial} run${counts.partial === 1 ? "" : "s"} with only part of the load`) : "no run failed");
   await page.eval(`${all("header a")}.find((a) => a.innerText === ${JSON.stringify(link)}).click()`);
   await page.until(`document.getElementById("solvers").getBoundingClientRect().top < innerHeight / 2`);
   if (failing) {
@@ -253,21 +253,21 @@ test("the first screen and two clicks answer a stranger", async (open) => {
   // Which methods lock: one click leads to their names and errors.
   const locking = await page.eval(`${data}.findings.find(([t]) => t === "Locking")?.[1].find((s) => s.includes("more than doubles")) ?? ""`);
   if (!locking) return console.log("        nothing locks in these results");
-  await page.eval(`${all("nav a")}.find((a) => a.innerText.includes("locks")).click()`);
+  await page.eval(`${all("nav a")}.find((a) => a.innerText.includes("Locking")).click()`);
   await page.until(`document.getElementById("locking").getBoundingClientRect().top < innerHeight / 2`);
   const shown = await page.eval(text("#locking"));
   const method = locking.match(/more than doubles with ([^ ,.]+)/)[1];
   assert.ok(shown.includes(method) && /ν = 0\.3 to 0\.49/.test(shown), shown.slice(0, 300));
 });
 
-test("a study over commits has its steps ringed and told", async (open) => {
+test("a study over commits has its steps ringed and listed", async (open) => {
   const page = await open("#at=commits");
   const trends = await page.eval(`${data}.trends`);
   if (!trends.length) return console.log("        this report has no history");
   await page.until(`${all("#commits svg.plot, #commits .plot svg")}.length === 2`);
   const moved = trends.flatMap((t) => t.commits).filter((c) => c.moved);
   const told = await page.eval(text("#commits"));
-  assert.ok(moved.length ? moved.every((c) => told.includes(c.name) && told.includes(c.moved)) : told.includes("No step is outside of noise"), told.slice(0, 400));
+  assert.ok(moved.length ? moved.every((c) => told.includes(c.name) && told.includes(c.moved)) : told.includes("No step is beyond the noise"), told.slice(0, 400));
   const rings = await page.eval(`${all("#commits [aria-label=dot][stroke='var(--accent)'] *")}.length`);
   assert.equal(rings, moved.reduce((n, c) => n + c.errors_moved + c.times_moved, 0));
 });
