@@ -357,7 +357,7 @@ export function show(place: HTMLElement, packed: Body[]) {
     const [at, depths] = [s.body.states[stateOf(s)], s.depths(stateOf(s))];
     if (!depths.length) return "";
     const mm = (metres: number) => `${digits(1e3 * metres, 2)} mm`;
-    return `Contact acts at the ${depths.length} points${view.dots || view.field === OF_POINTS ? " marked" : ""}${view.right ? ` on ${s.body.method}` : ""}, at most ${mm(Math.max(...depths))} deep in a tool; `
+    return `Contact acts at ${depths.length} points${view.dots || view.field === OF_POINTS ? " (marked)" : ""}${view.right ? ` on ${s.body.method}` : ""}, at most ${mm(Math.max(...depths))} deep in a tool; `
       + (at.deepest_node ? `the deepest node is ${mm(at.deepest_node)} deep. ` : "no node is in a tool. ");
   }
 
@@ -461,10 +461,10 @@ export function show(place: HTMLElement, packed: Body[]) {
   place.replaceChildren(
     h("div", { class: "toolbar" },
       select("body", methods, view.left, (to) => { view.left = to; update(); }),
-      select("second body", [["", "alone"], ...methods], "", (to) => { view.right = to; update(); }),
+      select("second body", [["", "no second body"], ...methods], "", (to) => { view.right = to; update(); }),
       select("field", FIELDS.filter((f) => has(f[0])).map((f) => [f[0], f[1]]), view.field, (to) => { view.field = to; update(); }),
       ...(bodies.some((b) => b.states.length > 1) ? [h("label", { class: "small slid" }, "load", slider("load step", 1, (to) => { view.part = to; update(); })), label] : []),
-      select("cut", [["", "whole"], ["x", "cut along x"], ["y", "cut along y"], ["z", "cut along z"]], "", (to) => { view.axis = to; depth.hidden = !to; cut(); update(); }),
+      select("cut", [["", "no cut"], ["x", "cut along x"], ["y", "cut along y"], ["z", "cut along z"]], "", (to) => { view.axis = to; depth.hidden = !to; cut(); update(); }),
       depth,
       check("mesh", true, (on) => { view.mesh = on; }),
       ...(touched ? [check("contact points", false, (on) => { view.dots = on; })] : []),

@@ -334,7 +334,7 @@ test("bodies are drawn in three dimensions, moved, cut and compared", async (ope
   if (touches.length) {
     await page.eval(`(() => { const e = document.querySelector('.solid input[aria-label="load step"]'); if (e) { e.value = 1; e.dispatchEvent(new Event("input")); } })()`);
     await pick("field", "'d'"); was = await changed("the depth of contact points", was);
-    const [, count, deepest] = (await page.eval(text(".solid"))).match(/acts at the (\d+) points marked, at most ([\d.e-]+) mm deep/);
+    const [, count, deepest] = (await page.eval(text(".solid"))).match(/acts at (\d+) points \(marked\), at most ([\d.e-]+) mm deep/);
     assert.equal(Number(count), touches.length);
     assert.ok(Math.abs(Number(deepest) / (1e3 * Math.max(...touches)) - 1) < 0.06, deepest);
     await page.eval(`${all(".solid label")}.find((l) => l.innerText.includes("contact points")).querySelector("input").click()`);
