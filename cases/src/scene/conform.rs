@@ -141,6 +141,8 @@ fn describe_all(forms: &[&Map<String, Value>]) -> String {
         several => wanted.push(format!("one of \"{}\"", several.join("\", \""))),
     }
     wanted.extend(forms.iter().filter(|form| words_of(form).is_none()).map(|form| describe(form)));
+    // Several laws take the same keys.
+    wanted.dedup();
     wanted.join(" or ")
 }
 

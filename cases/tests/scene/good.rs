@@ -116,51 +116,15 @@ fn a_region_takes_its_tolerance_from_the_caller() {
 }
 
 /// The scene in a static procedure, with essential conditions that this supports.
-pub fn still() -> String {
+fn still() -> String {
     let text =
         SCENE.replace("kind = \"linear\"", "kind = \"static\"").replace("\"multipliers\"", "\"penalty\"");
     text.replace("{ method = \"nitsche\", factor = 10 }", "{ method = \"penalty\", factor = 1e4 }")
 }
 
-pub const JAW: &str = "[[tool]]\nname = \"upper jaw\"\nshape = \"rounded-box\"\nhalf = [\"5 mm\", \"10 mm\", \"4 mm\"]\n\
+const JAW: &str = "[[tool]]\nname = \"upper jaw\"\nshape = \"rounded-box\"\nhalf = [\"5 mm\", \"10 mm\", \"4 mm\"]\n\
     radius = \"1.5 mm\"\nat = [\"0 mm\", \"0 mm\", \"19 mm\"]\nalong = [0, 0, -2]\n\
     drive = { closure = \"7 mm\" }\npenalty = \"0.5 MPa/mm\"\nfriction = 0.15\nstick = \"100 N/mm^3\"\n";
-
-#[test]
-fn what_waits_for_later_is_read_and_then_named() {
-    let static_and = |from: &str, to: &str| {
-        let text = still();
-        assert!(text.contains(from), "{from}");
-        text.replacen(from, to, 1)
-    };
-    let linear = |from: &str, to: &str| edited(from, to);
-    for (text, to, key, said) in [
-        (
-            linear("\"tet4\"\ndilation = \"nodal-mean\"", "\"tet10\"\ndilation = \"mixed\""),
-            "mixed",
-            "method[0].dilation",
-            "dilation = \"mixed\" in a linear procedure is not available yet",
-        ),
-        (
-            static_and(
-                "integration = { rule = \"cell-smoothed\" }",
-                "integration = { rule = \"cell-smoothed\" }\ndilation = \"mixed\"",
-            ),
-            "mixed",
-            "method[2].dilation",
-            "dilation = \"mixed\" for clouds is not available yet",
-        ),
-    ] {
-        let scene = parse(&text, &format!("{}/s.toml", env!("CARGO_MANIFEST_DIR")))
-            .unwrap_or_else(|e| panic!("{}", e[0]));
-        let ahead = scene.unavailable();
-        assert_eq!(ahead.len(), 1, "{ahead:?}");
-        assert_eq!((ahead[0].kind, ahead[0].key.as_str()), (ErrorKind::NotAvailable, key));
-        assert!(ahead[0].to_string().contains(said), "{}", ahead[0]);
-        let line = 1 + text[..text.find(to).expect("replaced")].matches('\n').count();
-        assert_eq!(ahead[0].line, line, "{}", ahead[0]);
-    }
-}
 
 #[test]
 fn what_moves_a_body_is_known() {
@@ -238,6 +202,39 @@ fn a_static_scene_runs_with_everything_it_knows() {
     let procedure = parse(&steps, "s.toml").expect("sound").procedure;
     let (limit_within, on_stall) = (None, OnStall::Stop);
     assert_eq!(procedure, Procedure::Static(Static { steps: 5, newton, limit_within, on_stall }));
+}
+
+#[test]
+fn only_a_motion_needs_time() {
+    let start = SCENE.find("[reference]").expect("there");
+    let dense = ("poisson = 0.3 }", "poisson = 0.3, density = \"1000 kg/m^3\" }");
+    let wave = "[reference]\nexact = \"bar-wave\"\npull = \"1 kPa\"\nlength = \"40 mm\"\ndensity = \"1000 kg/m^3\"\n\
+                [[check]]\nmetric = \"history-error\"\nat_most = 0.01\n[[check]]\nmetric = \"period\"\nat_most = \"1 s\"\n";
+    let text = format!("{}{wave}", &SCENE[..start]).replacen(dense.0, dense.1, 1).replacen(
+        "kind = \"linear\"",
+        "kind = \"explicit\"\nduration = \"1 s\"\nover = \"0.1 s\"",
+        1,
+    );
+    assert_eq!(parse(&text, "s.toml").unwrap().procedure.ramp().unwrap().over, Some(0.1));
+    let held =
+        text.replacen("move = { x = \"exact\", z = { unit = \"mm\", of = \"-x^2\" } }", "fix = \"x\"", 1);
+    assert!(parse(&held.replacen("over = \"0.1 s\"", "over = \"0 s\"", 1), "s.toml").is_ok());
+}
+
+#[test]
+fn modes_and_masses_are_read() {
+    let text = without_sections(
+        &still(),
+        &["[[load]]", "[[check]]", "[reference]", "[output]", "[procedure]", "[[method]]"],
+    )
+    .replace("move = { x = \"exact\", z = { unit = \"mm\", of = \"-x^2\" } }", "fix = \"x\"")
+    .replace("poisson = 0.3 }", "poisson = 0.3, density = \"1000 kg/m^3\" }");
+    let tet4 = "id = \"tet4\"\nfamily = \"fem\"\nelement = \"tet4\"\nsize = { level = 1 }\nmass = \"lumped\"";
+    let text = format!("{text}[procedure]\nkind = \"modes\"\nmodes = 12\n[[method]]\n{tet4}\n");
+    let scene = parse(&text, "s.toml").unwrap_or_else(|e| panic!("{}", e[0]));
+    assert_eq!(scene.procedure, Procedure::Modes { count: 12 });
+    assert_eq!(scene.methods[0].mass, Some(Mass::Lumped));
+    assert!(scene.unavailable().is_empty());
 }
 
 #[test]

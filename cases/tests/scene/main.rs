@@ -1,18 +1,13 @@
 //! Scene and study files through the public interface: accepted files, refused files with their messages, no
 //! panics.
 
-mod bad_methods;
-mod bad_parts;
-mod bad_scenes;
-mod bad_studies;
-mod contradictions;
+mod bad;
 mod expressions;
 mod fuzz;
 mod good;
 mod limits;
 mod project;
 mod shared;
-mod vibrations;
 
 /// A scene with every part that runs today, and some parts that are not available yet.
 pub const SCENE: &str = r#"title = "A block"
@@ -95,12 +90,4 @@ reason = "inconsistent integration"
 pub fn edited(from: &str, to: &str) -> String {
     assert_eq!(SCENE.matches(from).count(), 1, "'{from}' must occur once");
     SCENE.replace(from, to)
-}
-
-/// The line (from 1) with the mark `#<`.
-pub fn marked_line(text: &str) -> usize {
-    let lines: Vec<usize> =
-        (1..).zip(text.lines()).filter(|(_, l)| l.contains("#<")).map(|(n, _)| n).collect();
-    assert_eq!(lines.len(), 1, "one line is to be marked in\n{text}");
-    lines[0]
 }
