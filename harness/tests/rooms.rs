@@ -52,7 +52,6 @@ const SCENE: House = House {
         "reference",
         "check",
         "method",
-        "method::over_mesh",
         "method::external",
         "method::fem",
         "method::element",
@@ -287,10 +286,10 @@ fn an_arrow_back_would_be_seen() {
         BTreeSet::from([0, 2])
     );
     let used = |text: &str| SCENE.used("crate::scene::method::fem", text);
-    assert_eq!(used("use super::{Method, common::{Size, Mass}};"), [12, 22].into());
+    assert_eq!(used("use super::{Method, common::{Size, Mass}};"), [12, 21].into());
     assert_eq!(
         used("use crate::exact::Exact; use crate::scene::{tool::Tool, words::words};"),
-        [23, 43].into()
+        [22, 42].into()
     );
 }
 

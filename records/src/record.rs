@@ -50,8 +50,6 @@ pub enum Family {
     Fem,
     /// Element-free Galerkin.
     Efg,
-    /// Another family of methods over a mesh.
-    OverMesh,
     /// A solver outside of this program.
     External,
     /// A transfer scheme.

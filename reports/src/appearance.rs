@@ -107,7 +107,7 @@ impl Look {
         };
         let [_, red, green, blue] = colour.to_be_bytes();
         let dash: &[f64] = match family {
-            Family::Fem | Family::OverMesh | Family::Reference => &[],
+            Family::Fem | Family::Reference => &[],
             Family::Efg => &[5.0, 2.0],
             Family::External => &[6.0, 1.8, 1.5, 1.8],
             Family::Interp => &[1.5, 1.8],

@@ -54,15 +54,7 @@ impl Scene {
                     let help = "\"element-mean\", \"nodal-mean\" and \"nodal-near\" are: their dilation needs no system of equations";
                     add(&at("dilation"), "dilation = \"mixed\" in explicit dynamics".into(), help);
                 }
-                Family::OverMesh(over) if explicit && !over.family.interpolates => {
-                    let help = "take a family whose nodal parameters are displacements";
-                    add(
-                        &at("family"),
-                        "parameters that are no displacements in explicit dynamics".into(),
-                        help,
-                    );
-                }
-                Family::Fem(_) | Family::OverMesh(_) | Family::External(_) => {}
+                Family::Fem(_) | Family::External(_) => {}
                 Family::Efg(_) if explicit => {
                     let help = "elements are: lumped parameters of smooth kernels have slow modes that no cloud has, and \
                                 parameters at supports are not displacements";

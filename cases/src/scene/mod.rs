@@ -55,9 +55,8 @@ pub use load::{load, load_with, parse, parse_with, schema};
 pub use material::{Material, MaterialRegion, Relaxation, medium};
 pub use mesh_file::MeshFile;
 pub use method::{
-    Basis, Cloud, ConstraintRows, Dilation, Efg, Element, Essential, EssentialKind, External, FAMILIES,
-    Family, Fem, Functions, Integration, Jitter, Mass, Method, OverMesh, Refine, Regions, Setting, Size,
-    SupportRule, SupportShape,
+    Basis, Cloud, ConstraintRows, Dilation, Efg, Element, Essential, EssentialKind, External, Family, Fem,
+    Functions, Integration, Jitter, Mass, Method, Refine, Regions, Setting, Size, SupportRule, SupportShape,
 };
 pub use output::{Output, Repeated, Target, Transfer};
 pub use procedure::{

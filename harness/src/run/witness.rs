@@ -131,7 +131,7 @@ fn elements(family: &Family) -> Option<&Fem> {
     match family {
         Family::Fem(fem) => Some(fem),
         Family::External(external) => Some(&external.elements),
-        Family::Efg(_) | Family::OverMesh(_) => None,
+        Family::Efg(_) => None,
     }
 }
 
@@ -151,7 +151,6 @@ fn fineness(method: &Method) -> Size {
     };
     match &method.family {
         Family::Efg(efg) => of_cloud(&efg.cloud),
-        Family::OverMesh(over) => over.size.clone(),
         Family::Fem(fem) => fem.size.clone(),
         Family::External(external) => external.elements.size.clone(),
     }

@@ -22,7 +22,7 @@ const NITSCHE_SMOOTHED: f64 = 4.0;
 /// scale 1.2 with one point per face and at 2.0 with three. From 20 on the matrix stayed definite.
 const NITSCHE: f64 = 100.0;
 /// Default penalty, times E / h.
-pub(super) const PENALTY: f64 = 1e4;
+const PENALTY: f64 = 1e4;
 
 /// A body with an inside test, required by grids and by clouds of an exact node count.
 type Body = Arc<dyn Shape + Send + Sync>;

@@ -6,7 +6,6 @@ use cases::scene::{self, Family};
 use fem::{Elements, VolumeRule};
 use geometry::{Mesh, Point3, Vector3};
 
-use super::cloud::PENALTY;
 use super::{Scenario, body};
 use crate::Failure;
 use crate::discretise::place::{self, tolerance};
@@ -24,7 +23,6 @@ impl Scenario<'_> {
             Family::Fem(fem) => self.elements(fem),
             Family::Efg(efg) => self.cloud(efg),
             Family::External(external) => self.external(external),
-            Family::OverMesh(over) => self.over_mesh(over),
         };
         found.map_err(|failure| self.locate(failure))
     }
@@ -48,30 +46,6 @@ impl Scenario<'_> {
             shape_functions: "one row per Gauss point of each element".into(),
             outside: None,
             source: Arc::new(move || Ok(Box::new(Elements::new(mesh.clone(), rule)))),
-        })
-    }
-
-    /// Discretises a registered family over a mesh.
-    fn over_mesh(&self, over: &scene::OverMesh) -> Result<Discretisation, Failure> {
-        let family = &over.family;
-        let mesh = body::mesh(&self.scene.body, family.cells, &over.size, over.jitter)?;
-        let mesh = Arc::new(self.with_regions(mesh)?);
-        let make = family.over.clone();
-        Ok(Discretisation {
-            nodes: Arc::new(mesh.points().to_vec()),
-            mesh: mesh.clone(),
-            interpolates: family.interpolates,
-            blends: !family.interpolates,
-            order: family.cells.order(),
-            reduced: false,
-            essential: if family.interpolates { Essential::Nodal } else { Essential::Penalty(PENALTY) },
-            dilation: dilation(over.dilation),
-            inner: InnerPoints { per_cell: 1, vertices: true, grid: false },
-            refine: None,
-            supports: None,
-            shape_functions: family.shape_functions.clone(),
-            outside: None,
-            source: Arc::new(move || make(mesh.clone())),
         })
     }
 

@@ -147,7 +147,6 @@ fn factor(unknowns: f64) -> f64 {
 fn size(scene: &Scene, family: &Family) -> (f64, f64, f64) {
     let body = &scene.body;
     let of_cloud = |count: usize| (count as f64, (count as f64).cbrt(), CLOUD);
-    let over_mesh = |cells, size: &Size| (nodes(body, cells, size), across(body, size), CLOUD);
     match family {
         Family::Fem(fem) | Family::External(External { elements: fem, .. }) => {
             // Cells of several kinds are of a file, whose size does not depend on a kind.
@@ -162,9 +161,8 @@ fn size(scene: &Scene, family: &Family) -> (f64, f64, f64) {
             };
             (nodes(body, kind, &fem.size), across, rows)
         }
-        Family::OverMesh(over) => over_mesh(over.family.cells, &over.size),
         Family::Efg(efg) => match &efg.cloud {
-            Cloud::Mesh { size, .. } => over_mesh(CellKind::Tet4, size),
+            Cloud::Mesh { size, .. } => (nodes(body, CellKind::Tet4, size), across(body, size), CLOUD),
             Cloud::Uniform { nodes, .. } | Cloud::Graded { nodes, .. } => of_cloud(*nodes),
             // Each refined cloud is solved.
             Cloud::Refined { nodes, refine, .. } => {

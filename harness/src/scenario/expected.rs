@@ -16,7 +16,6 @@ impl Scenario<'_> {
         match &self.method.family {
             Family::Fem(fem) => of_elements(body, fem),
             Family::External(external) => of_elements(body, &external.elements),
-            Family::OverMesh(over) => nodes(body, over.family.cells, &over.size),
             Family::Efg(efg) => {
                 let background =
                     efg.background.as_ref().map_or(0.0, |size| nodes(body, CellKind::Tet4, size));

@@ -48,7 +48,7 @@ impl Scenario<'_> {
                 let outside = self.discretise()?.outside;
                 return Ok(outside.map(|outside| outside.about.clone()).expect("it has one"));
             }
-            Family::Efg(_) | Family::OverMesh(_) => {
+            Family::Efg(_) => {
                 let problem = "is not a finite-element method: problem files describe meshes";
                 return Err(self.locate(Failure::input(
                     Key::Method("family"),

@@ -37,13 +37,6 @@ impl Scenario<'_> {
                 seed: external.elements.jitter.map_or(0, |j| j.seed),
                 ..identity
             },
-            Family::OverMesh(over) => Identity {
-                family: records::Family::OverMesh,
-                variant: over.entry.name.into(),
-                dilation: Some(over.dilation.name().into()),
-                seed: over.jitter.map_or(0, |j| j.seed),
-                ..identity
-            },
         }
     }
 }

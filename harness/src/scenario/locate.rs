@@ -68,7 +68,7 @@ impl Scenario<'_> {
                 }
                 Functions::MaximumEntropy { .. } => Key::Method("basis"),
             },
-            Family::Fem(_) | Family::External(_) | Family::OverMesh(_) => Key::Method(""),
+            Family::Fem(_) | Family::External(_) => Key::Method(""),
         };
         let (kind, key, help) = match error {
             EfgError::TooFewNeighbours { .. } | EfgError::SingularMoment { .. } => {

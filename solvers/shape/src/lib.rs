@@ -26,7 +26,6 @@
 mod blocks;
 mod coarser;
 mod dilation;
-mod family;
 mod fixed;
 mod order;
 mod position;
@@ -38,7 +37,6 @@ mod trace;
 pub use blocks::RowBlocks;
 pub use coarser::Coarser;
 pub use dilation::DilationGroups;
-pub use family::{FamilyEntry, MeshFamily, OverMesh};
 pub use fixed::FixedDof;
 pub use order::locality_order;
 pub use position::{length, position, position_alone};

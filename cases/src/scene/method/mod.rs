@@ -9,15 +9,12 @@ mod external;
 mod fem;
 mod functions;
 mod integration;
-mod over_mesh;
 
-use std::borrow::Cow;
 use std::path::PathBuf;
 
 use catalogue::Problem;
-use schemars::{JsonSchema, Schema, SchemaGenerator};
+use schemars::JsonSchema;
 use serde::Deserialize;
-use serde_json::Value;
 
 pub use cloud::{Cloud, Refine};
 pub(crate) use common::SizeKeys;
@@ -32,31 +29,17 @@ pub use fem::Fem;
 pub use functions::{Basis, Functions, SupportRule, SupportShape};
 pub use integration::Integration;
 pub(crate) use integration::IntegrationKeys;
-pub use over_mesh::{FAMILIES, OverMesh};
 
 use super::procedure::ProcedureKind;
 use super::report::Report;
 use efg::EfgKeys;
 use external::ExternalKeys;
 use fem::FemKeys;
-use over_mesh::OverMeshKeys;
 
 /// A method that solves the scene
-#[derive(Deserialize)]
+#[derive(Deserialize, JsonSchema)]
 #[serde(tag = "family", rename_all = "kebab-case")]
 pub(crate) enum MethodKeys {
-    Fem(Named<FemKeys>),
-    Efg(Box<Named<EfgKeys>>),
-    External(Box<Named<ExternalKeys>>),
-    #[serde(untagged)]
-    OverMesh(OverMeshKeys),
-}
-
-/// A method that solves the scene
-#[derive(JsonSchema)]
-#[serde(tag = "family", rename_all = "kebab-case")]
-#[allow(dead_code)] // the schema of the families whose keys are types
-enum TypedKeys {
     /// Finite elements
     Fem(Named<FemKeys>),
     /// Element-free Galerkin
@@ -74,23 +57,6 @@ pub(crate) struct Named<K> {
     series: Option<String>,
     #[serde(flatten)]
     keys: K,
-}
-
-impl JsonSchema for MethodKeys {
-    fn schema_name() -> Cow<'static, str> {
-        "method".into()
-    }
-
-    /// The schema, with one form for each family.
-    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
-        let mut schema = TypedKeys::json_schema(generator);
-        let others = OverMeshKeys::json_schema(generator).to_value();
-        let others = others["oneOf"].as_array().cloned().unwrap_or_default();
-        if let Some(forms) = schema.get_mut("oneOf").and_then(Value::as_array_mut) {
-            forms.extend(others);
-        }
-        schema
-    }
 }
 
 /// A method that solves the scene.
@@ -115,8 +81,6 @@ pub enum Family {
     Efg(Efg),
     /// An external solver.
     External(External),
-    /// Another family over a mesh.
-    OverMesh(OverMesh),
 }
 
 /// Longest id of a method, characters: the id is part of file names.
@@ -135,10 +99,6 @@ impl MethodKeys {
             MethodKeys::External(named) => {
                 let Named { id, series, keys } = *named;
                 (id, series, None, keys.read(report).map(Family::External))
-            }
-            MethodKeys::OverMesh(mut keys) => {
-                let (id, series) = (std::mem::take(&mut keys.beside.id), keys.beside.series.take());
-                (id, series, keys.beside.mass, keys.read(report).map(Family::OverMesh))
             }
         };
         Some(Method { series: series.unwrap_or_else(|| id.clone()), id, family: family?, mass })
@@ -172,7 +132,7 @@ pub(crate) fn demands(methods: &[Method], kind: ProcedureKind, has_regions: bool
         match &method.family {
             Family::Fem(fem) => fem.demands(&report),
             Family::Efg(efg) => efg.demands(kind, has_regions, &report),
-            Family::External(_) | Family::OverMesh(_) => {}
+            Family::External(_) => {}
         }
     }
 }
@@ -197,7 +157,6 @@ impl Method {
         match &self.family {
             Family::Fem(fem) => Some(&fem.size),
             Family::External(external) => Some(&external.elements.size),
-            Family::OverMesh(over) => Some(&over.size),
             Family::Efg(efg) => match &efg.cloud {
                 Cloud::Mesh { size, .. } => Some(size),
                 Cloud::Uniform { .. } | Cloud::Graded { .. } | Cloud::Refined { .. } | Cloud::File { .. } => {
@@ -212,7 +171,6 @@ impl Method {
         match &mut self.family {
             Family::Fem(fem) => fem.size = size.clone(),
             Family::External(external) => external.elements.size = size.clone(),
-            Family::OverMesh(over) => over.size = size.clone(),
             Family::Efg(efg) => match (&mut efg.cloud, size) {
                 (
                     Cloud::Uniform { nodes, .. } | Cloud::Graded { nodes, .. } | Cloud::Refined { nodes, .. },
@@ -238,7 +196,6 @@ impl Method {
             Family::Fem(_) => "fem",
             Family::Efg(_) => "efg",
             Family::External(_) => "external",
-            Family::OverMesh(over) => over.entry.name,
         }
     }
 

@@ -75,7 +75,6 @@ fn has_any_size(method: &Method) -> bool {
     match &method.family {
         Family::Fem(fem) => of_elements(fem),
         Family::External(external) => of_elements(&external.elements),
-        Family::OverMesh(over) => free(&over.size),
         Family::Efg(efg) => match &efg.cloud {
             _ if efg.background.is_some() => false,
             Cloud::Mesh { size, .. } => free(size),
