@@ -2,6 +2,8 @@
 //! complete.
 
 mod common;
+#[path = "common/dummy.rs"]
+mod dummy;
 
 use std::path::Path;
 use std::process::Command;
@@ -10,9 +12,6 @@ use std::time::{Duration, Instant};
 use common::{Done, PRESSED, assert_fails, inside, objects, without, write};
 use serde_json::Value;
 use tempfile::TempDir;
-
-/// Lifetime of a child of the dummy, s. The number identifies the process.
-const CHILD: &str = "86387";
 
 /// A block by this program's own elements and by external solvers, whose methods replace OTHERS.
 const BLOCK: &str = r#"title = "A block"
@@ -32,7 +31,7 @@ fn other(id: &str, adapter: &str, more: &str) -> String {
     format!("    {{ id = \"{id}\", {family}, element = \"tet10\", size = {{ cells = [3, 3, 2] }}{more} }},\n")
 }
 
-fn dummy(mode: &str, more: &str) -> String {
+fn misbehaving(mode: &str, more: &str) -> String {
     other(mode, "dummy", &format!(", settings = {{ mode = \"{mode}\" }}{more}"))
 }
 
@@ -57,7 +56,7 @@ fn child_runs_in(dir: &TempDir) -> bool {
         |path| {
             let said = std::fs::read(path.join("cmdline")).unwrap_or_default();
             let at = std::fs::read_link(path.join("cwd")).unwrap_or_default();
-            String::from_utf8_lossy(&said).contains(CHILD) && at.to_string_lossy().contains(folder)
+            String::from_utf8_lossy(&said).contains(dummy::CHILD) && at.to_string_lossy().contains(folder)
         },
     )
 }
@@ -106,6 +105,7 @@ fn large_strain_comes_back_too() {
 #[test]
 fn every_misbehaviour_has_its_status() {
     let dir = tempfile::tempdir().unwrap();
+    dummy::dummy(dir.path(), "dummy");
     for (mode, more, status, says) in [
         ("garbage", "", "failed", "displacement.npy: is not a .npy file"),
         ("nan", "", "failed", "1 numbers are not finite, the first at node 2"),
@@ -118,9 +118,9 @@ fn every_misbehaviour_has_its_status() {
         ("refused", "", "refused", "nothing of this kind"),
         ("stalled", "", "stalled", "asked to stop half way"),
         ("stale", "", "stale", "the answer belongs to another problem"),
-        ("nonsense", "", "failed", "mode 'nonsense': give one of"),
+        ("nonsense", "", "failed", "mode 'nonsense' is not known"),
     ] {
-        let scene = write(&dir, "block.toml", &BLOCK.replace("OTHERS", &dummy(mode, more)));
+        let scene = write(&dir, "block.toml", &BLOCK.replace("OTHERS", &misbehaving(mode, more)));
         let done = tissuebench(&dir, &["run", &scene, "--format", "json", "--once", "--method", mode]);
         assert_fails(&done, 3, says);
         assert!(done.stderr.contains("block.toml:10: key 'method[1].adapter': 'dummy'"), "{}", done.stderr);
@@ -138,18 +138,10 @@ fn every_misbehaviour_has_its_status() {
 /// Runs the block with an adapter that is a bash script.
 #[cfg(target_os = "linux")]
 fn bash(dir: &TempDir, script: &str, more: &str) -> Done {
-    let name = "adapters/bash";
-    assert_eq!(tissuebench(dir, &["adapter", "copy", "dummy", name]).code, 0);
-    let file = dir.path().join(name).join("adapter.toml");
-    let text = std::fs::read_to_string(&file).unwrap();
-    let own = text.lines().find(|line| line.starts_with("run = ")).unwrap();
     let words = "\"{tissuebench}\", \"{problem}\", \"{answer}\"";
-    let other_run = format!("run = [\"bash\", \"-c\", '''{script}''', {words}]");
-    std::fs::write(&file, text.replace(own, &other_run)).unwrap();
+    dummy::adapter(dir.path(), "bash", &format!("[\"bash\", \"-c\", '''{script}''', {words}]"));
     write(dir, "block.toml", &BLOCK.replace("OTHERS", &other("other", "bash", more)));
-    let done = tissuebench(dir, &["run", "block.toml", "--once", "--method", "other", "--out", "results"]);
-    std::fs::remove_dir_all(dir.path().join(name)).unwrap();
-    done
+    tissuebench(dir, &["run", "block.toml", "--once", "--method", "other", "--out", "results"])
 }
 
 /// The memory limit applies to all processes together: two processes with 100 MB each exceed 150 MB, one
@@ -183,7 +175,8 @@ fn the_time_of_children_counts() {
 #[test]
 fn wrong_numbers_are_measured_and_children_end() {
     let dir = tempfile::tempdir().unwrap();
-    let others = ["zeros", "scaled", "children"].map(|mode| dummy(mode, "")).concat();
+    dummy::dummy(dir.path(), "dummy");
+    let others = ["zeros", "scaled", "children"].map(|mode| misbehaving(mode, "")).concat();
     let scene = write(&dir, "block.toml", &BLOCK.replace("OTHERS", &others));
     let done = tissuebench(&dir, &["run", &scene, "--format", "json", "--once"]);
     assert_eq!(done.code, 0, "{}", done.stderr);
@@ -196,9 +189,10 @@ fn wrong_numbers_are_measured_and_children_end() {
 #[test]
 fn what_an_adapter_does_not_offer_is_named_and_no_failure_of_a_study() {
     let dir = tempfile::tempdir().unwrap();
+    dummy::dummy(dir.path(), "dummy");
     let others = [
-        dummy("nan", ""),
-        dummy("sleep", ", time_limit = \"0.2 s\""),
+        misbehaving("nan", ""),
+        misbehaving("sleep", ", time_limit = \"0.2 s\""),
         other("itself", "tissuebench", ""),
         other("python", "scikit-fem", "").replace("tet10", "hex20"),
     ];
@@ -232,7 +226,7 @@ fn what_an_adapter_does_not_offer_is_named_and_no_failure_of_a_study() {
     // Tools are not supported either.
     let tools = PRESSED.replace(
         "method = [\n",
-        &format!("method = [\n{}", dummy("own", "").replace("[3, 3, 2]", "[2, 2, 1]")),
+        &format!("method = [\n{}", misbehaving("own", "").replace("[3, 3, 2]", "[2, 2, 1]")),
     );
     let scene = write(&dir, "pressed.toml", &tools);
     let done = tissuebench(&dir, &["run", &scene, "--method", "own"]);
@@ -251,6 +245,7 @@ BESIDE
 #[test]
 fn a_study_puts_other_solvers_beside_the_elements_of_a_scene() {
     let dir = tempfile::tempdir().unwrap();
+    dummy::dummy(dir.path(), "dummy");
     let more = "{ id = \"fine\", family = \"fem\", element = \"tet10\", size = { cells = [4, 4, 3] } }, \
         { id = \"mean\", family = \"fem\", element = \"tet4\", dilation = \"nodal-mean\", size = { cells = [3, 3, 2] } },";
     write(&dir, "block.toml", &BLOCK.replace("OTHERS", more).replace("\"ours\" }", "\"fine\" }"));
@@ -296,11 +291,12 @@ fn a_study_puts_other_solvers_beside_the_elements_of_a_scene() {
 #[test]
 fn a_new_version_of_a_solver_is_run_again() {
     let dir = tempfile::tempdir().unwrap();
-    assert_eq!(tissuebench(&dir, &["adapter", "copy", "dummy", "adapters/mine"]).code, 0);
+    assert_eq!(tissuebench(&dir, &["adapter", "copy", "tissuebench", "adapters/mine"]).code, 0);
     let version = write(&dir, "version", "mine 1");
     let file = dir.path().join("adapters/mine/adapter.toml");
     let text = std::fs::read_to_string(&file).unwrap();
-    std::fs::write(&file, format!("{text}version = [\"cat\", {version:?}]\n")).unwrap();
+    let own = "version = [\"{tissuebench}\", \"--version\"]";
+    std::fs::write(&file, text.replace(own, &format!("version = [\"cat\", {version:?}]"))).unwrap();
     write(&dir, "block.toml", &BLOCK.replace("OTHERS", &other("other", "mine", "")));
     write(&dir, "study.toml", "title = \"Solvers\"\n[[run]]\nscene = \"block.toml\"\n");
     let stored = || {
@@ -321,7 +317,8 @@ fn a_new_version_of_a_solver_is_run_again() {
 #[cfg(target_os = "linux")]
 fn a_solver_ends_with_whoever_called_it() {
     let dir = tempfile::tempdir().unwrap();
-    write(&dir, "block.toml", &BLOCK.replace("OTHERS", &dummy("sleep", "")));
+    dummy::dummy(dir.path(), "dummy");
+    write(&dir, "block.toml", &BLOCK.replace("OTHERS", &misbehaving("sleep", "")));
     let start = |args: &[&str]| {
         let mut command = Command::new(env!("CARGO_BIN_EXE_tissuebench"));
         command
@@ -359,12 +356,8 @@ fn a_solver_ends_with_whoever_called_it() {
 #[test]
 fn a_check_passes_what_is_right_and_notes_it_until_the_adapter_changes() {
     let dir = tempfile::tempdir().unwrap();
-    let copied = tissuebench(&dir, &["adapter", "copy", "dummy", "adapters/mine"]);
-    assert_eq!(copied.code, 0, "{}", copied.stderr);
-    let file = dir.path().join("adapters/mine/adapter.toml");
-    let text = std::fs::read_to_string(&file).unwrap().replace("\"hex8\", \"hex20\"", "\"hex8\"");
-    assert!(text.contains("name = \"mine\""), "{text}");
-    std::fs::write(&file, &text).unwrap();
+    let file = dummy::dummy(dir.path(), "mine");
+    let text = std::fs::read_to_string(&file).unwrap();
     let done = tissuebench(&dir, &["adapter", "check", "mine"]);
     assert_eq!(
         (done.code, done.stdout.lines().last()),
@@ -379,7 +372,7 @@ fn a_check_passes_what_is_right_and_notes_it_until_the_adapter_changes() {
         objects(&done.stdout)[0]["warnings"].as_array().unwrap().len()
     };
     assert_eq!(codes(), 0);
-    std::fs::write(&file, text.replace("\"{answer}\"", "\"{answer}\", \"--mode\", \"scaled\"")).unwrap();
+    std::fs::write(&file, text.replace("\"{answer}\"", "\"{answer}\", \"scaled\"")).unwrap();
     assert_eq!(codes(), 1, "another adapter than was checked");
     let done = tissuebench(&dir, &["adapter", "check", "mine"]);
     assert_fails(&done, 1, "");
@@ -452,7 +445,7 @@ fn adapters_are_listed_and_a_broken_one_is_named() {
     let dir = tempfile::tempdir().unwrap();
     let listed = tissuebench(&dir, &["adapter", "list"]);
     assert_eq!(listed.code, 0);
-    for name in ["calculix", "dolfinx", "dummy", "felupe", "ngsolve", "scikit-fem", "tissuebench"] {
+    for name in ["calculix", "dolfinx", "felupe", "ngsolve", "scikit-fem", "tissuebench"] {
         assert!(
             listed.stdout.contains(&format!("{name}: ")) && listed.stdout.contains("(shipped)"),
             "{name}"

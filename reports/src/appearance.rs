@@ -67,15 +67,8 @@ const KNOWN: [(&str, u32, usize); 44] = [
 ];
 
 /// External solvers with the index of their colour in [`COLOURS`]; the marker is that of the element.
-const SOLVERS: [(&str, usize); 7] = [
-    ("calculix", 4),
-    ("dolfinx", 0),
-    ("scikit-fem", 1),
-    ("felupe", 7),
-    ("ngsolve", 10),
-    ("tissuebench", 6),
-    ("dummy", 11),
-];
+const SOLVERS: [(&str, usize); 6] =
+    [("calculix", 4), ("dolfinx", 0), ("scikit-fem", 1), ("felupe", 7), ("ngsolve", 10), ("tissuebench", 6)];
 
 /// Appearance of a label: colour, marker, dash and filling.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -13,7 +13,6 @@ macro_rules! shipped {
 pub(super) static SHIPPED: &[Files] = shipped! {
     "calculix": "adapter.toml", "calculix.py";
     "dolfinx": "adapter.toml", "dolfinx_adapter.py";
-    "dummy": "adapter.toml";
     "felupe": "adapter.toml", "felupe_adapter.py";
     "ngsolve": "adapter.toml", "ngsolve_adapter.py";
     "scikit-fem": "adapter.toml", "scikit_fem.py";

@@ -180,11 +180,11 @@ mod tests {
             folder
         };
         let mine = put("mine", MINE);
-        put("other", &MINE.replace("\"mine\"\ntitle", "\"dummy\"\ntitle"));
+        put("other", &MINE.replace("\"mine\"\ntitle", "\"felupe\"\ntitle"));
         put("broken", "name = 3");
         let of = |name: &str| find(name, Some(&scene));
         assert_eq!(of("mine").unwrap().folder, Some(mine));
-        assert!(of("dummy").unwrap().folder.is_some() && of("calculix").unwrap().folder.is_none());
+        assert!(of("felupe").unwrap().folder.is_some() && of("calculix").unwrap().folder.is_none());
         assert!(of("broken").unwrap_err().to_string().contains("broken/adapter.toml"));
         let lost = of("calculx").unwrap_err().to_string();
         assert!(lost.contains("did you mean 'calculix'?") && lost.contains("mine"), "{lost}");

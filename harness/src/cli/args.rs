@@ -84,7 +84,7 @@ pub enum Command {
     /// Run another program with limits, and end it when its caller ends
     #[command(hide = true)]
     Leash(LeashArgs),
-    /// Solve a problem in files with this program, for the adapters `tissuebench` and `dummy`
+    /// Solve a problem in files with this program, for the adapter `tissuebench`
     #[command(hide = true)]
     Solve(SolveArgs),
     /// Merge parts of a study, run with --shard or on several machines, into the results of one run

@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use cases::scene::ConstraintRows;
 use catalogue::metric::Metric;
+use fem::{Elements, VolumeRule};
 use geometry::shapes::Shape;
 use geometry::{Cloud, Mesh, Point3};
 use shape::{DilationGroups, RowSource, Rows, SourceError, VolumeRows};
@@ -145,6 +146,32 @@ pub struct Volume {
 }
 
 impl Discretisation {
+    /// Finite elements with displacements of this order on a mesh.
+    pub(crate) fn of_elements(
+        mesh: Arc<Mesh>,
+        order: usize,
+        reduced: bool,
+        dilation: Dilation,
+    ) -> Discretisation {
+        let rule = if reduced { VolumeRule::reduced() } else { VolumeRule::STANDARD };
+        Discretisation {
+            nodes: Arc::new(mesh.points().to_vec()),
+            mesh: mesh.clone(),
+            interpolates: true,
+            blends: false,
+            order,
+            reduced,
+            essential: Essential::Nodal,
+            dilation,
+            inner: InnerPoints { per_cell: 0, vertices: true, grid: false },
+            refine: None,
+            supports: None,
+            shape_functions: "one row per Gauss point of each element".into(),
+            outside: None,
+            source: Arc::new(move || Ok(Box::new(Elements::new(mesh.clone(), rule)))),
+        }
+    }
+
     /// Returns the node positions, m.
     pub fn nodes(&self) -> &[Point3] {
         &self.nodes

@@ -2,7 +2,8 @@
 
 use fem::SurfaceRule;
 use geometry::{Facet, Vector3, quadrature};
-use shape::{RowSource, SurfaceRows};
+use shape::{FixedDof, RowSource, SurfaceRows};
+use statics::Load;
 
 use super::region_check::loaded;
 use super::{Prepared, not_finite};
@@ -21,6 +22,23 @@ pub(super) enum Values {
 }
 
 impl Prepared {
+    /// Returns the loads for the solver.
+    pub fn loads(&self) -> Vec<Load<'_>> {
+        let surfaces = self.surfaces.iter().map(|(surface, values)| match values {
+            Values::Traction(values) => Load::Traction { surface, values: values.clone() },
+            Values::Pressure(values) => Load::Pressure { surface, values: values.clone() },
+        });
+        let body = self.body_force.iter().map(|values| Load::Body { values: values.clone() });
+        let nodal = self.nodal.iter().map(|forces| Load::Nodal { forces: forces.clone() });
+        surfaces.chain(body).chain(nodal).collect()
+    }
+
+    /// Returns the tables with the conditions of a problem in files: prescribed degrees of freedom and nodal
+    /// forces (N).
+    pub(crate) fn under(self, fixed: Vec<FixedDof>, forces: Vec<Vector3>) -> Prepared {
+        Prepared { fixed, nodal: Some(forces), ..self }
+    }
+
     /// Evaluates a load at its points.
     pub(super) fn load(&mut self, method: &Discretisation, load: &setup::Load) -> Result<(), Failure> {
         if let Applied::Body(field) = &load.applied {

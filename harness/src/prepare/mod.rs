@@ -66,6 +66,8 @@ pub struct Prepared {
     pub spacing: f64,
     surfaces: Vec<(SurfaceRows, Values)>,
     body_force: Vec<Vec<Vector3>>,
+    /// Nodal forces of a problem in files, N.
+    nodal: Option<Vec<Vector3>>,
     fixed: Vec<FixedDof>,
     constraints: Vec<ConstraintRow>,
     /// Whether the constraints are eliminated instead of being enforced by multipliers.
@@ -97,6 +99,7 @@ pub fn prepare(
         spacing,
         surfaces: Vec::new(),
         body_force: Vec::new(),
+        nodal: None,
         fixed: Vec::new(),
         constraints: Vec::new(),
         eliminates: matches!(method.essential, Essential::Elimination(_)),
@@ -132,15 +135,6 @@ pub fn prepare(
 }
 
 impl Prepared {
-    /// Returns the loads for the solver.
-    pub fn loads(&self) -> Vec<Load<'_>> {
-        let surfaces = self.surfaces.iter().map(|(surface, values)| match values {
-            Values::Traction(values) => Load::Traction { surface, values: values.clone() },
-            Values::Pressure(values) => Load::Pressure { surface, values: values.clone() },
-        });
-        surfaces.chain(self.body_force.iter().map(|values| Load::Body { values: values.clone() })).collect()
-    }
-
     /// Returns the weak supports for the solver.
     pub fn weak(&self) -> Vec<WeakSupport<'_>> {
         self.weak

@@ -3,13 +3,12 @@
 use std::sync::Arc;
 
 use cases::scene::{self, Family};
-use fem::{Elements, VolumeRule};
 use geometry::{Mesh, Point3, Vector3};
 
 use super::{Scenario, body};
 use crate::Failure;
 use crate::discretise::place::{self, tolerance};
-use crate::discretise::{Dilation, Discretisation, Essential, InnerPoints};
+use crate::discretise::{Dilation, Discretisation};
 use crate::error::Key;
 
 impl Scenario<'_> {
@@ -29,24 +28,8 @@ impl Scenario<'_> {
 
     pub(super) fn elements(&self, fem: &scene::Fem) -> Result<Discretisation, Failure> {
         let mesh = body::mesh_of(&self.scene.body, fem.element, &fem.size, fem.jitter)?;
-        let rule = if fem.reduced { VolumeRule::reduced() } else { VolumeRule::STANDARD };
         let mesh = Arc::new(self.with_regions(mesh)?);
-        Ok(Discretisation {
-            nodes: Arc::new(mesh.points().to_vec()),
-            mesh: mesh.clone(),
-            interpolates: true,
-            blends: false,
-            order: fem.element.order(),
-            reduced: fem.reduced,
-            essential: Essential::Nodal,
-            dilation: dilation(fem.dilation),
-            inner: InnerPoints { per_cell: 0, vertices: true, grid: false },
-            refine: None,
-            supports: None,
-            shape_functions: "one row per Gauss point of each element".into(),
-            outside: None,
-            source: Arc::new(move || Ok(Box::new(Elements::new(mesh.clone(), rule)))),
-        })
+        Ok(Discretisation::of_elements(mesh, fem.element.order(), fem.reduced, dilation(fem.dilation)))
     }
 
     /// Numbers the cells by material: 0 for the scene's material, k + 1 for its k-th region.

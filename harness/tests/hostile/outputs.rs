@@ -82,7 +82,7 @@ fn no_folder_of_outputs_costs_an_input() {
             done.stderr
         );
     }
-    for args in ["merge kept kept", "adapter run dummy problem problem"] {
+    for args in ["merge kept kept", "adapter run tissuebench problem problem"] {
         let done = world.runs(&args.split(' ').collect::<Vec<_>>(), 2);
         assert!(done.stderr.contains("folder"), "{args}: {}", done.stderr);
     }

@@ -34,7 +34,8 @@ fn work(world: &World) -> Vec<std::path::PathBuf> {
 #[test]
 fn folders_of_calls_are_private_and_gone_after_a_signal() {
     let world = World::new();
-    world.write("sleeps.toml", &scene("dummy", ", settings = { mode = \"sleep\" }"));
+    world.write("adapters/sleeper/adapter.toml", &manifest("sleeper", "[\"sleep\", \"600\"]", ""));
+    world.write("sleeps.toml", &scene("sleeper", ""));
     world.write(
         "sleep.toml",
         "title = \"S\"\n[[run]]\nscene = \"sleeps.toml\"\nmethods = [\"theirs\"]\nquick = true\n",
