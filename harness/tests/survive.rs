@@ -185,9 +185,8 @@ fn two_workers_survive_being_killed() {
     survives(24, 6, &[]);
 }
 
-/// The test of `cargo xtask survive`.
 #[test]
-#[ignore = "cargo xtask survive runs it"]
+#[ignore = "takes minutes; cargo xtask nightly runs it"]
 fn two_workers_survive_a_hundred_kills() {
     survives(60, 100, &[]);
     survives(60, 100, &["--isolate"]);

@@ -5,7 +5,6 @@
 mod gallery;
 mod instructions;
 mod mutants;
-mod newcomer;
 mod nightly;
 mod python;
 mod skips;
@@ -79,20 +78,14 @@ enum Task {
         /// Names of the faults to switch on (default: all)
         names: Vec<String>,
     },
-    /// Kill one of two processes of a study at random times, a hundred times, with and without --isolate: no
-    /// result may be lost, repeated or changed
-    Survive,
-    /// Run the checks that take hours: every fault of `mutants`, `survive`, a build of every package, `cargo
-    /// deny check`, and minutes of each fuzz target; if cargo-deny, cargo-fuzz and a nightly compiler are
-    /// installed
+    /// Run the checks that take hours: every fault of `mutants`, a hundred killed processes of a study, a
+    /// build of every package, `cargo deny check`, and minutes of each fuzz target; if cargo-deny, cargo-fuzz
+    /// and a nightly compiler are installed
     Nightly {
         /// Minutes for each fuzz target
         #[arg(long, default_value_t = 10, value_parser = clap::value_parser!(u32).range(1..=1440))]
         minutes: u32,
     },
-    /// Follow the first page of the guide in a fresh clone of the last commit, from installation to the
-    /// picture of an organ; fails after more than ten minutes
-    Newcomer,
     /// Build the wheel of the Python module and test it in a fresh virtual environment, if maturin, numpy and
     /// pytest are installed
     Python,
@@ -131,17 +124,10 @@ fn run(task: Task) -> Result<u8> {
         }
         Task::Book => book(),
         Task::Mutants { names } => mutants::mutants(&root(), &names),
-        Task::Survive => survive(),
         Task::Nightly { minutes } => nightly::nightly(&root(), minutes),
-        Task::Newcomer => newcomer::newcomer(&root()),
         Task::Python => python::python(&root()),
         Task::Ci => ci(),
     }
-}
-
-fn survive() -> Result<u8> {
-    let test = ["test", "--release", "--locked", "--package", "tissuebench-harness", "--test", "survive"];
-    cargo(&[&test[..], &["--", "--ignored", "--nocapture"]].concat(), &[])
 }
 
 /// Runs all steps in order and stops at the first failure.
@@ -223,8 +209,8 @@ fn stress(full: bool) -> Result<u8> {
     tissuebench("verify", &args)
 }
 
-/// Runs the noise study. The runs call the program directly, because `cargo run` between them would
-/// contribute to the noise.
+/// Runs the noise study. It is no test, because its numbers are those of a machine, neither right nor wrong.
+/// The runs call the program directly, because `cargo run` between them would contribute to the noise.
 fn noise(runs: u16) -> Result<u8> {
     let build = ["build", "--release", "--locked", "--package", "tissuebench-harness"];
     let code = cargo(&build, &[])?;
