@@ -202,6 +202,49 @@ method = [{ id = "hex8", family = "fem", element = "hex8", size = { level = 1 } 
     assert_eq!([u(1, 0), u(1, 1), u(1, 2)], [u(0, 0), u(0, 1), -u(0, 2)]);
 }
 
+/// Half of a block, held along the normal of its plane of symmetry alone, has the error zero against the
+/// whole; held otherwise it has not.
+#[test]
+fn a_half_of_any_body_takes_the_reference_of_the_whole() {
+    let dir = tempfile::tempdir().unwrap();
+    let whole = r#"title = "A block under a pressure in its middle"
+body = { shape = "box", min = ["-20 mm", "0 mm", "0 mm"], max = ["20 mm", "20 mm", "20 mm"] }
+material = { law = "linear", young = "20 kPa", poisson = 0.3 }
+support = [{ on = "z-min", fix = "xyz" }]
+load = [{ where = "z == 20 mm and x >= -10 mm and x <= 10 mm", pressure = "1 kPa" }]
+output = { probes = [["0 mm", "10 mm", "20 mm"]] }
+method = [{ id = "hex8", family = "fem", element = "hex8", size = { cells = [8, 4, 4] } }]
+"#;
+    let corners = [[-15.0, 5.0, 5.0], [15.0, 5.0, 5.0], [-5.0, 15.0, 10.0], [5.0, 5.0, 15.0]];
+    let (scene, points) = (write(&dir, "whole.toml", whole), points(&dir, corners));
+    let made = tissuebench(&["reference", &scene, "--points", &points, "--out", &inside(&dir, "r.json")]);
+    assert_eq!(made.code, 0, "{}", made.stderr);
+    let error = |from: &str, to: &str, plane: &str| {
+        let half = whole
+            .replace(from, to)
+            .replace("[8, 4, 4]", "[4, 4, 4]")
+            .replace("\"xyz\" }", &format!("\"xyz\" }}, {plane}"));
+        let half = write(&dir, "half.toml", &format!("{half}reference = {{ record = \"r.json\" }}\n"));
+        let done = tissuebench(&["run", &half, "--once", "--format", "json"]);
+        assert_eq!(done.code, 0, "{}", done.stderr);
+        let object: Value = serde_json::from_str(done.stdout.trim()).unwrap();
+        object["metrics"]["relative-rms"]["value"].as_f64().unwrap()
+    };
+    let right = |plane: &str| error("[\"-20 mm\"", "[\"0 mm\"", plane);
+    let end = "[\"20 mm\", \"20 mm\", \"20 mm\"]";
+    for same in [
+        right("{ on = \"x-min\", fix = \"x\" }"),
+        right("{ where = \"x == 0 mm\", fix = \"x\" }"),
+        error(end, &end.replacen("20", "0", 1), "{ on = \"x-max\", fix = \"x\" }"),
+    ] {
+        assert!(same < 1e-9, "{same}");
+    }
+    for other in ["{ on = \"x-min\", fix = \"xyz\" }", "{ where = \"x == 0 mm and z <= 5 mm\", fix = \"x\" }"]
+    {
+        assert!(right(other) > 0.01, "{other}");
+    }
+}
+
 #[test]
 fn bad_records_are_named() {
     let dir = tempfile::tempdir().unwrap();

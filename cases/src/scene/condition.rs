@@ -87,7 +87,7 @@ pub struct Support {
 
 impl Support {
     /// Whether a prescribed displacement differs from zero.
-    pub(crate) fn moves(&self) -> bool {
+    pub fn moves(&self) -> bool {
         let still = |p: &Prescribed| matches!(p, Prescribed::Field(ScalarField::Constant(0.0)));
         !self.motion.iter().flatten().all(still)
     }

@@ -88,9 +88,9 @@ impl<'a> Group<'a> {
             }
             Some(Reference::Record(path)) => {
                 let stored = Stored::load(&group.scene, &path)?;
-                let mirror = Mirror::of(&group.scene.body);
-                group.targets = stored.targets(mirror);
-                group.reference = Some(stored.reference(mirror));
+                let mirror = Mirror::of(&group.scene);
+                group.targets = stored.targets(&mirror);
+                group.reference = Some(stored.reference(&mirror));
             }
             Some(Reference::Exact { .. }) | None => {}
         }

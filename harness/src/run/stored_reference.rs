@@ -218,13 +218,13 @@ impl Stored {
         Ok(stored)
     }
 
-    /// Points at which the displacement is given, mirrored to the modelled half, m.
-    pub(crate) fn targets(&self, mirror: Mirror) -> Vec<Point3> {
+    /// Points at which the displacement is given, mirrored to the modelled part, m.
+    pub(crate) fn targets(&self, mirror: &Mirror) -> Vec<Point3> {
         self.points.iter().map(|&x| mirror.place(&x.into())).collect()
     }
 
     /// Converts the file to the reference of a run.
-    pub(crate) fn reference(&self, mirror: Mirror) -> Reference {
+    pub(crate) fn reference(&self, mirror: &Mirror) -> Reference {
         let vectors = |all: &[[f64; 3]]| -> Vec<Vector3> { all.iter().map(|&v| v.into()).collect() };
         let at_points = self.points.iter().zip(&self.displacement);
         let steps = self.steps.iter().map(|step| LoadStep {

@@ -1,36 +1,76 @@
-//! Mirror symmetry of a stored reference: the file has points of the whole body, and a scene may model only
-//! half of the body.
+//! Mirror symmetry of a stored reference: the file may have points of the whole body, and a scene may model
+//! only the part of the body at one side of its planes of symmetry.
 
-use cases::scene::Body;
-use geometry::{Point3, Vector3};
+use std::collections::BTreeSet;
 
-/// Mapping of points to the modelled half z >= 0. If `half` is set, points with z < 0 are replaced by their
+use cases::scene::{Scene, Support};
+use geometry::{Facet, Mesh, Point3, Vector3};
+
+use crate::discretise::place;
+use crate::scenario::coarse;
+
+/// Planes of symmetry at which the modelled part of a body ends. Points beyond a plane are replaced by their
 /// mirror images.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct Mirror {
-    half: bool,
+    planes: Vec<Plane>,
+}
+
+/// Plane normal to an axis.
+#[derive(Clone, Copy, Debug)]
+struct Plane {
+    axis: usize,
+    /// Coordinate along the axis, m.
+    at: f64,
+    /// 1 if the body is above the plane, -1 if it is below.
+    side: f64,
 }
 
 impl Mirror {
-    pub(crate) fn of(body: &Body) -> Mirror {
-        Mirror { half: matches!(body, Body::Kidney { half: true, .. }) }
+    /// Finds the planes of symmetry: flat ends of the body whose whole face is held along its normal and free
+    /// along the other axes. There is none if no coarse mesh of the body can be made.
+    pub(crate) fn of(scene: &Scene) -> Mirror {
+        let Ok(mesh) = coarse(&scene.body) else { return Mirror::default() };
+        let (low, high) = place::bounds(&mesh);
+        let ends = (0..3).flat_map(|axis| {
+            [Plane { axis, at: low[axis], side: 1.0 }, Plane { axis, at: high[axis], side: -1.0 }]
+        });
+        Mirror { planes: ends.filter(|plane| plane.is_of_symmetry(&scene.supports, &mesh)).collect() }
     }
 
     /// Returns the point of the modelled body that corresponds to `x`.
-    pub(crate) fn place(self, x: &Point3) -> Point3 {
-        if self.below(x) { mirrored(x.coords).into() } else { *x }
+    pub(crate) fn place(&self, x: &Point3) -> Point3 {
+        let mut image = *x;
+        self.crossed(x).for_each(|plane| image[plane.axis] = 2.0 * plane.at - x[plane.axis]);
+        image
     }
 
     /// Converts a displacement between `x` and its corresponding point, in either direction.
-    pub(crate) fn displacement(self, x: &Point3, u: Vector3) -> Vector3 {
-        if self.below(x) { mirrored(u) } else { u }
+    pub(crate) fn displacement(&self, x: &Point3, mut u: Vector3) -> Vector3 {
+        self.crossed(x).for_each(|plane| u[plane.axis] = -u[plane.axis]);
+        u
     }
 
-    fn below(self, x: &Point3) -> bool {
-        self.half && x.z < 0.0
+    /// Planes beyond which `x` lies.
+    fn crossed(&self, x: &Point3) -> impl Iterator<Item = &Plane> {
+        self.planes.iter().filter(|plane| (x[plane.axis] - plane.at) * plane.side < 0.0)
     }
 }
 
-fn mirrored(v: Vector3) -> Vector3 {
-    Vector3::new(v.x, v.y, -v.z)
+impl Plane {
+    fn is_of_symmetry(&self, supports: &[Support], mesh: &Mesh) -> bool {
+        let tolerance = place::tolerance(mesh);
+        let is_here = |x: &Point3| (x[self.axis] - self.at).abs() <= tolerance;
+        let face: BTreeSet<Facet> = (mesh.boundary().into_iter())
+            .filter(|&facet| place::corners(mesh, facet).iter().all(is_here))
+            .collect();
+        let holds_face = |support: &&Support| {
+            let held = place::patch("support", &support.place, mesh).map(|patch| patch.whole);
+            held.is_ok_and(|held| face.is_subset(&held.into_iter().collect()))
+        };
+        let holding: Vec<&Support> = supports.iter().filter(holds_face).collect();
+        let holds = |axis: usize| holding.iter().any(|support| support.motion[axis].is_some());
+        let normal_alone = (0..3).all(|axis| holds(axis) == (axis == self.axis));
+        !face.is_empty() && normal_alone && !holding.iter().any(|support| support.moves())
+    }
 }

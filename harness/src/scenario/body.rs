@@ -29,6 +29,17 @@ pub fn mesh(body: &Body, kind: CellKind, size: &Size, jitter: Option<Jitter>) ->
     sound(body, unchecked(body, kind, size, jitter)?, size, jitter)
 }
 
+/// Returns a mesh of the body with the names of its surfaces: that of its file, or one of few cells.
+///
+/// # Errors
+/// Returns an error if the file cannot be read, or if the body is too thin for few cells.
+pub(crate) fn coarse(body: &Body) -> Result<Mesh, Failure> {
+    match body {
+        Body::File(file) if !files::is_surface(&file.path) => read(file, Key::Scene("body.path".into())),
+        _ => mesh(body, CellKind::Tet4, &Size::Level(1), None),
+    }
+}
+
 /// Checks a mesh for inversion, and that a mesh file is of the body.
 fn sound(body: &Body, mesh: Mesh, size: &Size, jitter: Option<Jitter>) -> Result<Mesh, Failure> {
     quality::check(&mesh).map_err(|bad| inverted(bad, size, jitter))?;

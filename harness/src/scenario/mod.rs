@@ -18,7 +18,7 @@ mod same_body;
 pub(crate) mod setup;
 mod tools;
 
-pub(crate) use body::point;
+pub(crate) use body::{coarse, point};
 pub(crate) use estimate::{Estimate, estimate, of_reference, too_large};
 pub(crate) use identity::{purpose, rule};
 pub(crate) use notes::warnings;

@@ -17,8 +17,8 @@ fn waiting(step: &LoadStep) {
 }
 
 /// Runs the methods named in `only`, or all methods of the scene if `only` is empty. The values of the last
-/// method are stored, and all methods span the bands. Points (m) below z = 0 are evaluated at their mirror
-/// images if the scene models only the half above.
+/// method are stored, and all methods span the bands. Points (m) beyond a plane of symmetry of the
+/// scene are evaluated at their mirror images.
 ///
 /// # Errors
 /// Returns the failure of any method, and an error if no method is left.
@@ -39,7 +39,7 @@ pub fn make(scene: &Scene, text: &str, points: &[Point3], only: &[String]) -> Re
 
 /// Solves the scene by one method, without bands.
 fn by(scene: &Scene, text: &str, points: &[Point3], method: &str) -> Result<Stored, Failure> {
-    let mirror = Mirror::of(&scene.body);
+    let mirror = Mirror::of(scene);
     let images = points.iter().map(|x| mirror.place(x)).collect();
     let solution = Group::solve_for(scene, method, images, Watch::new(waiting))?;
     for warning in &solution.warnings {
