@@ -312,6 +312,7 @@ fn dilated_lanes<const FMA: bool, const BITS: usize>(
     }
 }
 
+/// Computes the neo-Hookean law. [`other`] takes 1.11 (AVX2) and 1.12 (AVX-512) of the time.
 #[inline(always)]
 fn neo_hookean<const FMA: bool, const BITS: usize>(
     blocks: &[Block],

@@ -169,7 +169,8 @@ fn internal_lanes<const FMA: bool>(
     *not_inverted = good == [1.0; LANES];
 }
 
-/// Replaces `H` by `w P`. `good` becomes 0 in lanes in which `J` is not positive.
+/// Replaces `H` by `w P`. `good` becomes 0 in lanes in which `J` is not positive. [`other`] takes 1.06 (AVX2)
+/// and 1.08 (AVX-512) of the time of the whole kernel.
 #[inline(always)]
 fn neo_hookean<const FMA: bool>(
     batch: &Batch,

@@ -223,6 +223,9 @@ pub(super) fn internal(path: LanePath, laws: &[LaneLaw], chunk: &Chunk, u: &[Slo
 }
 
 on_path! {
+    /// Adds the forces of the neo-Hookean law. [`other`] takes 2.4 % more instructions and 1.03 of the time
+    /// with 80,000 elements. With 6,000 elements, in cache, it takes 1.02 (AVX2) and 1.03 (AVX-512) in the
+    /// median of twelve processes, but up to 1.14 and 1.18 if this kernel is fast.
     fn neo_hookean(blocks: &[Block], moduli: Moduli, u: &[Slot], f: &mut [Slot], good: &mut Lanes) = neo_hookean_lanes::<BITS>
 }
 
