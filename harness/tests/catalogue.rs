@@ -80,7 +80,9 @@ fn used(run: &Run, scene: &Scene, document: &Table, key: &str) -> Vec<String> {
         return own.chain(kernels.map(|kernel| kernel.name().to_string())).collect();
     }
     let checked = match key {
-        "output.transfer.scheme" => checks.iter().any(|check| check.metric.name.starts_with("transfer-")),
+        "output.transfer.scheme" => {
+            checks.iter().any(|check| check.address.metric.name.starts_with("transfer-"))
+        }
         _ => !methods.is_empty(),
     };
     let mut found = words(document, key);

@@ -63,7 +63,7 @@ fn states_are_recorded_with_energies_that_balance() {
         assert!(each > 1e-10 && each < object["phases"]["solve"].as_f64().unwrap());
     }
     let records = records::read_run(std::path::Path::new(&out)).unwrap().records;
-    let count = |name: &str| records.iter().filter(|r| r.step == Some(4) && r.quantity == name).count();
+    let count = |name: &str| records.iter().filter(|r| r.step == Some(4) && r.name() == name).count();
     for name in ["kinetic-energy", "strain-energy", "smallest-j", "external-work", "time"] {
         assert_eq!(count(name), 2, "{name}");
     }

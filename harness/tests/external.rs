@@ -167,7 +167,7 @@ fn the_time_of_children_counts() {
     let done = bash(&dir, &format!("{spend}\"$0\" solve \"$1\" \"$2\""), "");
     assert_eq!(done.code, 0, "{}", done.stderr);
     let set = records::read_run(&dir.path().join("results")).unwrap();
-    let of = |r: &&records::Record| r.quantity == "cpu-time" && r.phase == "solve" && r.statistic == "median";
+    let of = |r: &&records::Record| r.name() == "cpu-time" && r.phase == "solve" && r.statistic == "median";
     let seconds = set.records.iter().find(of).expect("seconds of processors").value;
     assert!((0.49..5.0).contains(&seconds), "{seconds}");
 }

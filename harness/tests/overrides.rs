@@ -30,9 +30,9 @@ fn a_key_that_is_set_counts_as_that_of_the_file() {
     let text = std::fs::read_to_string(Path::new(&out).join("provenance.json")).unwrap();
     let provenance: Value = serde_json::from_str(&text).unwrap();
     assert_eq!(provenance["set"][0], "material.young=40 kPa");
-    assert_eq!(provenance["format"], 1);
+    assert_eq!(provenance["format"], 2);
     // A folder with a later format is refused.
-    let later = text.replace("\"format\": 1", "\"format\": 1000");
+    let later = text.replace("\"format\": 2", "\"format\": 1000");
     assert_ne!(later, text);
     std::fs::write(Path::new(&out).join("provenance.json"), later).unwrap();
     assert_fails(&tissuebench(&["report", &out]), 2, "has version 1000");

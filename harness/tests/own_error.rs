@@ -84,7 +84,7 @@ fn the_reference_is_named_with_its_error_and_records_have_it() {
     let results = records::read_run(Path::new(&out)).unwrap();
     assert_eq!(results.references.len(), 1);
     let bands: Vec<f64> = (results.records.iter())
-        .filter(|r| r.quantity == "relative-rms" && r.statistic == "band")
+        .filter(|r| r.name() == "relative-rms" && r.statistic == "band")
         .map(|r| r.value)
         .collect();
     assert_eq!(bands, [results.references[0].band["relative-rms"]; 3]);

@@ -33,7 +33,7 @@ fn a_run_of_several_tables_is_run_once_and_checked_by_each() {
     );
     let (set, _) = verified(&dir, &text, "out");
     let runs: HashSet<&str> = set.records.iter().map(|r| r.run.as_str()).collect();
-    let max: Vec<&Record> = set.records.iter().filter(|r| r.quantity == "max-z").collect();
+    let max: Vec<&Record> = set.records.iter().filter(|r| r.name() == "max-z").collect();
     assert_eq!((runs.len(), max.len()), (3, 3), "level 1, level 2, and the other ratio");
     let judged: Vec<&str> = set.checks.iter().map(|c| c.bound.as_str()).collect();
     for (bound, times) in [("at most 2e-3", 1), ("at most 3e-3", 2), ("at most 4e-3", 2)] {

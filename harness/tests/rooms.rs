@@ -3,6 +3,9 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
+use catalogue::element::ELEMENTS;
+use catalogue::metric::METRICS;
+
 /// A folder of modules in an order.
 struct House {
     /// Folder of its files, below the repository.
@@ -362,6 +365,40 @@ fn no_meaning_is_read_out_of_names() {
             }
         }
     }
+}
+
+/// Literals of the reports that are a heading, a statistic or a word of a sentence, and have the name of a
+/// metric.
+const WORDS: [(&str, &str); 9] = [
+    ("commits/trend.rs", "time"),
+    ("compare/across.rs", "mass"),
+    ("figures/locking.rs", "pressure"),
+    ("fronts.rs", "max"),
+    ("fronts.rs", "pressure"),
+    ("tables/face_results.rs", "mode"),
+    ("tables/modes.rs", "mass"),
+    ("tables/modes.rs", "massless"),
+    ("tables/outcome.rs", "warnings"),
+];
+
+#[test]
+fn reports_name_no_quantity_and_no_element_in_text() {
+    let folder = repository().join("reports/src");
+    let names: Vec<String> =
+        METRICS.iter().flat_map(|metric| metric.addresses()).map(|of| of.to_string()).collect();
+    let bare = METRICS.iter().map(|metric| metric.name).chain(ELEMENTS.iter().map(|element| element.name));
+    let names: BTreeSet<&str> = names.iter().map(String::as_str).chain(bare).collect();
+    let mut found = BTreeSet::new();
+    for (path, text) in files(&folder).into_iter().filter(|(path, _)| !path.ends_with("tests.rs")) {
+        let file = path.strip_prefix(&folder).unwrap().to_str().unwrap().to_string();
+        let code = text.split("#[cfg(test)]").next().unwrap();
+        for line in code.lines().filter(|line| !line.trim_start().starts_with("//")) {
+            let literals = line.split('"').skip(1).step_by(2).filter(|literal| names.contains(literal));
+            found.extend(literals.map(|literal| (file.clone(), literal.to_string())));
+        }
+    }
+    let words = WORDS.map(|(file, word)| (file.to_string(), word.to_string()));
+    assert_eq!(found, words.into(), "take the entry of the catalogue, such as `metric::L2`");
 }
 
 /// Files are opened in one place only, which refuses large or special files and outputs that would replace an

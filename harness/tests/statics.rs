@@ -157,7 +157,7 @@ fn a_path_that_ends_early_keeps_what_it_carried_and_exits_with_3() {
     assert_eq!(object["steps"].as_array().unwrap().len(), 6);
     assert!(metric(object, "cut-backs") >= 6.0);
     let records = std::fs::read_to_string(format!("{out}/records.csv")).unwrap();
-    let of = |step: u32| records.matches(&format!(",strain-energy,J,,{step},,value,")).count();
+    let of = |step: u32| records.matches(&format!(",strain-energy,,,J,,{step},,value,")).count();
     assert_eq!((of(6), of(7)), (1, 0));
     let report = std::fs::read_to_string(format!("{out}/report/report.html")).unwrap();
     assert!(report.contains("stalled: "), "the report says nothing of it");

@@ -89,7 +89,8 @@ fn methods_are_compared_with_the_last_one_and_all_span_the_band() {
     let value = |name: &str| tool[name].as_f64().unwrap();
     assert_eq!((value("low"), value("force"), value("high")), (first.min(last), last, first.max(last)));
     let records = std::fs::read_to_string(format!("{out}/records.csv")).unwrap();
-    let rows = records.lines().filter(|l| l.contains("reference,hex20-mixed") && l.contains("tool-force,N"));
+    let rows =
+        records.lines().filter(|l| l.contains("reference,hex20-mixed") && l.contains("tool-force,,1,N"));
     assert_eq!(rows.count(), 6, "two steps with value, low and high");
 }
 

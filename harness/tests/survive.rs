@@ -302,7 +302,7 @@ fn memory_and_time_cost_one_run_alone() {
     assert!(time == "out of time: ended after 4 s (--time-limit)", "{time}");
     assert!(memory.starts_with("out of memory: memory allocation of "), "{memory}");
     assert!(memory.ends_with("within 60000000 bytes (--memory-limit)"), "{memory}");
-    let whole = |case: &str| set.records.iter().any(|r| r.case == case && r.quantity == "max-z");
+    let whole = |case: &str| set.records.iter().any(|r| r.case == case && r.name() == "max-z");
     assert!(whole("b0") && whole("b3") && !whole("b1") && !whole("b2"));
     assert_eq!(processes_of(&dir), [""; 0]);
     // The results are the same as in one process.

@@ -53,7 +53,7 @@ fn the_same_bits_again_and_at_any_number_of_threads() {
     let rows = exact(&first);
     let runs = ["tet4", "hex20", "efg-smoothed-1.6", "efg-gauss-2.0", "tet10", "hex8-mean", "efg-gauss"];
     for method in runs {
-        assert!(rows.iter().any(|(r, _)| r.method == method && r.quantity == "l2"), "{method}");
+        assert!(rows.iter().any(|(r, _)| r.method == method && r.name() == "l2"), "{method}");
     }
     for (out, options) in [
         ("again", ["--threads", "1"].as_slice()),
@@ -91,7 +91,7 @@ seeds = 3
     let mut found: Vec<(u64, f64)> = results(&out)
         .records
         .iter()
-        .filter(|r| r.quantity == "max" && r.family == Family::Efg)
+        .filter(|r| r.name() == "max" && r.family == Family::Efg)
         .map(|r| (r.seed, r.value))
         .collect();
     found.sort_by_key(|f| f.0);
@@ -190,7 +190,7 @@ fn a_cloud_is_held_in_every_way_that_is_named_and_elements_in_theirs() {
     let done = tissuebench(&["verify", &study, "--out", &out]);
     assert_eq!(done.code, 0, "{}", done.stderr);
     let set = results(&out);
-    let l2: Vec<_> = set.records.iter().filter(|r| r.quantity == "l2").collect();
+    let l2: Vec<_> = set.records.iter().filter(|r| r.name() == "l2").collect();
     assert_eq!(l2.iter().filter(|r| r.method == "hex8").count(), 1);
     for (way, exact) in [
         ("nitsche", true),
@@ -204,7 +204,7 @@ fn a_cloud_is_held_in_every_way_that_is_named_and_elements_in_theirs() {
         // whose error is 4e-5.
         assert!(found.len() == 1 && (found[0].value < 1e-12) == exact, "{way}: {found:?}");
     }
-    let rule = |r: &&Record| r.quantity == "integration-rms";
+    let rule = |r: &&Record| r.name() == "integration-rms";
     assert_eq!(set.records.iter().filter(rule).count(), 5);
 }
 
@@ -299,7 +299,7 @@ fn stored_runs_are_kept_until_their_scene_changes() {
     // At half the stiffness the scene is solved again, with twice the displacement.
     write(&dir, "block.toml", &BLOCK.replace("20 kPa", "10 kPa"));
     let softer = run(&["--resume"]);
-    let largest = |set: &RunSet| set.records.iter().find(|r| r.quantity == "max-z").unwrap().value;
+    let largest = |set: &RunSet| set.records.iter().find(|r| r.name() == "max-z").unwrap().value;
     assert!((largest(&softer) / largest(&first) - 2.0).abs() < 1e-9);
 }
 

@@ -2,9 +2,9 @@
 
 use std::sync::Arc;
 
-use records::Record;
 use arrow_array::{ArrayRef, Float64Array, RecordBatch, StringViewArray, UInt32Array, UInt64Array};
 use arrow_schema::ArrowError;
+use records::Record;
 use serde_json::Value;
 
 /// Returns the word for a value in files.
@@ -61,7 +61,8 @@ pub(crate) fn batch(records: &[Record]) -> Result<RecordBatch, ArrowError> {
         some_text essential, some_text refine, some_text split, some_text law, some_text mass, some_text from,
         some_real power, some_real shape, flag polynomial, some_text force_kernel, some_text adapter,
         some_text lane_path, some_text linear_solver, text axis, some_real at, real poisson, small level, count nodes,
-        count elements, count points, count dofs, real spacing, count seed, text quantity, text unit, text phase,
+        count elements, count points, count dofs, real spacing, count seed, text quantity, text component,
+        some_count index, text unit, text phase,
         some_count step, some_count mode, text statistic, some_count repeat, real value,
     })
 }

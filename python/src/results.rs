@@ -3,12 +3,12 @@
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex};
 
-use records::{Failure as FailedRun, Machine, Record, RunSet};
 use cases::scene;
 use harness::outcome::{Outcome, provenance};
 use harness::run::case_name;
 use harness::study::{check, compared_with, failed, reference_records, stalled, warn_if_busy};
 use pyo3::prelude::*;
+use records::{Failure as FailedRun, Machine, Record, RunSet};
 
 use crate::error::{input, not_run, of_failure};
 use crate::run::Run;
@@ -74,8 +74,8 @@ impl Results {
             let (method, records) = (&outcome.identity.method, outcome.records());
             let own = |c: &&scene::Check| c.methods.is_empty() || c.methods.contains(method);
             for check in self.scene.checks.iter().filter(own).filter(|c| !check::is_of_many(c)) {
-                let name = check.metric.name;
-                let (value, band) = (check::value(name, &records), check::band(name, &records));
+                let of = check.address;
+                let (value, band) = (check::value(of, &records), check::band(of, &records));
                 set.checks.push(check::judge(check, &case, method, value, band));
             }
             set.plans.extend(outcome.plan_entries());
@@ -134,7 +134,10 @@ impl Results {
         }
         if run.scene.text() != self.scene.text() {
             let (a, b) = (run.scene.file(), self.scene.file());
-            return Err(input(py, &format!("the run belongs to another scene with the name {case} ({a}, {b})")));
+            return Err(input(
+                py,
+                &format!("the run belongs to another scene with the name {case} ({a}, {b})"),
+            ));
         }
         let mut finished = self.finished.lock().expect("no thread panicked");
         if finished.iter().any(|known| id(known) == id(&run.outcome)) {

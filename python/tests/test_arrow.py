@@ -68,5 +68,5 @@ def test_pandas_reads_a_table(block):
     pytest.importorskip("pandas")
     run = block.run("tet4")
     frame = pa.table(run.records).to_pandas()
-    rms = frame[(frame["quantity"] == "rms") & (frame["statistic"] == "value")]["value"]
-    assert list(rms) == [run["rms"]]
+    rms = frame[(frame["quantity"] == "rms") & (frame["statistic"] == "value")].set_index("component")["value"]
+    assert dict(rms) == {"": run["rms"], "x": run["rms-x"], "y": run["rms-y"], "z": run["rms-z"]}

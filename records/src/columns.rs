@@ -8,6 +8,11 @@ use crate::record::{Family, Purpose, Record};
 /// A type of field, whose values become a column.
 trait Field {
     fn column(name: &str, values: &[&Self]) -> Column;
+
+    /// The field, if it holds any text.
+    fn text(&mut self) -> Option<&mut String> {
+        None
+    }
 }
 
 impl Field for String {
@@ -15,12 +20,20 @@ impl Field for String {
         let texts: Vec<&str> = values.iter().map(|text| text.as_str()).collect();
         Column::new(name.into(), texts)
     }
+
+    fn text(&mut self) -> Option<&mut String> {
+        Some(self)
+    }
 }
 
 impl Field for Option<String> {
     fn column(name: &str, values: &[&Self]) -> Column {
         let texts: Vec<Option<&str>> = values.iter().map(|text| text.as_deref()).collect();
         Column::new(name.into(), texts)
+    }
+
+    fn text(&mut self) -> Option<&mut String> {
+        self.as_mut()
     }
 }
 
@@ -61,6 +74,11 @@ macro_rules! columns {
         /// The columns of `records`, one for each field, in the order of the stored table.
         pub(crate) fn of(records: &[Record]) -> Vec<Column> {
             vec![$(Field::column(stringify!($field), &records.iter().map(|r| &r.$field).collect::<Vec<_>>())),*]
+        }
+
+        /// All texts of a record.
+        pub(crate) fn texts(record: &mut Record) -> impl Iterator<Item = &mut String> {
+            [$(record.$field.text()),*].into_iter().flatten()
         }
     };
 }
@@ -106,6 +124,8 @@ columns!(
     spacing,
     seed,
     quantity,
+    component,
+    index,
     unit,
     phase,
     step,

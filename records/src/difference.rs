@@ -17,7 +17,7 @@ pub fn numbers(records: &[Record]) -> Numbers {
     let mut by_index: BTreeMap<(String, String), BTreeMap<u64, f64>> = BTreeMap::new();
     for record in records.iter().filter(|r| !r.is_measured()) {
         let name = (record.run_name(), record.quantity_name());
-        by_index.entry(name).or_default().insert(record.index().unwrap_or(0), record.value);
+        by_index.entry(name).or_default().insert(record.step_or_mode().unwrap_or(0), record.value);
     }
     let mut numbers = Numbers::new();
     for ((run, quantity), values) in by_index {

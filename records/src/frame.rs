@@ -81,7 +81,7 @@ fn write_csv(
     origin: &[&String; 6],
     threads: impl Fn(&Record) -> u32,
 ) -> Result<(), RecordError> {
-    for text in records.iter_mut().flat_map(Record::texts_mut) {
+    for text in records.iter_mut().flat_map(columns::texts) {
         if let Cow::Owned(cell) = guarded(text) {
             *text = cell;
         }
@@ -125,10 +125,15 @@ pub(crate) fn read(dir: &Path) -> Result<Vec<Record>, RecordError> {
     if !header.is_empty() && header.iter().all(|name| name != "value") {
         return Err(RecordError::Content { path: path.into(), reason: "no column `value`".into() });
     }
+    // Tables of older programs have the component and the index in the name of the quantity.
+    let has_components = header.iter().any(|name| name == "component");
     let mut records: Vec<Record> =
         file.deserialize().collect::<Result<_, _>>().map_err(|e| content(path, &e))?;
-    for text in records.iter_mut().flat_map(Record::texts_mut).filter(|text| text.starts_with('\'')) {
+    for text in records.iter_mut().flat_map(columns::texts).filter(|text| text.starts_with('\'')) {
         *text = unguarded(text).to_string();
+    }
+    if !has_components {
+        records = records.into_iter().map(|record| record.clone().named(&record.quantity)).collect();
     }
     Ok(records)
 }
@@ -139,6 +144,8 @@ fn content(path: &Path, error: &csv::Error) -> RecordError {
 
 #[cfg(test)]
 mod tests {
+    use catalogue::metric;
+
     use super::*;
 
     #[test]
@@ -160,5 +167,29 @@ mod tests {
         let csv = std::fs::read_to_string(dir.path().join(CSV)).unwrap();
         let names: Vec<&str> = frame.get_column_names().iter().map(|name| name.as_str()).collect();
         assert_eq!(csv.lines().next().unwrap().split(',').collect::<Vec<_>>(), names);
+    }
+    #[test]
+    fn a_table_of_an_older_program_is_read_as_one_of_today() {
+        let of = |name: &str| metric::find(name).unwrap();
+        let names = ["rms", "rms-z", "tool-force", "tool-force-2", "reaction-y-3", "l2"];
+        let mut records: Vec<Record> = names.iter().map(|name| Record::default().with(of(name))).collect();
+        records.push(Record { quantity: "of-another-program".into(), ..Record::default() });
+        let dir = tempfile::tempdir().unwrap();
+        write(dir.path(), records.clone(), &Provenance::default()).unwrap();
+        let path = dir.path().join(CSV);
+        let mut today = csv::Reader::from_path(&path).unwrap();
+        let is_kept = |name: &&str| !["component", "index"].contains(name);
+        let header = today.headers().unwrap().clone();
+        let rows: Vec<csv::StringRecord> = today.records().map(Result::unwrap).collect();
+        let mut older = csv::Writer::from_path(&path).unwrap();
+        older.write_record(header.iter().filter(is_kept)).unwrap();
+        for (row, record) in rows.iter().zip(&records) {
+            let cells = header.iter().zip(row).filter(|(name, _)| is_kept(name));
+            let name = record.name();
+            let cell = |(head, cell)| if head == "quantity" { name.as_str() } else { cell };
+            older.write_record(cells.map(cell)).unwrap();
+        }
+        older.flush().unwrap();
+        assert_eq!(read(dir.path()).unwrap(), records);
     }
 }

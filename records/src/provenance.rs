@@ -4,7 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Version of the files in a folder of results, raised by every change that affects a reader.
-pub const FORMAT: u32 = 1;
+pub const FORMAT: u32 = 2;
 
 /// Build of a program.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]

@@ -3,11 +3,14 @@
 //! All values are SI (lengths in metres, times in seconds). Millimetres appear only in drawn tables and
 //! figures.
 //!
-//! - A row is identified by `run`, `quantity`, `phase`, `step`, `mode`, `statistic` and `repeat`: no two rows
-//!   agree in all of them.
-//! - Errors (`rms-*`, `relative-rms`, `l2`, `energy`, `pressure`, `max-error*`, `peak-error`,
-//!   `tool-force-error`) and plain outcomes (`max-*`, `tip`, `strain-energy`) have `statistic = "value"` and
-//!   no phase, step or mode.
+//! - A row is identified by `run`, `quantity`, `component`, `index`, `phase`, `step`, `mode`, `statistic` and
+//!   `repeat`: no two rows agree in all of them.
+//! - The displacement error `rms` has the components `x`, `y` and `z`, and without a component its magnitude.
+//!   `index` is the number of a tool, support or face. Checks, baselines and messages use the name that
+//!   combines the three columns: `rms-x`, `tool-force-2` ([`Record::name`]).
+//! - Errors (`rms`, `relative-rms`, `l2`, `energy`, `pressure`, `max-error`, `peak-error`,
+//!   `tool-force-error`) and plain outcomes (`max`, `tip`, `strain-energy`) have `statistic = "value"` and no
+//!   phase, step or mode.
 //! - Relative errors against a method or a stored record also have a row with `statistic = "band"`, if the
 //!   error of the reference itself is known. Differences below this value are not significant.
 //! - Times are `time` (wall time) or `cpu-time` (of all threads of the process, including concurrent runs).
@@ -37,6 +40,7 @@
 
 use std::cmp::Ordering;
 
+use catalogue::metric::{self, Address};
 use serde::{Deserialize, Serialize};
 
 use crate::error::RecordError;
@@ -161,9 +165,15 @@ pub struct Record {
     pub spacing: f64,
     /// Seed of jitter and clouds; 0 without randomness.
     pub seed: u64,
-    /// Measured quantity: `rms-x`, `rms`, `l2`, `energy`, `pressure`, `max-x`, `time`, `memory`,
-    /// `condition-max`, `tip`, ...
+    /// Measured quantity, a metric of the catalogue: `rms`, `l2`, `energy`, `pressure`, `max`, `time`,
+    /// `memory`, `condition-max`, `tip`, ...
     pub quantity: String,
+    /// Component of a vector: `x`, `y` or `z`; empty for its magnitude and for a scalar.
+    #[serde(default)]
+    pub component: String,
+    /// Number of the tool, support or face, from 1; `None` if the quantity is that of the whole run.
+    #[serde(default)]
+    pub index: Option<u64>,
     /// SI unit: `m`, `s`, `Pa`, `B`, or `1` for a pure number.
     pub unit: String,
     /// Phase of a time: `prepare`, `assemble`, `factor`, `solve`, `transfer`, `total`, `repeated`; empty
@@ -183,8 +193,9 @@ pub struct Record {
     pub value: f64,
 }
 
-/// Unique key of a row: run, quantity, phase, step, mode, statistic, repeat.
-pub type Key<'a> = (&'a str, &'a str, &'a str, Option<u64>, Option<u64>, &'a str, Option<u64>);
+/// Unique key of a row: run, address, phase, step, mode, statistic, repeat.
+pub type Key<'a> =
+    (&'a str, (&'a str, &'a str, Option<u64>), &'a str, Option<u64>, Option<u64>, &'a str, Option<u64>);
 
 impl Record {
     /// Checks the numbers of the record.
@@ -197,7 +208,7 @@ impl Record {
                 return Err(RecordError::NotFinite {
                     case: self.case.clone(),
                     method: self.method.clone(),
-                    quantity: self.quantity.clone(),
+                    quantity: self.name(),
                     field,
                     value,
                 });
@@ -206,56 +217,49 @@ impl Record {
         Ok(())
     }
 
-    /// All text fields of the record.
-    pub(crate) fn texts_mut(&mut self) -> impl Iterator<Item = &mut String> {
-        let own = [
-            &mut self.run,
-            &mut self.case,
-            &mut self.published,
-            &mut self.method,
-            &mut self.series,
-            &mut self.variant,
-            &mut self.axis,
-            &mut self.quantity,
-            &mut self.unit,
-            &mut self.phase,
-            &mut self.statistic,
-        ];
-        let settings = [
-            &mut self.basis,
-            &mut self.neighbourhood,
-            &mut self.kernel,
-            &mut self.dilation,
-            &mut self.integration,
-            &mut self.essential,
-            &mut self.refine,
-            &mut self.split,
-            &mut self.law,
-            &mut self.mass,
-            &mut self.from,
-            &mut self.force_kernel,
-            &mut self.adapter,
-            &mut self.lane_path,
-            &mut self.linear_solver,
-        ];
-        own.into_iter().chain(settings.into_iter().flatten())
+    /// The record with the quantity and unit of an address.
+    #[must_use]
+    pub fn with(self, of: impl Into<Address>) -> Record {
+        let of = of.into();
+        let (quantity, component, unit) =
+            (of.metric.name.into(), of.component.into(), of.metric.unit().into());
+        Record { quantity, component, index: of.index, unit, ..self }
+    }
+
+    /// The record with the quantity of this name, in its own unit. A name that the catalogue does not have is
+    /// taken as the quantity.
+    #[must_use]
+    pub fn named(self, name: &str) -> Record {
+        match metric::find(name) {
+            Some(of) => Record { unit: self.unit.clone(), ..self.with(of) },
+            None => Record { quantity: name.into(), ..self },
+        }
+    }
+
+    /// Whether the record is a number of this address.
+    pub fn is(&self, of: impl Into<Address>) -> bool {
+        let of = of.into();
+        self.index == of.index && self.component == of.component && self.quantity == of.metric.name
+    }
+
+    /// Name of the number: quantity, component and index in one word, such as `rms-x` or `tool-force-2`.
+    pub fn name(&self) -> String {
+        metric::address(&self.quantity, &self.component, self.index)
     }
 
     /// Whether the value depends on the machine and the moment (times and memory). Such rows are excluded
     /// from bitwise comparisons of two runs.
     pub fn is_measured(&self) -> bool {
-        match self.quantity.as_str() {
-            // The time of a step is model time.
-            "time" => self.step.is_none(),
-            "cpu-time" | "memory" => true,
-            _ => false,
-        }
+        // The time of a step is model time.
+        self.is(&metric::TIME) && self.step.is_none()
+            || self.is(&metric::CPU_TIME)
+            || self.is(&metric::MEMORY)
     }
 
     /// Unique key of the row.
     pub fn key(&self) -> Key<'_> {
-        let Record { run, quantity, phase, step, mode, statistic, repeat, .. } = self;
-        (run, quantity, phase, *step, *mode, statistic, *repeat)
+        let Record { run, quantity, component, index, phase, step, mode, statistic, repeat, .. } = self;
+        (run, (quantity, component, *index), phase, *step, *mode, statistic, *repeat)
     }
 
     /// Settings of the method, with their names in words. A kernel that equals the variant is not repeated.
@@ -288,7 +292,7 @@ impl Record {
     }
 
     /// Number of the step or mode of the record, if any.
-    pub fn index(&self) -> Option<u64> {
+    pub fn step_or_mode(&self) -> Option<u64> {
         self.step.or(self.mode)
     }
 
@@ -309,14 +313,14 @@ impl Record {
 
     /// Name of the quantity: quantity, phase and statistic, with the unit in brackets.
     pub fn quantity_name(&self) -> String {
-        let phase = match (self.index(), self.phase.as_str()) {
+        let phase = match (self.step_or_mode(), self.phase.as_str()) {
             (Some(_), _) => " by step".into(),
             (None, "") => String::new(),
             (None, phase) => format!(" {phase}"),
         };
         let statistic =
             if self.statistic == "value" { String::new() } else { format!(" {}", self.statistic) };
-        format!("{}{phase}{statistic} [{}]", self.quantity, self.unit)
+        format!("{}{phase}{statistic} [{}]", self.name(), self.unit)
     }
 
     /// Order of the stored table: by the properties of the run that a reader looks for, then by the key of

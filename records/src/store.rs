@@ -154,7 +154,7 @@ fn once(records: &[Record]) -> Result<(), RecordError> {
         Some(r) => Err(RecordError::Twice {
             case: r.case.clone(),
             method: r.method.clone(),
-            quantity: r.quantity.clone(),
+            quantity: r.name(),
             run: r.run.clone(),
         }),
     }

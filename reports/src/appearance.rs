@@ -5,6 +5,7 @@
 //! longest known prefix, as `efg-gauss-lumped` does of `efg-gauss`, and a marker by a hash. Two labels of one
 //! figure never look the same: [`distinct`] gives the label of lower precedence another marker or shade.
 
+use catalogue::element;
 use records::Family;
 
 /// Names of the markers in pages.
@@ -20,15 +21,15 @@ const COLOURS: [u32; 12] = [
 
 /// Name, colour and marker of the known methods. Methods that compete in one case differ in both.
 const KNOWN: [(&str, u32, usize); 44] = [
-    ("tet4", 0xd55e00, 0),
+    (element::TET4.name, 0xd55e00, 0),
     ("tet4-nodal", 0x8c510a, 4),
-    ("tet10", 0x0072b2, 1),
+    (element::TET10.name, 0x0072b2, 1),
     ("tet10-mean", 0x332288, 5),
     ("tet10-p1", 0x6a51a3, 6),
     ("tet10-mixed", 0x7a9fd0, 5),
-    ("hex8", 0xe69f00, 2),
+    (element::HEX8.name, 0xe69f00, 2),
     ("hex8-mean", 0xa88400, 4),
-    ("hex20", 0x56b4e9, 3),
+    (element::HEX20.name, 0x56b4e9, 3),
     ("hex20-reduced", 0xaa3377, 0),
     ("hex20-p1", 0x2c9c9c, 1),
     ("efg", 0x009e73, 0),

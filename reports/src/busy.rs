@@ -1,5 +1,6 @@
 //! Disturbance of a machine during timed runs, and the time by which the runs of a case are compared.
 
+use catalogue::metric;
 use records::{Family, Machine, Record};
 
 use crate::seconds::{Seconds, Took};
@@ -11,11 +12,8 @@ fn took(run: &Run) -> Option<Took> {
     if run.is.family == Family::External {
         return None;
     }
-    let of = |quantity: &str| {
-        let fits = |r: &&&Record| r.quantity == quantity && r.phase == "total" && r.statistic == "median";
-        run.records().iter().find(fits).map(|r| r.value)
-    };
-    Some(Took { wall: of("time")?, cpu: of("cpu-time") })
+    let of = |kind| run.timed(kind, "total", "median");
+    Some(Took { wall: of(&metric::TIME)?, cpu: of(&metric::CPU_TIME) })
 }
 
 /// Chooses the time for the runs of each case, which are adjacent.
@@ -62,7 +60,7 @@ mod tests {
     /// Records of a run with its wall time, CPU time and shortest repeat.
     fn run(case: &str, nodes: u64, [wall, cpu, least]: [f64; 3]) -> Vec<Record> {
         let is = (case, RUN.1, RUN.2);
-        let cpu = Record { quantity: "cpu-time".into(), ..record(is, nodes, ("time", "total:median"), cpu) };
+        let cpu = record(is, nodes, ("cpu-time", "total:median"), cpu);
         vec![
             record(is, nodes, ("time", "total:median"), wall),
             record(is, nodes, ("time", "total:min"), least),

@@ -1,5 +1,6 @@
 //! Cheapest method within an error, case by case: data of the table and of the performance profile.
 
+use catalogue::metric;
 use records::Family;
 
 use crate::fronts::{Clock, WANTED};
@@ -30,7 +31,7 @@ pub(crate) struct Cheapest {
 pub(crate) fn problems(runs: &[Run]) -> Vec<Problem> {
     let mut chosen: Vec<Ask> = Vec::new();
     for ask in asks(runs).into_iter().filter(|ask| ask.clock == Clock::First && !ask.kernels) {
-        let force = ask.question.errors_are("tool-force-error");
+        let force = ask.question.errors_are(&metric::TOOL_FORCE_ERROR);
         if !force && !ask.question.ending.is_empty() {
             continue;
         }

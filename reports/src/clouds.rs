@@ -1,5 +1,7 @@
 //! Runs that differ only in the seed of their cloud, which show how results depend on node placement.
 
+use catalogue::metric::Metric;
+
 use crate::select::Run;
 
 /// Runs of one method on many clouds, with ascending seeds.
@@ -41,9 +43,9 @@ pub(crate) struct Spread {
 
 impl Spread {
     /// Computes the quantiles over the runs that reached their whole load; `None` without any.
-    pub(crate) fn of(clouds: &[Run], quantity: &str) -> Option<Spread> {
+    pub(crate) fn of(clouds: &[Run], of: &'static Metric) -> Option<Spread> {
         let mut values: Vec<f64> =
-            clouds.iter().filter(|run| run.whole()).filter_map(|run| run.value(quantity)).collect();
+            clouds.iter().filter(|run| run.whole()).filter_map(|run| run.value(of)).collect();
         values.sort_by(f64::total_cmp);
         let last = values.len().checked_sub(1)?;
         // Linear interpolation between sorted values, as in R by default (Hyndman & Fan 1996, type 7).
@@ -61,6 +63,7 @@ mod tests {
     use super::*;
     use crate::blank::Blank as _;
     use crate::select::runs;
+    use catalogue::metric;
     use records::{Family, Record};
 
     fn record(method: &str, seed: u64, quantity: &str, value: f64) -> Record {
@@ -71,10 +74,10 @@ mod tests {
             family: Family::Efg,
             nodes: 83,
             seed,
-            quantity: quantity.into(),
             value,
             ..Record::blank()
         }
+        .named(quantity)
         .of_its_run()
     }
 
@@ -96,8 +99,8 @@ mod tests {
         );
         assert_eq!(clouds.len(), 1);
         assert_eq!(clouds[0].iter().map(|r| r.is.seed).collect::<Vec<_>>(), [1, 2, 3, 4]);
-        let spread = Spread::of(&clouds[0], "l2").unwrap();
+        let spread = Spread::of(&clouds[0], &metric::L2).unwrap();
         assert_eq!(spread, Spread { count: 3, quantiles: [1.0, 1.5, 2.0, 3.0, 4.0] });
-        assert_eq!(Spread::of(&clouds[0], "energy"), None);
+        assert_eq!(Spread::of(&clouds[0], &metric::ENERGY), None);
     }
 }

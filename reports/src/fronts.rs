@@ -1,6 +1,6 @@
 //! Run time against error: the questions put to runs, the kinds of time, and the Pareto front.
 
-use catalogue::metric;
+use catalogue::metric::{self, Address, Metric};
 use records::text::significant;
 
 use crate::order::ROUNDING;
@@ -17,45 +17,49 @@ pub(crate) struct Question {
     /// Name in a sentence.
     pub(crate) name: &'static str,
     /// Relative errors that measure the result, in order of preference. A case uses one of them.
-    errors: &'static [&'static str],
+    errors: &'static [&'static Metric],
     /// Whether the result is a single number, which may be right by chance, rather than a field.
     pub(crate) scalar: bool,
 }
 
 /// Questions on the displacement field, the pressure, the tool force and the largest displacement.
 pub(crate) const QUESTIONS: [Question; 4] = [
-    Question { ending: "", name: "displacement", errors: &["l2", "relative-rms"], scalar: false },
-    Question { ending: "-pressure", name: "pressure", errors: &["pressure"], scalar: false },
-    Question { ending: "-force", name: "tool force", errors: &["tool-force-error"], scalar: true },
-    Question { ending: "-peak", name: "peak displacement", errors: &["peak-error"], scalar: true },
+    Question {
+        ending: "",
+        name: "displacement",
+        errors: &[&metric::L2, &metric::RELATIVE_RMS],
+        scalar: false,
+    },
+    Question { ending: "-pressure", name: "pressure", errors: &[&metric::PRESSURE], scalar: false },
+    Question { ending: "-force", name: "tool force", errors: &[&metric::TOOL_FORCE_ERROR], scalar: true },
+    Question { ending: "-peak", name: "peak displacement", errors: &[&metric::PEAK_ERROR], scalar: true },
 ];
 
 impl Question {
-    /// Whether the question is measured only by this quantity.
-    pub(crate) fn errors_are(&self, quantity: &str) -> bool {
-        self.errors == [quantity]
+    /// Whether the question is measured only by this error.
+    pub(crate) fn errors_are(&self, error: &Metric) -> bool {
+        self.errors == [error]
     }
 
-    /// Name of the error for a case, `None` if no run has one.
+    /// The error of a case, `None` if no run has one.
     ///
     /// A quantity that the scene prescribes is right with every method and answers nothing. Examples are the
     /// force of a force-driven tool (up to the tolerance of Newton's method) and a largest displacement at a
     /// support.
-    pub(crate) fn error(&self, runs: &[Run]) -> Option<&'static str> {
-        if self.errors_are(metric::PEAK_ERROR.name) && is_peak_prescribed(runs) {
+    pub(crate) fn error(&self, runs: &[Run]) -> Option<&'static Metric> {
+        if self.errors_are(&metric::PEAK_ERROR) && is_peak_prescribed(runs) {
             return None;
         }
-        let found = |quantity: &str| {
-            let of_tool = |entry: &metric::Metric| entry.kind == metric::Kind::Tool;
-            let least = if metric::find(quantity).is_some_and(of_tool) { FLOOR } else { 0.0 };
-            runs.iter().filter_map(|run| worst(run, quantity)).any(|e| e > least)
+        let found = |error: &'static Metric| {
+            let least = if error.kind == metric::Kind::Tool { FLOOR } else { 0.0 };
+            runs.iter().filter_map(|run| worst(run, error)).any(|e| e > least)
         };
-        self.errors.iter().copied().find(|quantity| found(quantity))
+        self.errors.iter().copied().find(|error| found(error))
     }
 }
 
 /// Whether an error belongs to a question that the runs of a case cannot answer.
-pub(crate) fn is_unanswerable(error: &str, runs: &[Run]) -> bool {
+pub(crate) fn is_unanswerable(error: &Metric, runs: &[Run]) -> bool {
     QUESTIONS.iter().any(|question| question.errors.contains(&error) && question.error(runs).is_none())
 }
 
@@ -63,24 +67,25 @@ pub(crate) fn is_unanswerable(error: &str, runs: &[Run]) -> bool {
 fn is_peak_prescribed(runs: &[Run]) -> bool {
     let Some(displacement) = QUESTIONS[0].error(runs) else { return false };
     runs.iter().any(|run| {
-        run.value(metric::PEAK_ERROR.name).is_some_and(|e| e < ROUNDING)
+        run.value(&metric::PEAK_ERROR).is_some_and(|e| e < ROUNDING)
             && run.value(displacement).is_some_and(|e| e > FLOOR)
     })
 }
 
-/// A plain value, the largest for several tools (`NAME`, `NAME-2`, ...).
-fn worst(run: &Run, quantity: &str) -> Option<f64> {
-    largest(quantity, |name| run.value(name))
+/// A plain value, the largest for several tools.
+fn worst(run: &Run, error: &'static Metric) -> Option<f64> {
+    largest(error, |of| run.value(of))
 }
 
 /// Error of the reference itself in a quantity, the largest for several tools.
-pub(crate) fn band(run: &Run, quantity: &str) -> Option<f64> {
-    largest(quantity, |name| run.band(name))
+pub(crate) fn band(run: &Run, error: &'static Metric) -> Option<f64> {
+    largest(error, |of| run.band(of))
 }
 
-fn largest(quantity: &str, of: impl Fn(&str) -> Option<f64>) -> Option<f64> {
-    let first = of(quantity)?;
-    Some((2..).map_while(|tool| of(&format!("{quantity}-{tool}"))).fold(first, f64::max))
+fn largest(error: &'static Metric, of: impl Fn(Address) -> Option<f64>) -> Option<f64> {
+    let first = of(error.whole())?;
+    let others = (1..).take_while(|_| error.is_numbered()).map_while(|tool| of(error.at(tool)));
+    Some(others.fold(first, f64::max))
 }
 
 /// Kind of time.
@@ -160,14 +165,15 @@ pub(crate) const DEADLINES: [Deadline; 2] = [
 
 /// `(seconds, relative error)` of a run that reached its whole load. An error of exactly zero belongs to the
 /// reference and gives `None`.
-pub(crate) fn point(run: &Run, quantity: &str, clock: Clock) -> Option<(f64, f64)> {
-    let (time, error) = (clock.seconds(run)?, worst(run, quantity)?);
+pub(crate) fn point(run: &Run, error: &'static Metric, clock: Clock) -> Option<(f64, f64)> {
+    let (time, error) = (clock.seconds(run)?, worst(run, error)?);
     (run.whole() && time > 0.0 && error > 0.0).then_some((time, error))
 }
 
 /// The same as [`point`], with an error no smaller than the error of the reference.
-pub(crate) fn judged(run: &Run, quantity: &str, clock: Clock) -> Option<(f64, f64)> {
-    point(run, quantity, clock).map(|(time, error)| (time, error.max(band(run, quantity).unwrap_or(0.0))))
+pub(crate) fn judged(run: &Run, error: &'static Metric, clock: Clock) -> Option<(f64, f64)> {
+    let own = band(run, error).unwrap_or(0.0);
+    point(run, error, clock).map(|(time, error)| (time, error.max(own)))
 }
 
 /// A single number may be right by chance. It counts as within an error only if the displacement error is
@@ -188,10 +194,10 @@ pub(crate) fn wanted() -> String {
 pub(crate) fn counts(
     run: &Run,
     question: &Question,
-    displacement: Option<&str>,
-    (quantity, error): (&str, f64),
+    displacement: Option<&'static Metric>,
+    (quantity, error): (&'static Metric, f64),
 ) -> f64 {
-    let known = |quantity: &str, error: f64| error.max(band(run, quantity).unwrap_or(0.0));
+    let known = |quantity: &'static Metric, error: f64| error.max(band(run, quantity).unwrap_or(0.0));
     let companion = displacement
         .filter(|_| question.scalar)
         .and_then(|quantity| Some(known(quantity, worst(run, quantity)?)));
@@ -243,12 +249,12 @@ pub(crate) mod tests {
             nodes,
             dofs: 3 * nodes,
             spacing: (nodes as f64).powf(-1.0 / 3.0),
-            quantity: quantity.into(),
             phase: phase.into(),
             statistic: statistic.into(),
             value,
             ..Record::blank()
         }
+        .named(quantity)
         .of_its_run()
     }
 
@@ -272,7 +278,7 @@ pub(crate) mod tests {
         let asked = |errors: &[(&str, f64)]| {
             let records = run(("tet4", Family::Fem), 100, 1.0, errors);
             let runs = runs(&records);
-            QUESTIONS.each_ref().map(|question| question.error(&runs))
+            QUESTIONS.each_ref().map(|question| question.error(&runs).map(|error| error.name))
         };
         let all = [("relative-rms", 0.1), ("l2", 0.2), ("pressure", 0.3), ("peak-error", 0.4)];
         assert_eq!(asked(&all), [Some("l2"), Some("pressure"), None, Some("peak-error")]);
@@ -290,7 +296,7 @@ pub(crate) mod tests {
         let asked = |peak: f64| {
             let moved = run(("tet4", Family::Fem), 100, 1.0, &[("relative-rms", 0.05), ("peak-error", peak)]);
             let weak = run(("efg", Family::Efg), 83, 1.0, &[("relative-rms", 0.04), ("peak-error", 1e-4)]);
-            QUESTIONS[3].error(&runs(&[moved, weak].concat()))
+            QUESTIONS[3].error(&runs(&[moved, weak].concat())).map(|error| error.name)
         };
         assert_eq!((asked(5e-16), asked(0.0), asked(1e-3)), (None, None, Some("peak-error")));
     }
@@ -323,7 +329,8 @@ pub(crate) mod tests {
     fn a_number_right_by_chance_counts_as_a_third_of_the_error_of_its_field() {
         let counted = |question: &Question, errors: &[(&str, f64)], error: f64| {
             let records = run(("efg", Family::Efg), 83, 1.0, errors);
-            counts(&runs(&records)[0], question, Some("relative-rms"), ("tool-force-error", error))
+            let error = (&metric::TOOL_FORCE_ERROR, error);
+            counts(&runs(&records)[0], question, Some(&metric::RELATIVE_RMS), error)
         };
         let force = &QUESTIONS[2];
         assert_eq!(counted(force, &[("relative-rms", 0.69)], 0.001), 0.69 / 3.0);
@@ -337,21 +344,21 @@ pub(crate) mod tests {
     fn nothing_counts_for_less_than_the_error_of_the_reference() {
         let of = ("jaws", "tet4", Family::Fem);
         let mut records = run(("tet4", Family::Fem), 100, 1.0, &[("relative-rms", 0.127)]);
-        let counted = |records: &[Record], question: &Question, error: (&str, f64)| {
-            counts(&runs(records)[0], question, Some("relative-rms"), error)
+        let counted = |records: &[Record], question: &Question, error: (&'static Metric, f64)| {
+            counts(&runs(records)[0], question, Some(&metric::RELATIVE_RMS), error)
         };
-        let displacement = ("relative-rms", 0.127);
+        let displacement = (&metric::RELATIVE_RMS, 0.127);
         assert_eq!(counted(&records, &QUESTIONS[0], displacement), 0.127);
         records.push(record(of, 100, ("relative-rms", ":band"), 0.9));
         assert_eq!(counted(&records, &QUESTIONS[0], displacement), 0.9);
         // A force whose displacement error is uncertain is not counted as right either.
-        assert_eq!(counted(&records, &QUESTIONS[2], ("tool-force-error", 0.01)), 0.9 / 3.0);
+        assert_eq!(counted(&records, &QUESTIONS[2], (&metric::TOOL_FORCE_ERROR, 0.01)), 0.9 / 3.0);
         records.extend([
             record(of, 100, ("tool-force-error", ":band"), 0.2),
             record(of, 100, ("tool-force-error-2", ":band"), 0.4),
         ]);
-        assert_eq!(counted(&records, &QUESTIONS[2], ("tool-force-error", 0.01)), 0.4);
-        assert_eq!(judged(&runs(&records)[0], "relative-rms", Clock::First), Some((1.0, 0.9)));
+        assert_eq!(counted(&records, &QUESTIONS[2], (&metric::TOOL_FORCE_ERROR, 0.01)), 0.4);
+        assert_eq!(judged(&runs(&records)[0], &metric::RELATIVE_RMS, Clock::First), Some((1.0, 0.9)));
     }
 
     #[test]
@@ -359,7 +366,7 @@ pub(crate) mod tests {
         let point = |errors: &[(&str, f64)], clock| {
             let mut records = run(("tet4", Family::Fem), 100, 2.0, errors);
             records.push(record(("jaws", "tet4", Family::Fem), 100, ("time", "repeated:p99"), 0.02));
-            super::point(&runs(&records)[0], "tool-force-error", clock)
+            super::point(&runs(&records)[0], &metric::TOOL_FORCE_ERROR, clock)
         };
         let two = [("tool-force-error", 0.02), ("tool-force-error-2", 0.03)];
         assert_eq!(point(&two, Clock::First), Some((2.0, 0.03)));

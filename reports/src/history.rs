@@ -2,24 +2,26 @@
 
 use std::collections::BTreeMap;
 
+use catalogue::metric::{self, Address, Metric};
 use records::{Family, Record};
 
 use crate::select::Run;
 
 /// Values of a quantity by step, for one statistic.
-fn by_step(run: &Run, quantity: &str, statistic: &str) -> BTreeMap<u64, f64> {
-    let fits = |r: &&&Record| r.quantity == quantity && r.statistic == statistic;
-    run.records().iter().filter(fits).filter_map(|r| Some((r.index()?, r.value))).collect()
+fn by_step(run: &Run, of: impl Into<Address>, statistic: &str) -> BTreeMap<u64, f64> {
+    let of = of.into();
+    let fits = |r: &&&Record| r.is(of) && r.statistic == statistic;
+    run.records().iter().filter(fits).filter_map(|r| Some((r.step_or_mode()?, r.value))).collect()
 }
 
 /// `(x, y)` at every step that has both, in the order of the steps.
-pub(crate) fn curve(run: &Run, x: &str, y: &str) -> Vec<(f64, f64)> {
+pub(crate) fn curve(run: &Run, x: &'static Metric, y: &'static Metric) -> Vec<(f64, f64)> {
     let along = by_step(run, x, "value");
     by_step(run, y, "value").into_iter().filter_map(|(step, y)| Some((*along.get(&step)?, y))).collect()
 }
 
 /// `(x, low, high)` at every step that has both bounds of an uncertainty.
-pub(crate) fn band(run: &Run, x: &str, y: &str) -> Vec<(f64, f64, f64)> {
+pub(crate) fn band(run: &Run, x: &'static Metric, y: &'static Metric) -> Vec<(f64, f64, f64)> {
     let (along, high) = (by_step(run, x, "value"), by_step(run, y, "high"));
     let low = by_step(run, y, "low").into_iter();
     low.filter_map(|(step, low)| Some((*along.get(&step)?, low, *high.get(&step)?))).collect()
@@ -29,7 +31,7 @@ pub(crate) fn band(run: &Run, x: &str, y: &str) -> Vec<(f64, f64, f64)> {
 /// whose tool force has an error of zero at every step and which therefore is the reference.
 pub(crate) fn reference<'r, 'a>(case: &'r [Run<'a>]) -> Option<&'r Run<'a>> {
     let itself = |r: &&Run| {
-        let errors = by_step(r, "tool-force-error", "value");
+        let errors = by_step(r, &metric::TOOL_FORCE_ERROR, "value");
         !errors.is_empty() && errors.values().all(|e| *e == 0.0)
     };
     case.iter().find(|r| r.is.family == Family::Reference).or_else(|| case.iter().find(itself))
@@ -67,12 +69,12 @@ mod tests {
             case: "grasp".into(),
             method: "measured".into(),
             family: Family::Reference,
-            quantity: quantity.into(),
             step: (step > 0).then_some(step),
             statistic: statistic.into(),
             value,
             ..Record::blank()
         }
+        .named(quantity)
         .of_its_run()
     }
 
@@ -93,9 +95,12 @@ mod tests {
         ];
         let runs = runs(&records);
         assert_eq!(runs.len(), 1);
-        assert_eq!(curve(&runs[0], "closure", "tool-force"), [(2.0, 20.0), (3.0, 30.0)]);
-        assert_eq!(band(&runs[0], "closure", "tool-force"), [(2.0, 19.0, 22.0)]);
-        assert_eq!((runs[0].value("strain-energy"), runs[0].value("closure")), (Some(7.0), None));
+        assert_eq!(curve(&runs[0], &metric::CLOSURE, &metric::TOOL_FORCE), [(2.0, 20.0), (3.0, 30.0)]);
+        assert_eq!(band(&runs[0], &metric::CLOSURE, &metric::TOOL_FORCE), [(2.0, 19.0, 22.0)]);
+        assert_eq!(
+            (runs[0].value(&metric::STRAIN_ENERGY), runs[0].value(&metric::CLOSURE)),
+            (Some(7.0), None)
+        );
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! Questions put to every case, for each kind of time: the runs that answer, with their time and error.
 
-use catalogue::metric;
+use catalogue::metric::{self, Metric};
 use records::{Family, Purpose};
 
 use crate::fronts::{Clock, QUESTIONS, Question, WANTED, band, counts, point};
@@ -37,8 +37,8 @@ pub(crate) struct Ask {
     pub(crate) clock: Clock,
     /// The quantity of the times of a first solve.
     pub(crate) by: Seconds,
-    /// The quantity that measures the error.
-    pub(crate) error: &'static str,
+    /// Error that answers the question.
+    pub(crate) error: &'static Metric,
     pub(crate) lines: Vec<Line>,
     /// Method that the others are compared with. It has no error and so no place on the axes.
     pub(crate) reference: Option<String>,
@@ -133,7 +133,7 @@ fn runs_of(lines: &[Line]) -> usize {
 
 fn rank(run: &Run, question: &Question, clock: Clock, lines: &[Line]) -> Rank {
     let first = clock == Clock::First;
-    let claimed = question.errors_are(metric::TOOL_FORCE_ERROR.name) && !run.is.published.is_empty();
+    let claimed = question.errors_are(&metric::TOOL_FORCE_ERROR) && !run.is.published.is_empty();
     let answered = lines.iter().flat_map(|line| &line.runs).any(|run| run.counts <= WANTED);
     let judged = run.is.purpose != Purpose::Published;
     Rank { first, judged, claimed: first && claimed, answered, runs: runs_of(lines) }
@@ -142,8 +142,8 @@ fn rank(run: &Run, question: &Question, clock: Clock, lines: &[Line]) -> Rank {
 fn line(
     label: String,
     series: &Series,
-    (question, error): (&Question, &str),
-    displacement: Option<&str>,
+    (question, error): (&Question, &'static Metric),
+    displacement: Option<&'static Metric>,
     clock: Clock,
 ) -> Line {
     let timed = |run: &Run| {

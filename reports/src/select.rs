@@ -3,6 +3,7 @@
 use std::cmp::Ordering;
 
 use catalogue::element;
+use catalogue::metric::{self, Address, Metric};
 use records::text::ratio;
 use records::{Family, Purpose, Record};
 
@@ -19,14 +20,17 @@ pub(crate) struct Run<'a> {
 }
 
 impl<'a> Run<'a> {
-    /// Plain value of a quantity.
-    pub(crate) fn value(&self, quantity: &str) -> Option<f64> {
-        self.plain(quantity).map(|r| r.value)
+    /// Plain value of a quantity, which is not part of a history.
+    pub(crate) fn value(&self, of: impl Into<Address>) -> Option<f64> {
+        let of = of.into();
+        let fits = |r: &&&Record| r.is(of) && r.statistic == "value" && r.step_or_mode().is_none();
+        self.records.iter().find(fits).map(|r| r.value)
     }
 
     /// Error of the reference itself in a quantity, if known. Smaller errors of the run are not significant.
-    pub(crate) fn band(&self, quantity: &str) -> Option<f64> {
-        self.records.iter().find(|r| r.quantity == quantity && r.statistic == "band").map(|r| r.value)
+    pub(crate) fn band(&self, of: impl Into<Address>) -> Option<f64> {
+        let of = of.into();
+        self.records.iter().find(|r| r.is(of) && r.statistic == "band").map(|r| r.value)
     }
 
     /// All records of the run.
@@ -34,24 +38,23 @@ impl<'a> Run<'a> {
         &self.records
     }
 
-    /// Record of a plain value, which is not part of a history.
-    fn plain(&self, quantity: &str) -> Option<&'a Record> {
-        let fits = |r: &&&Record| r.quantity == quantity && r.statistic == "value" && r.index().is_none();
-        self.records.iter().find(fits).copied()
+    /// Statistic of the wall or CPU time of a phase, s.
+    pub(crate) fn timed(&self, kind: &'static Metric, phase: &str, statistic: &str) -> Option<f64> {
+        let fits = |r: &&&Record| r.is(kind) && r.phase == phase && r.statistic == statistic;
+        self.records.iter().find(fits).map(|r| r.value)
     }
 
     /// Time of a phase by statistic, s. If runs are not compared by median wall time, the `median` is the
     /// time of the comparison, and there is no `spread`.
     pub(crate) fn time(&self, phase: &str, statistic: &str) -> Option<f64> {
-        let of = |quantity: &str, statistic: &str| {
-            let fits = |r: &&&Record| r.quantity == quantity && r.phase == phase && r.statistic == statistic;
-            self.records.iter().find(fits).map(|r| r.value)
-        };
+        let wall = |statistic| self.timed(&metric::TIME, phase, statistic);
         match (self.by, statistic) {
-            (Seconds::Cpu, "median") => of("cpu-time", statistic).or_else(|| of("time", statistic)),
-            (Seconds::Least, "median") => of("time", "min").or_else(|| of("time", statistic)),
+            (Seconds::Cpu, "median") => {
+                self.timed(&metric::CPU_TIME, phase, statistic).or_else(|| wall(statistic))
+            }
+            (Seconds::Least, "median") => wall("min").or_else(|| wall(statistic)),
             (Seconds::Cpu | Seconds::Least, "spread") => None,
-            _ => of("time", statistic),
+            _ => wall(statistic),
         }
     }
 
@@ -66,17 +69,18 @@ impl<'a> Run<'a> {
 
     /// Whether the run reached the whole load; true for a run without load steps.
     pub(crate) fn whole(&self) -> bool {
-        self.value("load-carried").is_none_or(|load| load > 0.999_999)
+        self.value(&metric::LOAD_CARRIED).is_none_or(|load| load > 0.999_999)
     }
 
     /// Whether the run recorded a quantity, as a plain value or in a history.
-    pub(crate) fn has(&self, quantity: &str) -> bool {
-        self.records.iter().any(|r| r.quantity == quantity)
+    pub(crate) fn has(&self, of: impl Into<Address>) -> bool {
+        let of = of.into();
+        self.records.iter().any(|r| r.is(of))
     }
 
     /// Whether the run is the reference of the others, with an error of zero. An exact solution is not a run.
     pub(crate) fn is_reference(&self) -> bool {
-        self.value("relative-rms") == Some(0.0) && self.value("l2").is_none()
+        self.value(&metric::RELATIVE_RMS) == Some(0.0) && self.value(&metric::L2).is_none()
     }
 
     /// Peak memory of the method in excess of its input, bytes.
@@ -90,7 +94,7 @@ impl<'a> Run<'a> {
     }
 
     fn memory_of(&self, phase: &str) -> Option<f64> {
-        self.records.iter().find(|r| r.quantity == "memory" && r.phase == phase).map(|r| r.value)
+        self.records.iter().find(|r| r.is(&metric::MEMORY) && r.phase == phase).map(|r| r.value)
     }
 
     /// Name of the series.
@@ -124,20 +128,19 @@ impl<'a> Series<'a> {
     }
 
     /// `(spacing, value)` of a quantity, from coarse to fine, for positive spacings and values.
-    pub(crate) fn points(&self, quantity: &str) -> Vec<(f64, f64)> {
-        let point = |run: &Run| run.value(quantity).map(|v| (run.is.spacing, v));
+    pub(crate) fn points(&self, of: impl Into<Address>) -> Vec<(f64, f64)> {
+        let of = of.into();
+        let point = |run: &Run| run.value(of).map(|v| (run.is.spacing, v));
         self.runs.iter().filter_map(point).filter(|(h, v)| *h > 0.0 && *v > 0.0).collect()
     }
 
     /// Theoretical order of the error for a smooth solution: p + 1 for displacement, p for energy.
-    pub(crate) fn theory(&self, quantity: &str) -> Option<f64> {
+    pub(crate) fn theory(&self, error: &Metric) -> Option<f64> {
         let degree =
             degree(self.is()).filter(|_| matches!(self.is().purpose, Purpose::Patch | Purpose::Smooth))?;
-        match quantity {
-            "l2" | "rms" | "rms-x" | "rms-y" | "rms-z" => Some(degree + 1.0),
-            "energy" => Some(degree),
-            _ => None,
-        }
+        let is_displacement = [&metric::L2, &metric::RMS].contains(&error);
+        let order = if is_displacement { degree + 1.0 } else { degree };
+        (is_displacement || *error == metric::ENERGY).then_some(order)
     }
 }
 

@@ -63,6 +63,8 @@ fn no_number_is_recorded_twice() {
     let last = set.records.len() - 1;
     for other in [
         Record { run: "another".into(), ..again.clone() },
+        Record { component: "radial".into(), ..again.clone() },
+        Record { index: Some(2), ..again.clone() },
         Record { step: Some(1), ..again.clone() },
         Record { mode: Some(1), ..again.clone() },
         Record { statistic: "repeat".into(), repeat: Some(1), ..again.clone() },

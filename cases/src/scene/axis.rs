@@ -15,7 +15,7 @@
 use std::collections::BTreeMap;
 
 use catalogue::Problem;
-use catalogue::metric::{self, Metric};
+use catalogue::metric::{self, Address};
 use schemars::JsonSchema;
 use serde::Deserialize;
 use toml::Value;
@@ -40,7 +40,7 @@ pub struct Axis {
     /// Value at which a method's reference error is taken.
     pub base: f64,
     /// Metric of the error by which results are judged.
-    pub judge: &'static Metric,
+    pub judge: Address,
     /// Smallest error that makes a result wrong.
     pub wrong: f64,
     set: BTreeMap<String, Value>,
@@ -76,7 +76,7 @@ pub(crate) struct AxisKeys {
 impl AxisKeys {
     pub fn read(self, report: &Report) -> Option<Axis> {
         let judge = metric::named(&self.judge).map_err(|bad| report.add("judge", bad)).ok()?;
-        let is_error = matches!(judge.kind, metric::Kind::Error | metric::Kind::Tool);
+        let is_error = matches!(judge.metric.kind, metric::Kind::Error | metric::Kind::Tool);
         report.require(is_error, "judge", "is no error", "take \"l2\" or \"relative-rms\"");
         report.require(!self.values.is_empty(), "values", "are none", "give two or more");
         report.require(!self.set.is_empty(), "set", "drives nothing", "name a key of the scene");

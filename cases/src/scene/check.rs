@@ -1,6 +1,6 @@
 //! Checks of results: the bound of a metric, for some methods.
 
-use catalogue::metric::{self, Metric};
+use catalogue::metric::{self, Address};
 use catalogue::{Dimension, Problem};
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -33,8 +33,8 @@ pub(crate) struct CheckKeys {
 /// A bound on the results.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Check {
-    /// The metric.
-    pub metric: &'static Metric,
+    /// Metric, component, and number of the tool, support or face.
+    pub address: Address,
     /// Ids of the methods that the check applies to; empty for all.
     pub methods: Vec<String>,
     /// The bound, in the SI unit of the metric.
@@ -67,9 +67,9 @@ pub enum Bound {
 
 impl CheckKeys {
     pub fn read(self, report: &Report) -> Option<Check> {
-        let metric = metric::named(&self.metric).map_err(|bad| report.add("metric", bad)).ok()?;
+        let address = metric::named(&self.metric).map_err(|bad| report.add("metric", bad)).ok()?;
         let number = |keys: NumberKeys, key: &str| {
-            keys.read(metric.dimension).map_err(|bad| report.add(key, bad)).ok()
+            keys.read(address.metric.dimension).map_err(|bad| report.add(key, bad)).ok()
         };
         let bound = match (self.at_least, self.at_most, self.known_band) {
             (None, None, None) => {
@@ -108,7 +108,7 @@ impl CheckKeys {
             }
         };
         let methods = self.method.map(Vec::from).unwrap_or_default();
-        Some(Check { metric, methods, bound, at: report.location() })
+        Some(Check { address, methods, bound, at: report.location() })
     }
 }
 

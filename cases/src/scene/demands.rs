@@ -39,7 +39,7 @@ pub(crate) fn scene(scene: &Scene, report: &Report) {
     for (i, check) in scene.checks.iter().enumerate() {
         let report = report.at(&format!("check[{i}]"));
         self::check(check, scene, &report);
-        let (problem, help) = match check.metric.needs {
+        let (problem, help) = match check.address.metric.needs {
             Needs::Levels => ("needs several levels", "checks of orders belong in a study"),
             Needs::Seeds => ("needs many clouds", "checks of fractions belong in a study with seeds"),
             _ => continue,
@@ -114,7 +114,7 @@ pub(crate) fn check(check: &Check, scene: &Scene, report: &Report) {
     let (stepped, moves) = (!kind.has_no_steps(), scene.procedure.ramp().is_some());
     let (vibrates, touched) = (kind == ProcedureKind::Modes, !scene.tools.is_empty());
     let probed = !scene.output.probes.is_empty();
-    let (holds, needs) = match check.metric.needs {
+    let (holds, needs) = match check.address.metric.needs {
         Needs::Run | Needs::Seeds => return,
         Needs::Axis => (false, "is a metric of a [run.axis] of a study; check the metric there"),
         Needs::Reference | Needs::Levels => (compared, "needs a [reference] in the scene"),
@@ -162,8 +162,18 @@ pub(crate) fn check(check: &Check, scene: &Scene, report: &Report) {
         Needs::Motion => (moves && probed, "needs output.probes and dynamics in the scene"),
         Needs::Transfer => (!scene.output.transfers.is_empty(), "needs output.transfer in the scene"),
     };
+    let name = check.address.to_string();
     if !holds {
-        report.add("metric", Problem::new(needs).found(check.metric.name));
+        return report.add("metric", Problem::new(needs).found(name));
+    }
+    let (count, what) = match check.address.metric.needs {
+        Needs::Support => (scene.supports.len(), "support"),
+        Needs::Mean => (scene.output.means.len(), "face in output.means"),
+        _ => (scene.tools.len(), "tool"),
+    };
+    if let Some(index) = check.address.index.filter(|index| *index > count as u64) {
+        let problem = format!("needs {what} number {index}, but the scene has {count}");
+        report.add("metric", Problem::new(problem).found(name));
     }
 }
 

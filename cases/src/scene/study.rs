@@ -315,11 +315,11 @@ fn fit(run: &Run, scene: &Scene, report: &Report) {
     for (i, check) in run.checks.iter().enumerate() {
         let report = report.at(&format!("check[{i}]"));
         demands::check(check, &all, &report);
-        if check.metric.needs == Needs::Levels && run.levels.len() < 2 {
+        if check.address.metric.needs == Needs::Levels && run.levels.len() < 2 {
             let problem = Problem::new("needs several levels").help("give the run levels = [1, 2, 3]");
             report.add("metric", problem);
         }
-        if check.metric.needs == Needs::Seeds && run.seeds == 0 {
+        if check.address.metric.needs == Needs::Seeds && run.seeds == 0 {
             let problem = Problem::new("needs many clouds").help("give the run seeds = 50");
             report.add("metric", problem);
         }

@@ -53,7 +53,7 @@ fn a_bar_pulled_at_once_swings_to_twice_its_static_length() {
 fn bounds(scene: &str, metric: &str) -> [f64; 2] {
     let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join(scene);
     let scene = load(&path).unwrap();
-    let check = scene.checks.iter().find(|check| check.metric.name == metric).unwrap();
+    let check = scene.checks.iter().find(|check| check.address.to_string() == metric).unwrap();
     match check.bound {
         Bound::Within { at_least: Some(low), at_most: Some(high) } => [low, high],
         _ => panic!("{metric} has no two bounds"),

@@ -172,8 +172,8 @@ impl Made {
         for check in &self.scene.checks {
             let own = check.methods.is_empty() || check.methods.contains(&method.id);
             if own && !check::is_of_many(check) {
-                let (value, band) =
-                    (check::value(check.metric.name, &records), check::band(check.metric.name, &records));
+                let of = check.address;
+                let (value, band) = (check::value(of, &records), check::band(of, &records));
                 self.set.checks.push(check::judge(check, &self.case, &method.id, value, band));
             }
         }

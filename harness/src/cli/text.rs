@@ -172,7 +172,7 @@ pub fn places(outcomes: &[Outcome]) -> String {
     let modes = outcomes.iter().flat_map(|outcome| {
         (1..).zip(&outcome.modes).map(|(number, mode): (usize, _)| {
             let of = |name: &str| {
-                mode.iter().find(|m| m.entry.name == name).map_or("-".into(), |m| digits(m.value))
+                mode.iter().find(|m| m.of.metric.name == name).map_or("-".into(), |m| digits(m.value))
             };
             row(
                 &outcome.identity.method,

@@ -6,7 +6,7 @@ use geometry::Vector3;
 use super::Solved;
 use crate::Failure;
 use crate::discretise::place;
-use crate::outcome::{FaceMean, Outcome, SupportForce, push_numbered};
+use crate::outcome::{FaceMean, Outcome, SupportForce, push};
 
 /// Adds support forces (N) and mean displacements (m) to the outcome, its metrics and its steps.
 pub(crate) fn places(outcome: &mut Outcome, run: &Solved) -> Result<(), Failure> {
@@ -29,12 +29,12 @@ pub(crate) fn places(outcome: &mut Outcome, run: &Solved) -> Result<(), Failure>
     }
     for (index, support) in outcome.supports.iter().enumerate() {
         for axis in (0..3).filter(|&axis| support.axes[axis]) {
-            push_numbered(&mut outcome.metrics, metric::REACTION_PARTS[axis], index, support.force[axis]);
+            push(&mut outcome.metrics, metric::REACTION.components()[axis].at(index), support.force[axis]);
         }
     }
     for (index, face) in outcome.means.iter().enumerate() {
-        for (axis, entry) in metric::MEAN_PARTS.into_iter().enumerate() {
-            push_numbered(&mut outcome.metrics, entry, index, face.u[axis]);
+        for (axis, of) in metric::MEAN.components().into_iter().enumerate() {
+            push(&mut outcome.metrics, of.at(index), face.u[axis]);
         }
     }
     Ok(())

@@ -43,7 +43,7 @@ struct Triangle {
 /// compressed, and longitudinal in a body that is stretched or sheared. With an exact solution, the errors
 /// are known and there is no warning.
 pub(super) fn warning(run: &Solved, metrics: &[Metric]) -> Result<Option<Warning>, Failure> {
-    let jump = metrics.iter().find(|m| *m.entry == metric::STRESS_JUMP).map(|m| m.value);
+    let jump = metrics.iter().find(|m| *m.of.metric == metric::STRESS_JUMP).map(|m| m.value);
     if run.setup.exact.is_some() || run.setup.contact.is_some() || !jump.is_some_and(|jump| jump > EVEN) {
         return Ok(None);
     }

@@ -89,8 +89,8 @@ pub(crate) fn measure(
         errors_in_the_volume(metrics, run, recovered, exact)?;
     }
     errors_at_targets(metrics, run, &field.values, request);
-    for (axis, entry) in [&metric::MAX_X, &metric::MAX_Y, &metric::MAX_Z].into_iter().enumerate() {
-        push(metrics, entry, field.values.iter().fold(0.0, |m: f64, u| m.max(u[axis].abs())));
+    for (axis, of) in metric::MAX.components().into_iter().enumerate() {
+        push(metrics, of, field.values.iter().fold(0.0, |m: f64, u| m.max(u[axis].abs())));
     }
     push(metrics, &metric::MAX, field.values.iter().fold(0.0, |m: f64, u| m.max(u.norm())));
     push(metrics, &metric::TARGETS_OUTSIDE, field.outside as f64);
@@ -119,8 +119,8 @@ pub(crate) fn measure(
         push(metrics, &metric::FINITE_ELEMENT_NODES, coupled.vertices.len() as f64);
     }
     let resultant = prepared.resultant();
-    for (axis, entry) in [&metric::LOAD_X, &metric::LOAD_Y, &metric::LOAD_Z].into_iter().enumerate() {
-        push(metrics, entry, resultant[axis]);
+    for (axis, of) in metric::LOAD.components().into_iter().enumerate() {
+        push(metrics, of, resultant[axis]);
     }
     if let Some(needed) = solution.needed_nitsche_factor {
         push(metrics, &metric::NITSCHE_FACTOR_NEEDED, needed);
@@ -178,13 +178,13 @@ fn errors_in_the_volume(
 fn errors_at_targets(metrics: &mut Vec<Metric>, run: &Solved, field: &[Vector3], request: &Request) {
     let against = against(run, request);
     if let Some(integrated) = request.integrated {
-        push_difference(metrics, INTEGRATION, field, &integrated.targets);
+        push_difference(metrics, &metric::INTEGRATION_RMS, field, &integrated.targets);
         if let Some(against) = &against {
-            push_difference(metrics, DISCRETISATION, &integrated.targets, against);
+            push_difference(metrics, &metric::DISCRETISATION_RMS, &integrated.targets, against);
         }
     }
     if let Some(against) = against {
-        push_difference(metrics, RMS, field, &against);
+        push_difference(metrics, &metric::RMS, field, &against);
         push(metrics, &metric::MAX_ERROR, difference(field, &against).max);
         if let Some(relative) = relative(field, &against) {
             push(metrics, &metric::RELATIVE_RMS, relative.rms);
@@ -193,7 +193,7 @@ fn errors_at_targets(metrics: &mut Vec<Metric>, run: &Solved, field: &[Vector3],
         }
     }
     if let Some(beside) = request.beside {
-        push_difference(metrics, BESIDE, field, &beside.targets);
+        push_difference(metrics, &metric::BESIDE_RMS, field, &beside.targets);
     }
 }
 
@@ -214,33 +214,19 @@ fn against(run: &Solved, request: &Request) -> Option<Vec<Vector3>> {
 pub(crate) fn of_tables(metrics: &mut Vec<Metric>, prepared: &Prepared) {
     push(metrics, &metric::VOLUME, prepared.volume.rows.weights().iter().sum());
     for (entry, value) in &prepared.volume.diagnostics {
-        push(metrics, entry, *value);
+        push(metrics, *entry, *value);
     }
 }
 
-/// Metrics of a difference along x, y and z, and of its magnitude.
-type Difference = [&'static metric::Metric; 4];
-
-const RMS: Difference = [&metric::RMS_X, &metric::RMS_Y, &metric::RMS_Z, &metric::RMS];
-const BESIDE: Difference =
-    [&metric::BESIDE_RMS_X, &metric::BESIDE_RMS_Y, &metric::BESIDE_RMS_Z, &metric::BESIDE_RMS];
-const INTEGRATION: Difference = [
-    &metric::INTEGRATION_RMS_X,
-    &metric::INTEGRATION_RMS_Y,
-    &metric::INTEGRATION_RMS_Z,
-    &metric::INTEGRATION_RMS,
-];
-const DISCRETISATION: Difference = [
-    &metric::DISCRETISATION_RMS_X,
-    &metric::DISCRETISATION_RMS_Y,
-    &metric::DISCRETISATION_RMS_Z,
-    &metric::DISCRETISATION_RMS,
-];
-
 /// Adds the RMS of a difference along each axis and of its magnitude.
-fn push_difference(metrics: &mut Vec<Metric>, entries: Difference, field: &[Vector3], against: &[Vector3]) {
+fn push_difference(
+    metrics: &mut Vec<Metric>,
+    of: &'static metric::Metric,
+    field: &[Vector3],
+    against: &[Vector3],
+) {
     let d = difference(field, against);
-    for (entry, value) in entries.into_iter().zip(d.rms.into_iter().chain([d.rms_magnitude])) {
-        push(metrics, entry, value);
+    for (part, value) in of.parts().into_iter().zip(d.rms.into_iter().chain([d.rms_magnitude])) {
+        push(metrics, part, value);
     }
 }

@@ -60,7 +60,7 @@ pub struct OwnError {
 impl OwnError {
     /// Adds a distance to the estimate. Distances of the same metric are summed.
     pub(crate) fn add(&mut self, distance: Metric) {
-        let same = |m: &&mut Metric| m.entry == distance.entry && m.index == distance.index;
+        let same = |m: &&mut Metric| m.of == distance.of;
         match self.band.iter_mut().find(same) {
             Some(known) => known.value += distance.value,
             None => self.band.push(distance),

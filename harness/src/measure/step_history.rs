@@ -5,7 +5,7 @@ use catalogue::metric;
 
 use super::{Request, Solved};
 use crate::Failure;
-use crate::outcome::{LoadStep, Metric, push, push_numbered};
+use crate::outcome::{LoadStep, Metric, push};
 use crate::procedure::StepHistory;
 
 /// Adds the metrics of a run's history; returns the steps with their probes and errors.
@@ -22,9 +22,9 @@ pub(crate) fn report(
     push(metrics, &metric::LOAD_STEPS, steps.len() as f64);
     metrics.extend(of_procedure);
     for (index, tool) in last.tools.iter().enumerate() {
-        push_numbered(metrics, &metric::CLOSURE, index, tool.closure);
-        push_numbered(metrics, &metric::TOOL_FORCE, index, tool.pushed);
-        push_numbered(metrics, &metric::CONTACT_POINTS, index, tool.active as f64);
+        push(metrics, metric::CLOSURE.at(index), tool.closure);
+        push(metrics, metric::TOOL_FORCE.at(index), tool.pushed);
+        push(metrics, metric::CONTACT_POINTS.at(index), tool.active as f64);
     }
     if let Some(deepest) = last.tools.iter().map(|t| t.penetration).reduce(f64::max) {
         push(metrics, &metric::PENETRATION, deepest);
@@ -48,7 +48,7 @@ pub(crate) fn report(
         }
     }
     if let (Some(exact), Some(tool), None) = (run.setup.contact, last.tools.first(), failure) {
-        push_numbered(metrics, &metric::TOOL_FORCE_ERROR, 0, (tool.pushed / exact.force - 1.0).abs());
+        push(metrics, metric::TOOL_FORCE_ERROR.at(0), (tool.pushed / exact.force - 1.0).abs());
         // ANCHOR: contact_radius_error
         push(metrics, &metric::CONTACT_RADIUS_ERROR, ((tool.area / exact.area).sqrt() - 1.0).abs());
         // ANCHOR_END: contact_radius_error
@@ -81,12 +81,7 @@ fn against(step: &LoadStep, reference: &LoadStep, largest: &Largest) -> Vec<Metr
     let mut metrics = Vec::new();
     for (index, (tool, other)) in step.tools.iter().zip(&reference.tools).enumerate() {
         if other.pushed.abs() > ROUNDING * largest.force {
-            push_numbered(
-                &mut metrics,
-                &metric::TOOL_FORCE_ERROR,
-                index,
-                (tool.pushed / other.pushed - 1.0).abs(),
-            );
+            push(&mut metrics, metric::TOOL_FORCE_ERROR.at(index), (tool.pushed / other.pushed - 1.0).abs());
         }
     }
     let known = reference.strain_energy.filter(|energy| *energy > ROUNDING * largest.energy);

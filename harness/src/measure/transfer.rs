@@ -8,26 +8,13 @@ use geometry::{Point3, Vector3};
 use shape::{RowBlocks, Rows};
 
 use super::norms::difference;
-use super::{BESIDE, Difference, RMS, Request, Solved, push_difference};
+use super::{Request, Solved, push_difference};
 use crate::Failure;
 use crate::outcome::timing::Timings;
 use crate::outcome::{Counters, Metric, SchemeSettings, Transfer, Warning, push};
 
 /// Name of the method's own shape functions among the schemes; they need no transfer.
 pub const OWN_ROWS: &str = "own-rows";
-
-const TRANSFER_ONLY: Difference = [
-    &metric::TRANSFER_ONLY_RMS_X,
-    &metric::TRANSFER_ONLY_RMS_Y,
-    &metric::TRANSFER_ONLY_RMS_Z,
-    &metric::TRANSFER_ONLY_RMS,
-];
-const BESIDE_TRANSFER: Difference = [
-    &metric::BESIDE_TRANSFER_RMS_X,
-    &metric::BESIDE_TRANSFER_RMS_Y,
-    &metric::BESIDE_TRANSFER_RMS_Z,
-    &metric::BESIDE_TRANSFER_RMS,
-];
 
 /// Difference from the cloud's own displacement above which a target with nodes across a gap counts, relative
 /// to the largest displacement of the targets.
@@ -74,20 +61,20 @@ pub fn transfers(
             bridged.extend(Bridged::new(name, rows.rows(), &across, &field, &own));
             let mut metrics = Vec::new();
             if let Some(reference) = request.reference {
-                push_difference(&mut metrics, RMS, &field, &reference.targets);
+                push_difference(&mut metrics, &metric::RMS, &field, &reference.targets);
                 push(&mut metrics, &metric::MAX_ERROR, difference(&field, &reference.targets).max);
                 if let Some(at) = &reference.at {
                     let moved = rows.rows().apply(&at(nodes)?);
-                    push_difference(&mut metrics, TRANSFER_ONLY, &moved, &reference.targets);
+                    push_difference(&mut metrics, &metric::TRANSFER_ONLY_RMS, &moved, &reference.targets);
                 }
             }
             if let Some(beside) = request.beside {
-                push_difference(&mut metrics, BESIDE, &field, &beside.targets);
+                push_difference(&mut metrics, &metric::BESIDE_RMS, &field, &beside.targets);
                 // The other method's field, evaluated at this cloud's nodes and interpolated back, isolates
                 // the error of the transfer.
                 if let Some(at) = &beside.at {
                     let moved = rows.rows().apply(&at(nodes)?);
-                    push_difference(&mut metrics, BESIDE_TRANSFER, &moved, &beside.targets);
+                    push_difference(&mut metrics, &metric::BESIDE_TRANSFER_RMS, &moved, &beside.targets);
                 }
             }
             let change = difference(&field, &own);
@@ -103,11 +90,11 @@ pub fn transfers(
             let (_, timing) = timed(request, build, |(rows, _)| rows.rows(), u)?;
             let mut metrics = Vec::new();
             if let Some(reference) = request.reference {
-                push_difference(&mut metrics, RMS, &own, &reference.targets);
+                push_difference(&mut metrics, &metric::RMS, &own, &reference.targets);
                 push(&mut metrics, &metric::MAX_ERROR, difference(&own, &reference.targets).max);
             }
             if let Some(beside) = request.beside {
-                push_difference(&mut metrics, BESIDE, &own, &beside.targets);
+                push_difference(&mut metrics, &metric::BESIDE_RMS, &own, &beside.targets);
             }
             Ok(transfer(OWN_ROWS, SchemeSettings::default(), metrics, timing, request))
         }))

@@ -66,7 +66,7 @@ pub(crate) fn warnings(
     found.extend(few_points(run));
     found.extend(unbalanced(run));
     found.extend(another_problem(run));
-    let value = |entry: &metric::Metric| metrics.iter().find(|m| m.entry == entry).map(|m| m.value);
+    let value = |entry: &metric::Metric| metrics.iter().find(|m| m.of.metric == entry).map(|m| m.value);
     let largest = largest_displacement(run);
     found.extend(long_step(run, value(&metric::STEP_ERROR), largest));
     found.extend(giving(value(&metric::SUPPORT_GAP), largest));
@@ -198,7 +198,7 @@ fn long_step(run: &Solved, error: Option<f64>, largest: f64) -> Option<Warning> 
 fn is_at_rest(run: &Solved) -> bool {
     let Some(history) = &run.solution.history else { return true };
     let kinetic =
-        |step: &LoadStep| step.more.iter().find(|m| *m.entry == metric::KINETIC_ENERGY).map(|m| m.value);
+        |step: &LoadStep| step.more.iter().find(|m| *m.of.metric == metric::KINETIC_ENERGY).map(|m| m.value);
     let most = history.steps.iter().filter_map(kinetic).fold(0.0, f64::max);
     kinetic(&history.last).is_some_and(|last| last < AT_REST * most)
 }

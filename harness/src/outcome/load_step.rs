@@ -90,7 +90,7 @@ pub struct LoadStep {
 impl LoadStep {
     /// Time in dynamics, s.
     pub fn time(&self) -> Option<f64> {
-        self.more.iter().find(|m| *m.entry == metric::TIME).map(|m| m.value)
+        self.more.iter().find(|m| *m.of.metric == metric::TIME).map(|m| m.value)
     }
 
     /// State before any load is applied.

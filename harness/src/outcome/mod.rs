@@ -12,7 +12,8 @@ pub(crate) mod timing;
 mod warning;
 mod watch;
 
-use catalogue::{Values, metric};
+use catalogue::Values;
+use catalogue::metric::{self, Address};
 use geometry::{Matrix3, Point3, Vector3};
 use records::{Record, Reference, SurfaceField};
 
@@ -80,47 +81,31 @@ pub struct Size {
 /// Metric of a run. Only metrics of the catalogue can be recorded.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Metric {
-    /// Entry of the catalogue.
-    pub entry: &'static metric::Metric,
-    /// Index of the tool, support or face, if the metric is given for each of them; 0 otherwise.
-    pub index: usize,
+    /// Entry of the catalogue, component, and number of the tool, support or face.
+    pub of: Address,
     /// Value in SI units.
     pub value: f64,
 }
 
 impl Metric {
-    pub(crate) fn new(entry: &'static metric::Metric, value: f64) -> Metric {
-        Metric { entry, index: 0, value }
+    pub(crate) fn new(of: impl Into<Address>, value: f64) -> Metric {
+        Metric { of: of.into(), value }
     }
 
-    pub(crate) fn numbered(entry: &'static metric::Metric, index: usize, value: f64) -> Metric {
-        Metric { entry, index, value }
-    }
-
-    /// Name in records and checks.
+    /// Name in checks and on a terminal.
     pub fn name(&self) -> String {
-        self.entry.numbered(self.index)
+        self.of.to_string()
     }
 
     /// SI unit; `1` for a dimensionless number.
     pub fn unit(&self) -> &'static str {
-        self.entry.unit()
+        self.of.metric.unit()
     }
 }
 
 /// Adds a metric to a list.
-pub(crate) fn push(metrics: &mut Vec<Metric>, entry: &'static metric::Metric, value: f64) {
-    metrics.push(Metric::new(entry, value));
-}
-
-/// Adds a metric of one tool, support or face to a list.
-pub(crate) fn push_numbered(
-    metrics: &mut Vec<Metric>,
-    entry: &'static metric::Metric,
-    tool: usize,
-    value: f64,
-) {
-    metrics.push(Metric::numbered(entry, tool, value));
+pub(crate) fn push(metrics: &mut Vec<Metric>, of: impl Into<Address>, value: f64) {
+    metrics.push(Metric::new(of, value));
 }
 
 /// Displacement and stress at a probe.
@@ -268,8 +253,9 @@ impl Outcome {
         self.phases.iter().find(|timed| timed.phase == "total")
     }
 
-    /// Value of a metric by name.
+    /// Value of a metric by name, such as `rms-x` or `tool-force-2`.
     pub fn metric(&self, name: &str) -> Option<f64> {
-        self.metrics.iter().find(|m| m.name() == name).map(|m| m.value)
+        let of = metric::find(name)?;
+        self.metrics.iter().find(|m| m.of == of).map(|m| m.value)
     }
 }

@@ -5,7 +5,7 @@ use catalogue::metric;
 use records::{Family, PlanEntry, Record};
 
 use super::timing::{Summary, Timed};
-use super::{LoadStep, Metric, Outcome, SchemeSettings, Transfer, push, push_numbered};
+use super::{LoadStep, Metric, Outcome, SchemeSettings, Transfer, push};
 
 impl Outcome {
     /// Rows of the run in the long table.
@@ -15,8 +15,7 @@ impl Outcome {
         rows.extend(self.metrics.iter().filter_map(|m| self.band(&own, m)));
         self.phases.iter().for_each(|timed| rows.extend(times(&own, timed)));
         for latency in &self.latencies {
-            let phase =
-                Record { quantity: metric::TIME.name.into(), phase: latency.phase.into(), ..own.clone() };
+            let phase = Record { phase: latency.phase.into(), ..own.clone() }.with(&metric::TIME);
             rows.extend(latency.statistics().into_iter().map(|(statistic, unit, value)| Record {
                 unit: unit.into(),
                 statistic: statistic.into(),
@@ -66,8 +65,8 @@ impl Outcome {
         let start = at(0);
         if !self.steps.is_empty() {
             for index in 0..self.tools.len() {
-                rows.push(number(&start, &Metric::numbered(&metric::CLOSURE, index, 0.0)));
-                rows.push(number(&start, &Metric::numbered(&metric::TOOL_FORCE, index, 0.0)));
+                rows.push(number(&start, &Metric::new(metric::CLOSURE.at(index), 0.0)));
+                rows.push(number(&start, &Metric::new(metric::TOOL_FORCE.at(index), 0.0)));
             }
         }
         // Dynamics starts at rest and undeformed: time and energies are zero.
@@ -76,7 +75,7 @@ impl Outcome {
                 rows.push(number(&start, &Metric::new(&metric::STRAIN_ENERGY, 0.0)));
             }
             for known in first.more.iter().filter(|m| m.unit() == "s" || m.unit() == "J") {
-                rows.push(number(&start, &Metric::new(known.entry, 0.0)));
+                rows.push(number(&start, &Metric::new(known.of, 0.0)));
             }
         }
         for (index, step) in self.steps.iter().enumerate() {
@@ -95,18 +94,18 @@ impl Outcome {
             push(&mut all, &metric::NEWTON_ITERATIONS, step.iterations as f64);
         }
         for (index, tool) in step.tools.iter().enumerate() {
-            push_numbered(&mut all, &metric::CLOSURE, index, tool.closure);
-            push_numbered(&mut all, &metric::TOOL_FORCE, index, tool.pushed);
-            push_numbered(&mut all, &metric::CONTACT_POINTS, index, tool.active as f64);
+            push(&mut all, metric::CLOSURE.at(index), tool.closure);
+            push(&mut all, metric::TOOL_FORCE.at(index), tool.pushed);
+            push(&mut all, metric::CONTACT_POINTS.at(index), tool.active as f64);
         }
         for (index, (support, force)) in self.supports.iter().zip(&step.supports).enumerate() {
             for axis in (0..3).filter(|&axis| support.axes[axis]) {
-                push_numbered(&mut all, metric::REACTION_PARTS[axis], index, force[axis]);
+                push(&mut all, metric::REACTION.components()[axis].at(index), force[axis]);
             }
         }
         for (index, u) in step.means.iter().enumerate() {
-            for (axis, entry) in metric::MEAN_PARTS.into_iter().enumerate() {
-                push_numbered(&mut all, entry, index, u[axis]);
+            for (axis, of) in metric::MEAN.components().into_iter().enumerate() {
+                push(&mut all, of.at(index), u[axis]);
             }
         }
         all.extend(step.more.iter().chain(&step.against));
@@ -193,33 +192,28 @@ fn digest(text: &str) -> String {
 
 /// Row of a metric's value.
 fn number(row: &Record, metric: &Metric) -> Record {
-    Record {
-        quantity: metric.name(),
-        unit: metric.unit().into(),
-        statistic: "value".into(),
-        value: metric.value,
-        ..row.clone()
-    }
+    Record { statistic: "value".into(), value: metric.value, ..row.clone() }.with(metric.of)
 }
 
 /// Rows of a phase's times: wall-clock and CPU time of every repeat, and their statistics.
 fn times(row: &Record, timed: &Timed) -> Vec<Record> {
-    let of = |quantity: &str, statistic: &str, repeat: Option<usize>, value: f64| Record {
-        quantity: quantity.into(),
-        unit: "s".into(),
-        phase: timed.phase.into(),
-        statistic: statistic.into(),
-        repeat: repeat.map(|r| r as u64 + 1),
-        value,
-        ..row.clone()
+    let of = |kind: &'static metric::Metric, statistic: &str, repeat: Option<usize>, value: f64| {
+        let row = Record {
+            phase: timed.phase.into(),
+            statistic: statistic.into(),
+            repeat: repeat.map(|r| r as u64 + 1),
+            value,
+            ..row.clone()
+        };
+        row.with(kind)
     };
     let Summary { median, spread, min } = timed.summary();
     let mut rows: Vec<Record> = [("median", median), ("spread", spread), ("min", min)]
-        .map(|(statistic, value)| of("time", statistic, None, value))
+        .map(|(statistic, value)| of(&metric::TIME, statistic, None, value))
         .into();
-    rows.extend(timed.cpu_median().map(|median| of("cpu-time", "median", None, median)));
-    for (quantity, all) in [("time", &timed.wall), ("cpu-time", &timed.cpu)] {
-        rows.extend(all.iter().enumerate().map(|(r, &value)| of(quantity, "repeat", Some(r), value)));
+    rows.extend(timed.cpu_median().map(|median| of(&metric::CPU_TIME, "median", None, median)));
+    for (kind, all) in [(&metric::TIME, &timed.wall), (&metric::CPU_TIME, &timed.cpu)] {
+        rows.extend(all.iter().enumerate().map(|(r, &value)| of(kind, "repeat", Some(r), value)));
     }
     rows
 }

@@ -13,7 +13,7 @@ use super::relaxation::{self, Relaxed, Start};
 use super::{Problem, Solution, Stages, StepHistory, newton_reason};
 use crate::Failure;
 use crate::discretise::Discretisation;
-use crate::outcome::{Counters, LoadStep, Meters, Metric, StageName, ToolStep, push, push_numbered};
+use crate::outcome::{Counters, LoadStep, Meters, Metric, StageName, ToolStep, push};
 use crate::prepare::{ConditionForces, Prepared};
 use crate::scenario::setup::Setup;
 
@@ -184,8 +184,8 @@ fn metrics(
     if let Some(limit) = limit {
         push(&mut metrics, &metric::LIMIT_LOAD, limit.load);
         for (index, tool) in limit.tools.iter().enumerate() {
-            push_numbered(&mut metrics, &metric::LIMIT_CLOSURE, index, tool.closure);
-            push_numbered(&mut metrics, &metric::LIMIT_TOOL_FORCE, index, tool.pushed);
+            push(&mut metrics, metric::LIMIT_CLOSURE.at(index), tool.closure);
+            push(&mut metrics, metric::LIMIT_TOOL_FORCE.at(index), tool.pushed);
         }
     }
     push(&mut metrics, &metric::NEWTON_ITERATIONS, iterations as f64);

@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use cases::scene::{ErrorKind, Scene};
-use catalogue::metric;
+use catalogue::metric::{self, Address};
 use geometry::{Point3, Vector3};
 use records::{Family, Record};
 use serde::{Deserialize, Serialize};
@@ -14,7 +14,7 @@ use serde::{Deserialize, Serialize};
 use super::symmetry::Mirror;
 use crate::Failure;
 use crate::measure::{OwnError, Reference, norms};
-use crate::outcome::{LoadStep, ToolStep, provenance, push, push_numbered, run_id};
+use crate::outcome::{LoadStep, ToolStep, provenance, push, run_id};
 
 /// Stored reference, a JSON file. Lengths in m, forces in N.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -269,7 +269,7 @@ impl Stored {
         for (index, tool) in self.steps.iter().last().iter().flat_map(|step| &step.tools).enumerate() {
             if tool.force != 0.0 {
                 let farthest = (tool.high - tool.force).max(tool.force - tool.low);
-                push_numbered(&mut own.band, &metric::TOOL_FORCE_ERROR, index, farthest / tool.force.abs());
+                push(&mut own.band, metric::TOOL_FORCE_ERROR.at(index), farthest / tool.force.abs());
             }
         }
         own
@@ -289,18 +289,17 @@ impl Stored {
         let own = Record { run: run_id(&own), ..own };
         let mut rows = Vec::new();
         for (number, step) in self.steps.iter().enumerate() {
-            let mut push = |quantity: String, unit: &str, statistic: &str, value: f64| {
-                let (unit, statistic) = (unit.into(), statistic.into());
-                let step = Some(number as u64 + 1);
-                rows.push(Record { quantity, unit, step, statistic, value, ..own.clone() });
+            let here = Record { step: Some(number as u64 + 1), ..own.clone() };
+            let mut push = |of: Address, statistic: &str, value: f64| {
+                rows.push(Record { statistic: statistic.into(), value, ..here.clone() }.with(of));
             };
             for (index, tool) in step.tools.iter().enumerate() {
-                push(metric::CLOSURE.numbered(index), metric::CLOSURE.unit(), "value", tool.closure);
+                push(metric::CLOSURE.at(index), "value", tool.closure);
                 for (statistic, value) in [("value", tool.force), ("low", tool.low), ("high", tool.high)] {
-                    push(metric::TOOL_FORCE.numbered(index), metric::TOOL_FORCE.unit(), statistic, value);
+                    push(metric::TOOL_FORCE.at(index), statistic, value);
                 }
             }
-            push(metric::PROBE_BAND.name.into(), metric::PROBE_BAND.unit(), "value", step.probe_band);
+            push(metric::PROBE_BAND.whole(), "value", step.probe_band);
         }
         rows
     }

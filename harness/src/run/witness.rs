@@ -74,12 +74,13 @@ fn distances(
 
 /// Whether a number is a relative error against the reference.
 fn is_error(metric: &Metric) -> bool {
+    let of = metric.of.metric;
     let against = matches!(
-        metric.entry.needs,
+        of.needs,
         Needs::Reference | Needs::ToolReference | Needs::StepsReference | Needs::ProbesReference
     );
-    let error = metric.entry.kind == Kind::Error || *metric.entry == metric::TOOL_FORCE_ERROR;
-    against && error && metric.entry.dimension == Dimension::None
+    let error = of.kind == Kind::Error || *of == metric::TOOL_FORCE_ERROR;
+    against && error && of.dimension == Dimension::None
 }
 
 /// Methods that a reference with this number of nodes is compared with, or the reason why there are none.

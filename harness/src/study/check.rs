@@ -1,61 +1,60 @@
 //! Checks of bounds on metrics of one run, or of a family of runs at several levels.
 
 use cases::scene::{Bound, Check};
-use catalogue::metric::{self, Needs};
+use catalogue::metric::{self, Address, Metric, Needs};
 use records::{Check as Verdict, Family, Record, Status};
 
-/// Value of a metric among the records of one run, SI units; `None` if there is no such record.
-pub fn value(metric: &str, records: &[Record]) -> Option<f64> {
+/// Value of a number among the records of one run, SI units; `None` if there is no such record.
+pub fn value(of: Address, records: &[Record]) -> Option<f64> {
     let own = |r: &&Record| r.family != Family::Interp;
-    if let Some(phase) = metric.strip_prefix("time-") {
-        let median = |r: &&Record| r.quantity == "time" && r.phase == phase && r.statistic == "median";
+    if let Some(phase) = of.metric.name.strip_prefix("time-") {
+        let median = |r: &&Record| r.is(&metric::TIME) && r.phase == phase && r.statistic == "median";
         return records.iter().filter(own).find(median).map(|r| r.value);
     }
-    if metric == "transfer-rms" {
+    if *of.metric == metric::TRANSFER_RMS {
         // The largest error of all requested schemes.
-        return records.iter().filter(|r| r.quantity == metric).map(|r| r.value).reduce(f64::max);
+        return records.iter().filter(|r| r.is(of)).map(|r| r.value).reduce(f64::max);
     }
-    let quantity = if metric == "condition" { "condition-max" } else { metric };
     let plain = |r: &&Record| {
         let whole = r.phase.is_empty() && r.step.is_none() && r.mode.is_none();
-        whole && r.quantity == quantity && r.statistic == "value"
+        whole && r.is(of) && r.statistic == "value"
     };
     records.iter().filter(own).find(plain).map(|r| r.value)
 }
 
-/// Own error of the reference in a metric, among the records of one run; `None` if it is unknown.
-pub fn band(metric: &str, records: &[Record]) -> Option<f64> {
-    records.iter().find(|r| r.quantity == metric && r.statistic == "band").map(|r| r.value)
+/// Own error of the reference in a number, among the records of one run; `None` if it is unknown.
+pub fn band(of: Address, records: &[Record]) -> Option<f64> {
+    records.iter().find(|r| r.is(of) && r.statistic == "band").map(|r| r.value)
 }
 
-/// Observed order between the two finest levels of a family of runs, each given by its records. The quantity
-/// is the metric without its prefix `order-`.
-pub fn order(metric: &str, family: &[&[Record]]) -> Option<f64> {
-    let quantity = metric.strip_prefix("order-")?;
+/// Observed order between the two finest levels of a family of runs, each given by its records. The error is
+/// the metric without its prefix `order-`.
+fn order(metric: &Metric, family: &[&[Record]]) -> Option<f64> {
+    let error = metric::find(metric.name.strip_prefix("order-")?)?;
     let mut points: Vec<(f64, f64)> =
-        family.iter().filter_map(|run| Some((run.first()?.spacing, value(quantity, run)?))).collect();
+        family.iter().filter_map(|run| Some((run.first()?.spacing, value(error, run)?))).collect();
     points.sort_by(|a, b| b.0.total_cmp(&a.0));
     reports::observed_order(&points)?.pairs.last().copied()
 }
 
 /// Value of a metric of several runs, each given by its records: an order of levels, or the fraction of
 /// clouds that reached the load.
-pub fn of_many(metric: &str, runs: &[&[Record]]) -> Option<f64> {
-    if metric == metric::CARRIED_SHARE.name {
+pub fn of_many(of: Address, runs: &[&[Record]]) -> Option<f64> {
+    if *of.metric == metric::CARRIED_SHARE {
         let carried = runs.iter().filter(|records| carried(records)).count();
         return (!runs.is_empty()).then(|| carried as f64 / runs.len() as f64);
     }
-    order(metric, runs)
+    order(of.metric, runs)
 }
 
 /// Whether a run has results and reached the whole load. A procedure without load steps always reaches it.
 pub fn carried(records: &[Record]) -> bool {
-    !records.is_empty() && value(metric::LOAD_CARRIED.name, records).is_none_or(|load| load > 0.999_999)
+    !records.is_empty() && value(metric::LOAD_CARRIED.whole(), records).is_none_or(|load| load > 0.999_999)
 }
 
 /// Whether the check concerns several runs together: a family of levels, or clouds of many seeds.
 pub fn is_of_many(check: &Check) -> bool {
-    matches!(check.metric.needs, Needs::Levels | Needs::Seeds)
+    matches!(check.address.metric.needs, Needs::Levels | Needs::Seeds)
 }
 
 /// Verdict on one value. A missing value fails, because the guarded quantity no longer exists. `band` is the
@@ -86,7 +85,7 @@ pub fn judge(check: &Check, case: &str, method: &str, value: Option<f64>, band: 
     Verdict {
         case: case.into(),
         method: method.into(),
-        metric: check.metric.name.into(),
+        metric: check.address.to_string(),
         value: value.filter(|v| v.is_finite()),
         bound,
         status,
@@ -115,7 +114,7 @@ mod tests {
     use super::*;
 
     fn status(bound: Bound, value: Option<f64>) -> Status {
-        let check = Check { metric: &metric::L2, methods: vec![], bound, at: String::new() };
+        let check = Check { address: metric::L2.whole(), methods: vec![], bound, at: String::new() };
         let verdict = judge(&check, "block", "tet4", value, None);
         assert_eq!(verdict.reason.is_empty(), verdict.status == Status::Pass, "{}", verdict.reason);
         assert!(verdict.value.is_none_or(f64::is_finite));
@@ -143,7 +142,8 @@ mod tests {
     #[test]
     fn a_bound_below_the_own_error_of_the_reference_is_said_to_prove_nothing() {
         let bound = Bound::Within { at_least: None, at_most: Some(0.02) };
-        let check = Check { metric: &metric::RELATIVE_RMS, methods: vec![], bound, at: String::new() };
+        let check =
+            Check { address: metric::RELATIVE_RMS.whole(), methods: vec![], bound, at: String::new() };
         for (value, own, status) in [
             (0.01, None, Status::Pass),
             (0.01, Some(0.02), Status::Pass),
@@ -155,12 +155,11 @@ mod tests {
             assert_eq!((verdict.status, unproven), (status, own == Some(0.05)), "{}", verdict.reason);
         }
         let record = |statistic: &str, value| {
-            let (quantity, statistic) = ("relative-rms".to_string(), statistic.to_string());
-            Record { quantity, statistic, value, ..Record::default() }
+            Record { statistic: statistic.into(), value, ..Record::default() }.with(&metric::RELATIVE_RMS)
         };
         let records = [record("value", 0.01), record("band", 0.05)];
-        let found =
-            (value("relative-rms", &records), band("relative-rms", &records), band("peak-error", &records));
+        let of = metric::RELATIVE_RMS.whole();
+        let found = (value(of, &records), band(of, &records), band(metric::PEAK_ERROR.whole(), &records));
         assert_eq!(found, (Some(0.01), Some(0.05), None));
     }
 
@@ -178,22 +177,23 @@ mod tests {
     #[test]
     fn the_share_counts_clouds_without_numbers_and_those_that_stalled() {
         let cloud = |load: f64| {
-            let (quantity, statistic) = ("load-carried".to_string(), "value".to_string());
-            vec![Record { family: Family::Efg, quantity, statistic, value: load, ..Record::default() }]
+            let record =
+                Record { family: Family::Efg, statistic: "value".into(), value: load, ..Record::default() };
+            vec![record.with(&metric::LOAD_CARRIED)]
         };
         let clouds = [cloud(1.0), cloud(0.99), vec![], cloud(1.0)];
         let clouds = clouds.each_ref().map(Vec::as_slice);
-        assert_eq!(of_many("carried-share", &clouds), Some(0.5));
-        assert_eq!(of_many("carried-share", &[]), None);
+        assert_eq!(of_many(metric::CARRIED_SHARE.whole(), &clouds), Some(0.5));
+        assert_eq!(of_many(metric::CARRIED_SHARE.whole(), &[]), None);
         // A linear problem has no steps.
-        let linear = [Record { quantity: "rms".into(), statistic: "value".into(), ..Record::default() }];
-        assert_eq!(of_many("carried-share", &[&linear]), Some(1.0));
+        let linear = [Record { statistic: "value".into(), ..Record::default() }.with(&metric::RMS)];
+        assert_eq!(of_many(metric::CARRIED_SHARE.whole(), &[&linear]), Some(1.0));
     }
 
     #[test]
     fn a_check_of_a_run_that_failed_was_not_run() {
         let bound = Bound::Within { at_least: None, at_most: Some(1.0) };
-        let check = Check { metric: &metric::L2, methods: vec![], bound, at: String::new() };
+        let check = Check { address: metric::L2.whole(), methods: vec![], bound, at: String::new() };
         let verdict = not_run(&check, "block", "tet4", "no support");
         assert_eq!(
             (verdict.status, verdict.reason.as_str(), verdict.value),

@@ -363,12 +363,12 @@ impl Plan {
         let label = label(task, &result.records, self.is_one_of_many(task));
         self.checks(task)
             .filter(|check| !check::is_of_many(check))
-            .map(|check| match (check::value(check.metric.name, &result.records), &result.failure) {
+            .map(|check| match (check::value(check.address, &result.records), &result.failure) {
                 (None, Some((failure, _))) => {
                     check::not_run(check, &case_name(scene), &label, &failure.reason)
                 }
                 (value, _) => {
-                    let band = check::band(check.metric.name, &result.records);
+                    let band = check::band(check.address, &result.records);
                     check::judge(check, &case_name(scene), &label, value, band)
                 }
             })
@@ -410,7 +410,7 @@ impl Plan {
             let own = |c: &&Check| c.methods.is_empty() || c.methods.contains(&first.method.id);
             for check in self.study.runs[*run].checks.iter().filter(own).filter(|c| check::is_of_many(c)) {
                 let records: Vec<&[Record]> = members.iter().map(|member| &member.records[..]).collect();
-                let value = check::of_many(check.metric.name, &records);
+                let value = check::of_many(check.address, &records);
                 let failed = members.iter().find_map(|member| member.failure.as_ref());
                 verdicts.push(match (value, failed) {
                     (None, Some((failure, _))) => check::not_run(check, &case, &label, &failure.reason),

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use cases::scene::{ErrorKind, Scene};
+use catalogue::metric;
 use records::{Check, Record};
 
 use super::task::TaskResult;
@@ -31,7 +32,7 @@ pub struct RunSummary {
 
 /// Time of one pass over a run (s): the median of its repeats.
 pub(super) fn seconds(result: &TaskResult) -> f64 {
-    let total = |r: &&Record| r.quantity == "time" && r.phase == "total" && r.statistic == "median";
+    let total = |r: &&Record| r.is(&metric::TIME) && r.phase == "total" && r.statistic == "median";
     result.records.iter().find(total).map_or(0.0, |r| r.value)
 }
 

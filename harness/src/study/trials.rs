@@ -23,7 +23,7 @@ pub(super) fn empty(case: &str, axis: &scene::Axis) -> Axis {
         unit: axis.unit.clone(),
         values: axis.values.clone(),
         base: axis.base,
-        judge: axis.judge.name.into(),
+        judge: axis.judge.to_string(),
         wrong: axis.wrong,
         trials: Vec::new(),
     }
@@ -40,7 +40,7 @@ pub(super) fn trial(method: &str, value: f64, axis: &scene::Axis, result: &TaskR
         method: method.into(),
         value,
         ended,
-        error: check::value(axis.judge.name, &result.records),
+        error: check::value(axis.judge, &result.records),
         warnings: result.warnings.iter().map(|w| w.code.clone()).collect(),
         reason,
     }
@@ -61,7 +61,7 @@ pub(super) fn refused(method: &str, refused: &RefusedScene) -> Trial {
 /// Checks, one per method, that no run is wrong without a warning.
 pub(super) fn verdicts(axis: &Axis) -> Vec<Verdict> {
     let check = Check {
-        metric: &metric::SILENT_WRONG,
+        address: metric::SILENT_WRONG.whole(),
         methods: Vec::new(),
         at: String::new(),
         bound: Bound::Within { at_least: None, at_most: Some(0.0) },

@@ -7,6 +7,7 @@ use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::process::Command;
 
+use catalogue::metric::{Address, METRICS};
 use serde_json::Value;
 
 use crate::root;
@@ -32,7 +33,7 @@ pub fn compare_or_write() {
     );
 }
 
-fn pages() -> [(&'static str, String); 4] {
+fn pages() -> [(&'static str, String); 5] {
     let scene = keys(
         "Keys of a scene",
         "Every key of a scene file, generated from its schema (`tissuebench schema`).",
@@ -53,7 +54,35 @@ fn pages() -> [(&'static str, String); 4] {
     for verb in verbs(&help) {
         write!(commands, "\n## `{verb}`\n\n```text\n{}```\n", printed(&[verb, "--help"])).expect("a string");
     }
-    [("scene.md", scene), ("study.md", study), ("names.md", names), ("commands.md", commands)]
+    [
+        ("scene.md", scene),
+        ("study.md", study),
+        ("names.md", names),
+        ("commands.md", commands),
+        ("numbers.md", numbers()),
+    ]
+}
+
+/// Names of numbers with a component or an index, and the columns that hold them.
+fn numbers() -> String {
+    let mut text = String::from(
+        "# Names of numbers\n\n\
+         A check, a baseline and a message name a number in one word: the metric, its component, and the number of \
+         its tool, support or face from 2 on. Records have a column for each of the three. Tables of older \
+         programs, without the columns `component` and `index`, have the whole name as their `quantity` and are read \
+         by this map. All other metrics are numbers of the whole run, without component and index.\n\n\
+         | name | `quantity` | `component` | `index` |\n| --- | --- | --- | --- |\n",
+    );
+    let of_run = |of: &Address| of.component.is_empty() && of.index.is_none();
+    for first in METRICS.iter().flat_map(|metric| metric.addresses()).filter(|of| !of_run(of)) {
+        let second = first.index.map(|_| first.at(1));
+        for of in [first].into_iter().chain(second) {
+            let index = of.index.map_or(String::new(), |index| index.to_string());
+            let component = of.component;
+            writeln!(text, "| `{of}` | `{}` | {component} | {index} |", of.metric.name).expect("a string");
+        }
+    }
+    text
 }
 
 /// Commands that the program's help lists.

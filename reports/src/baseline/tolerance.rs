@@ -17,15 +17,13 @@ struct Rule {
     absolute: f64,
 }
 
-static RULES: [Rule; 6] = [
+static RULES: [Rule; 4] = [
     // A residual below the solver's tolerance is rounding.
     Rule { quantity: &metric::RESIDUAL, relative: 0.0, absolute: 1e-6 },
     // A residual close to its tolerance may take another iteration.
     Rule { quantity: &metric::NEWTON_ITERATIONS, relative: 0.1, absolute: 2.0 },
     // Shear on a section sums to rounding, 1e-17 N from 1e-2 N on each half, and the run has no other force.
-    Rule { quantity: &metric::LOAD_X, relative: RELATIVE, absolute: 1e-14 },
-    Rule { quantity: &metric::LOAD_Y, relative: RELATIVE, absolute: 1e-14 },
-    Rule { quantity: &metric::LOAD_Z, relative: RELATIVE, absolute: 1e-14 },
+    Rule { quantity: &metric::LOAD, relative: RELATIVE, absolute: 1e-14 },
     // An ordering breaks ties by the order in which they are met.
     Rule { quantity: &metric::FACTOR_NONZEROS, relative: 0.01, absolute: 0.0 },
 ];
@@ -36,8 +34,8 @@ const ROUNDING: f64 = 1e-9;
 /// Whether two values of a quantity, named with its unit (`load-x [N]`), may come from the same method on two
 /// processors. `scale` is the largest number of the unit in the run, or 1 for pure numbers.
 pub(super) fn close(quantity: &str, scale: f64, before: f64, now: f64) -> bool {
-    let name = quantity.split(' ').next();
-    let (relative, absolute) = match RULES.iter().find(|rule| name == Some(rule.quantity.name)) {
+    let metric = quantity.split(' ').next().and_then(metric::find).map(|of| of.metric);
+    let (relative, absolute) = match RULES.iter().find(|rule| metric == Some(rule.quantity)) {
         Some(rule) => (rule.relative, rule.absolute),
         None => (RELATIVE, 0.0),
     };

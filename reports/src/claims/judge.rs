@@ -1,11 +1,11 @@
 //! Verdict of results on a claim: its relations between two sides of methods, case by case.
 
-use catalogue::metric;
+use catalogue::metric::Metric;
 use records::text::{list, percent, significant};
 use records::{Family, Record, RunSet};
 use serde::Deserialize;
 
-use super::{Claim, ClaimVerdict, tested};
+use super::{Claim, ClaimVerdict, Named, tested};
 use crate::busy::decide;
 use crate::fronts::{Clock, is_unanswerable, judged};
 use crate::select::{Run, chosen, runs, solved};
@@ -53,8 +53,8 @@ enum Kind {
 #[serde(deny_unknown_fields)]
 pub(super) struct Relation {
     kind: Kind,
-    /// Name of the relative error in records.
-    error: String,
+    /// Relative error in records.
+    error: Named,
     at_most: f64,
     /// Relative tolerance of the bound.
     #[serde(default)]
@@ -100,8 +100,8 @@ impl Claim {
     }
 
     /// Name, time and error of the runs of one side in a case; none if the case prescribes the result.
-    fn points<'a>(&self, side: &Side, runs: &[Run<'a>], error: &str) -> Vec<(&'a str, Point)> {
-        let like = |run: &&Run| side.takes(run.is) && self.needs.iter().all(|quantity| run.has(quantity));
+    fn points<'a>(&self, side: &Side, runs: &[Run<'a>], error: &'static Metric) -> Vec<(&'a str, Point)> {
+        let like = |run: &&Run| side.takes(run.is) && self.needs.iter().all(|quantity| run.has(quantity.0));
         let point = |run: &Run<'a>| Some((run.name(), judged(run, error, Clock::First)?));
         let answered = if is_unanswerable(error, runs) { &[] } else { runs };
         answered.iter().filter(like).filter_map(point).collect()
@@ -110,7 +110,7 @@ impl Claim {
     /// The comparison of the runs of one case, `None` if they have no times and errors to compare.
     fn finding(&self, runs: &[Run]) -> Option<String> {
         let [left, right] = [&self.left, &self.right].map(|side| {
-            let of = |relation: &Relation| self.points(side, runs, &relation.error);
+            let of = |relation: &Relation| self.points(side, runs, relation.error.0.metric);
             let mut names: Vec<String> =
                 self.relation.iter().flat_map(of).map(|(name, _)| name.to_string()).collect();
             names.sort();
@@ -155,17 +155,21 @@ enum Held {
 }
 
 impl Relation {
-    /// Whether the bound and its tolerance are in range.
+    /// Whether the error has no component, and the bound and its tolerance are in range.
     pub(super) fn sound(&self) -> bool {
-        self.at_most > 0.0 && self.at_most.is_finite() && self.tolerance >= 0.0
+        self.error.0 == self.error.0.metric.whole()
+            && self.at_most > 0.0
+            && self.at_most.is_finite()
+            && self.tolerance >= 0.0
     }
 
     /// Compares the runs of the two sides in one case, and returns the extent to which the relation holds
     /// (`None` if there is nothing to compare) and a line that reports the result.
     fn holds(&self, runs: &[Run], claim: &Claim) -> (Option<Held>, String) {
-        let label = metric::find(&self.error).map_or(self.error.as_str(), |entry| entry.label);
+        let error = self.error.0.metric;
+        let label = error.label;
         let [left, right] = [&claim.left, &claim.right].map(|side| -> Vec<Point> {
-            claim.points(side, runs, &self.error).into_iter().map(|(_, point)| point).collect()
+            claim.points(side, runs, error).into_iter().map(|(_, point)| point).collect()
         });
         let (ours, theirs) = (claim.left.name(), claim.right.name());
         let Some(matched) = Matched::of(&right, &left) else {

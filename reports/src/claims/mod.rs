@@ -11,6 +11,7 @@ pub(crate) use numbers::{Pair, Split, pairs, splits};
 use std::path::Path;
 use std::sync::LazyLock;
 
+use catalogue::metric::{self, Address};
 use records::{Purpose, Record, RecordError};
 use serde::Deserialize;
 
@@ -43,6 +44,19 @@ impl ClaimVerdict {
     }
 }
 
+/// A recorded quantity, by its name.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(try_from = "String")]
+struct Named(Address);
+
+impl TryFrom<String> for Named {
+    type Error = String;
+
+    fn try_from(name: String) -> Result<Named, String> {
+        metric::named(&name).map(Named).map_err(|bad| bad.to_string())
+    }
+}
+
 /// A published claim: the methods of `left` against those of `right`.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -64,7 +78,7 @@ pub struct Claim {
     right: Side,
     /// Quantities that every compared run has recorded.
     #[serde(default)]
-    needs: Vec<String>,
+    needs: Vec<Named>,
     relation: Vec<Relation>,
     /// Published runs with their numbers.
     #[serde(default)]
@@ -73,9 +87,9 @@ pub struct Claim {
 
 impl Claim {
     /// Published value of a quantity of a transferred displacement, SI.
-    pub(crate) fn transferred(&self, quantity: &str) -> Option<f64> {
+    pub(crate) fn transferred(&self, of: Address) -> Option<f64> {
         let numbers = self.run.iter().flat_map(|run| &run.number);
-        let is = |ours: &Ours| matches!(ours, Ours::Transferred(own) if own == quantity);
+        let is = |ours: &Ours| matches!(ours, Ours::Transferred(own) if own.0 == of);
         numbers.into_iter().find(|number| is(&number.ours)).map(|number| number.published.value)
     }
 }
@@ -120,7 +134,10 @@ fn parse(text: &str) -> Result<Vec<Claim>, String> {
     for claim in &file.claim {
         if claim.scenes.is_empty() || claim.relation.is_empty() || !claim.relation.iter().all(Relation::sound)
         {
-            return Err(format!("claim '{}' needs scenes, and relations with at_most above 0", claim.id));
+            return Err(format!(
+                "claim '{}' needs scenes, and relations with at_most above 0 and an error without a component",
+                claim.id
+            ));
         }
     }
     Ok(file.claim)
@@ -133,5 +150,12 @@ mod tests {
     #[test]
     fn the_claims_of_the_program_are_read() {
         assert!(own_claims().iter().all(|claim| !claim.run.is_empty()));
+    }
+
+    #[test]
+    fn a_quantity_that_is_never_recorded_is_refused_with_its_line() {
+        let text = include_str!("../../claims.toml");
+        let bad = parse(&text.replacen("\"relative-rms\"", "\"relative-rsm\"", 1)).unwrap_err();
+        assert!(bad.contains("line ") && bad.contains("did you mean 'relative-rms'?"), "{bad}");
     }
 }

@@ -1,10 +1,11 @@
 //! Published numbers next to those of runs that match the published runs.
 
 use catalogue::Quantity;
+use catalogue::metric::{self, Metric};
 use records::Family;
 use serde::Deserialize;
 
-use super::reproduced;
+use super::{Named, reproduced};
 use crate::select::{Run, by_case};
 
 /// A published run with its numbers.
@@ -32,7 +33,7 @@ pub(crate) struct Number {
     pub(super) ours: Ours,
     /// Quantities that a comparable run has recorded.
     #[serde(default)]
-    needs: Vec<String>,
+    needs: Vec<Named>,
 }
 
 /// A number as it is printed, such as `0.40 mm`.
@@ -78,23 +79,23 @@ pub(super) enum Ours {
     /// Sum of the times of phases, or the `total`.
     Time(Vec<String>),
     /// Quantity of the run.
-    Value(String),
+    Value(Named),
     /// Quantity of the run's displacement after the transfer.
-    Transferred(String),
-    LeastTransferred(Vec<String>),
-    LargestTransferred(Vec<String>),
+    Transferred(Named),
+    LeastTransferred(Vec<Named>),
+    LargestTransferred(Vec<Named>),
 }
 
 impl Ours {
     /// SI value of a run, whose displacement after the transfer is that of `transferred`.
     fn of(&self, run: &Run, transferred: Option<&Run>) -> Option<f64> {
-        let after = |quantity: &String| transferred?.value(quantity);
-        let all = |quantities: &[String]| quantities.iter().map(after).collect::<Option<Vec<f64>>>();
+        let after = |quantity: &Named| transferred?.value(quantity.0);
+        let all = |quantities: &[Named]| quantities.iter().map(after).collect::<Option<Vec<f64>>>();
         match self {
             Ours::Elements => Some(run.is.elements as f64).filter(|count| *count > 0.0),
             Ours::Time(phases) if phases == &["total"] => run.total(),
             Ours::Time(phases) => phases.iter().map(|phase| run.time(phase, "median")).sum(),
-            Ours::Value(quantity) => run.value(quantity),
+            Ours::Value(quantity) => run.value(quantity.0),
             Ours::Transferred(quantity) => after(quantity),
             Ours::LeastTransferred(quantities) => all(quantities)?.into_iter().reduce(f64::min),
             Ours::LargestTransferred(quantities) => all(quantities)?.into_iter().reduce(f64::max),
@@ -135,7 +136,7 @@ impl<'a, 'r> Match<'a, 'r> {
                 && r.is.nodes == self.run.is.nodes
                 && r.is.from.as_ref() == Some(&self.run.is.method)
                 && r.is.kernel.as_ref() == Some(&self.run.is.variant)
-                && r.value("beside-rms").is_some()
+                && r.value(&metric::BESIDE_RMS).is_some()
         })
     }
 }
@@ -166,7 +167,7 @@ fn matches<'a, 'r>(runs: &'a [Run<'r>]) -> Vec<Match<'a, 'r>> {
 pub(crate) fn pairs<'a, 'r>(runs: &'a [Run<'r>]) -> Vec<Pair<'a, 'r>> {
     let of = |found: Match<'a, 'r>| {
         let (run, transferred) = (found.run, found.transferred());
-        let like = move |number: &&'static Number| number.needs.iter().all(|quantity| run.has(quantity));
+        let like = move |number: &&'static Number| number.needs.iter().all(|quantity| run.has(quantity.0));
         let numbers = found.published.number.iter().filter(like);
         numbers.map(move |number| Pair { number, run, ours: number.ours.of(run, transferred) })
     };
@@ -197,20 +198,22 @@ impl Split<'_, '_> {
         let (cloud, elements) = (&self.cloud.is.method, &self.elements.is.method);
         let scheme = self.transferred.is.variant.replace('-', " ");
         let reference = self.reference.unwrap_or("the reference");
-        let of =
-            |run: &Run, name: &str| ["-x", "-y", "-z", ""].map(|axis| run.value(&format!("{name}{axis}")));
+        let of = |run: &Run, of: &'static Metric| of.parts().map(|part| run.value(part));
         [
-            (format!("{cloud} by {scheme}, from {elements}"), of(self.transferred, "beside-rms")),
-            (format!("{cloud} with its own shape functions, from {elements}"), of(self.cloud, "beside-rms")),
+            (format!("{cloud} by {scheme}, from {elements}"), of(self.transferred, &metric::BESIDE_RMS)),
+            (
+                format!("{cloud} with its own shape functions, from {elements}"),
+                of(self.cloud, &metric::BESIDE_RMS),
+            ),
             (
                 format!("transfer alone: {elements} at the nodes of {cloud} and back"),
-                of(self.transferred, "beside-transfer-rms"),
+                of(self.transferred, &metric::BESIDE_TRANSFER_RMS),
             ),
             (
                 format!("discretisation: {cloud} with its own shape functions, from {reference}"),
-                of(self.cloud, "rms"),
+                of(self.cloud, &metric::RMS),
             ),
-            (format!("error of {elements}, from {reference}"), of(self.elements, "rms")),
+            (format!("error of {elements}, from {reference}"), of(self.elements, &metric::RMS)),
         ]
     }
 }
@@ -218,15 +221,15 @@ impl Split<'_, '_> {
 /// Components of the difference for every run that was transferred like the published run.
 pub(crate) fn splits<'a, 'r>(runs: &'a [Run<'r>]) -> Vec<Split<'a, 'r>> {
     let of = |found: Match<'a, 'r>| {
-        let zero = |quantity: &'static str| {
+        let zero = |quantity: &'static Metric| {
             let is = move |r: &&Run| r.is.family == Family::Fem && r.value(quantity) == Some(0.0);
             found.case.iter().find(is)
         };
         Some(Split {
             cloud: found.run,
             transferred: found.transferred()?,
-            elements: zero("beside-rms")?,
-            reference: zero("rms").map(|run| run.is.method.as_str()),
+            elements: zero(&metric::BESIDE_RMS)?,
+            reference: zero(&metric::RMS).map(|run| run.is.method.as_str()),
         })
     };
     matches(runs).into_iter().filter_map(of).collect()
@@ -252,10 +255,10 @@ mod tests {
             from: from.map(String::from),
             kernel: from.map(|_| "cubic-spline".into()),
             nodes,
-            quantity: quantity.into(),
             value,
             ..Record::blank()
         }
+        .named(quantity)
         .of_its_run()
     }
 

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use catalogue::metric;
+use catalogue::metric::{self, Metric};
 use records::store::write_text;
 use records::{Machine, Numbers, Program, Record, RecordError, RunSet, Status};
 use serde::{Deserialize, Serialize};
@@ -73,17 +73,16 @@ impl Summary {
                 poisson: record.poisson,
                 ..RunNumbers::default()
             });
-            match (record.quantity.as_str(), record.statistic.as_str()) {
-                ("cpu-time", "repeat") => {
-                    let time = rounded(record.value, TIME_DIGITS);
-                    run.seconds.entry(record.phase.clone()).or_default().push(time);
+            let time = || rounded(record.value, TIME_DIGITS);
+            match record.statistic.as_str() {
+                "repeat" if record.is(&metric::CPU_TIME) => {
+                    run.seconds.entry(record.phase.clone()).or_default().push(time());
                 }
-                ("time", "repeat") => {
-                    let time = rounded(record.value, TIME_DIGITS);
-                    wall.entry((name, record.phase.clone())).or_default().push(time);
+                "repeat" if record.is(&metric::TIME) => {
+                    wall.entry((name, record.phase.clone())).or_default().push(time());
                 }
-                (quantity, "value") if is_error(quantity) => {
-                    run.errors.insert(quantity.into(), rounded(record.value, ERROR_DIGITS));
+                "value" if metric::find(&record.name()).is_some_and(|of| is_error(of.metric)) => {
+                    run.errors.insert(record.name(), rounded(record.value, ERROR_DIGITS));
                 }
                 _ => {}
             }
@@ -146,11 +145,10 @@ impl Summary {
                 nodes: run.nodes,
                 level: run.level,
                 poisson: run.poisson,
-                quantity: "cpu-time".into(),
-                unit: "s".into(),
                 statistic: "repeat".into(),
                 ..Record::default()
-            };
+            }
+            .with(&metric::CPU_TIME);
             run.seconds.iter().flat_map(move |(phase, times)| {
                 let phase = Record { phase: phase.clone(), ..own.clone() };
                 let of = move |(repeat, &value): (u64, &f64)| Record {
@@ -171,9 +169,9 @@ impl Summary {
     }
 }
 
-/// Whether the quantity measures a deviation from the correct result.
-fn is_error(quantity: &str) -> bool {
-    metric::find(quantity).is_some_and(|metric| metric.lower_is_better() && metric.kind != metric::Kind::Cost)
+/// Whether the metric measures a deviation from the correct result.
+fn is_error(metric: &Metric) -> bool {
+    metric.lower_is_better() && metric.kind != metric::Kind::Cost
 }
 
 #[cfg(test)]

@@ -79,7 +79,7 @@ mod tests {
     fn set(runs: &[(&str, &str, f64)]) -> RunSet {
         let record = |&(method, dilation, value): &(&str, &str, f64)| {
             let (case, method, dilation) = ("block".into(), method.into(), Some(dilation.into()));
-            Record { case, method, dilation, quantity: "rms".into(), value, ..Record::blank() }.of_its_run()
+            Record { case, method, dilation, value, ..Record::blank() }.named("rms").of_its_run()
         };
         RunSet { records: runs.iter().map(record).collect(), ..RunSet::default() }
     }

@@ -69,7 +69,7 @@ fn change(paired: &Paired, tolerance: f64) -> Option<NumberChange> {
     let Pair { before, after } = *paired.pairs.iter().max_by(|a, b| relative(a).total_cmp(&relative(b)))?;
     let relative = relative(&Pair { before, after });
     let name = paired.quantity.split(' ').next().unwrap_or(&paired.quantity);
-    let verdict = match (metric::find(name).is_some_and(|m| m.lower_is_better()), before, after) {
+    let verdict = match (metric::find(name).is_some_and(|of| of.metric.lower_is_better()), before, after) {
         (true, Some(a), Some(b)) if b > a => "worse",
         (true, Some(_), Some(_)) => "better",
         _ => "differs",
@@ -86,8 +86,8 @@ mod tests {
 
     fn set(numbers: &[(&str, &str, Option<u64>, f64)]) -> RunSet {
         let record = |&(method, quantity, step, value): &(&str, &str, Option<u64>, f64)| {
-            let (method, quantity) = (method.to_string(), quantity.to_string());
-            Record { case: "block".into(), method, quantity, step, value, ..Record::blank() }
+            let (case, method) = ("block".into(), method.to_string());
+            Record { case, method, step, value, ..Record::blank() }.named(quantity)
         };
         RunSet { records: numbers.iter().map(record).collect(), ..RunSet::default() }
     }

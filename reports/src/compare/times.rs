@@ -8,6 +8,7 @@
 
 use std::collections::{BTreeMap, HashMap};
 
+use catalogue::metric;
 use records::{Record, RunSet};
 use serde::Serialize;
 
@@ -300,10 +301,10 @@ fn timed(records: &[Record]) -> BTreeMap<(&str, &str), Timed<'_>> {
     for r in records.iter().filter(repeat) {
         let timed = found.entry((r.run.as_str(), r.phase.as_str()));
         let timed = timed.or_insert(Timed { is: r, wall: Vec::new(), cpu: Vec::new() });
-        match r.quantity.as_str() {
-            "time" => timed.wall.push(r.value),
-            "cpu-time" => timed.cpu.push(r.value),
-            _ => {}
+        if r.is(&metric::TIME) {
+            timed.wall.push(r.value);
+        } else if r.is(&metric::CPU_TIME) {
+            timed.cpu.push(r.value);
         }
     }
     found

@@ -1,5 +1,6 @@
 //! RMS errors by direction: one row per run, and one scale for all columns.
 
+use catalogue::metric;
 use records::cell::csv_line;
 use records::store::slug;
 use records::text::significant;
@@ -14,8 +15,7 @@ use crate::select::{Run, competing, kernels, labels, representative, series};
 
 const ROW: f64 = 16.0;
 const TOP: f64 = 42.0;
-const DIRECTIONS: [(&str, &str); 4] =
-    [("rms-x", "RMS x [mm]"), ("rms-y", "RMS y [mm]"), ("rms-z", "RMS z [mm]"), ("rms", "RMS |u| [mm]")];
+const DIRECTIONS: [&str; 4] = ["RMS x [mm]", "RMS y [mm]", "RMS z [mm]", "RMS |u| [mm]"];
 /// Error in mm below which a difference is rounding.
 const NOTHING: f64 = 1e-9;
 
@@ -37,7 +37,7 @@ fn figure(group: &[Run]) -> Option<Figure> {
     for (series, name) in usual.iter().zip(names) {
         let runs = if many { std::slice::from_ref(series.finest()) } else { &series.runs[..] };
         for run in runs {
-            let values = DIRECTIONS.map(|(q, _)| run.value(q).map(|v| v * 1e3));
+            let values = metric::RMS.parts().map(|part| run.value(part).map(|v| v * 1e3));
             // An error of exactly zero belongs to the reference itself.
             if values.iter().flatten().any(|v| *v > 0.0) {
                 let colour = Look::of(&name, run.is.family).colour;
@@ -48,9 +48,8 @@ fn figure(group: &[Run]) -> Option<Figure> {
     if rows.iter().all(|r| r.1.iter().flatten().all(|v| *v < NOTHING)) {
         return None;
     }
-    let published = reproduced(is).map(|claim| {
-        DIRECTIONS.map(|(q, _)| claim.transferred(&format!("beside-{q}")).map(|value| value * 1e3))
-    });
+    let published = reproduced(is)
+        .map(|claim| metric::BESIDE_RMS.parts().map(|part| claim.transferred(part).map(|value| value * 1e3)));
     rows.extend(published.map(|values| ("published, between its methods".into(), values, GREY)));
     let mut caption = String::from(
         "Root mean square of the displacement difference from the reference, with one scale for all columns and one \
@@ -78,7 +77,7 @@ fn figure(group: &[Run]) -> Option<Figure> {
 }
 
 fn csv(rows: &[Row]) -> String {
-    let mut out = csv_line(&[&["run"], &DIRECTIONS.map(|d| d.1)[..]].concat());
+    let mut out = csv_line(&[&["run"], &DIRECTIONS[..]].concat());
     for (name, values, _) in rows {
         let values = values.map(|v| v.map(|v| format!("{v:e}")).unwrap_or_default());
         out.push_str(&csv_line(&[&[name.as_str()], &values.each_ref().map(String::as_str)[..]].concat()));
@@ -95,7 +94,7 @@ fn draw(title: &str, rows: &[Row]) -> Canvas {
     let largest = rows.iter().flat_map(|r| r.1).flatten().fold(NOTHING, f64::max);
     // Room for the number after the longest bar.
     let scale = (width - 46.0) / largest;
-    for (column, (_, head)) in DIRECTIONS.iter().enumerate() {
+    for (column, head) in DIRECTIONS.iter().enumerate() {
         let x = left + column as f64 * (width + 8.0);
         canvas.bold((x, 28.0), head, TEXT, Anchor::Start);
         canvas.line(&[(x, TOP - 4.0), (x, bottom)], GREY, 0.8);

@@ -1,5 +1,6 @@
 //! Conditioning and neighbours of the meshfree methods as a function of the support scale.
 
+use catalogue::metric;
 use records::Family;
 
 use super::axes::Axis;
@@ -15,7 +16,7 @@ type Line = (String, Vec<(f64, f64, f64, f64)>);
 /// Condition number of the moment matrix: one panel per case, one line per kernel and basis.
 pub(super) fn conditioning(runs: &[Run]) -> Vec<Figure> {
     let point = |r: &Run| {
-        let (median, worst) = (r.value("condition-median"), r.value("condition-max"));
+        let (median, worst) = (r.value(&metric::CONDITION_MEDIAN), r.value(&metric::CONDITION_MAX));
         let value = median.or(worst).filter(|v| *v > 0.0)?;
         Some((value, median.unwrap_or(value), worst.unwrap_or(value)))
     };
@@ -38,8 +39,12 @@ pub(super) fn conditioning(runs: &[Run]) -> Vec<Figure> {
 /// Neighbours per integration point: one panel, one line per case and basis.
 pub(super) fn neighbours(runs: &[Run]) -> Vec<Figure> {
     let point = |r: &Run| {
-        let mean = r.value("neighbours-mean")?;
-        Some((mean, r.value("neighbours-min").unwrap_or(mean), r.value("neighbours-max").unwrap_or(mean)))
+        let mean = r.value(&metric::NEIGHBOURS_MEAN)?;
+        Some((
+            mean,
+            r.value(&metric::NEIGHBOURS_MIN).unwrap_or(mean),
+            r.value(&metric::NEIGHBOURS_MAX).unwrap_or(mean),
+        ))
     };
     let mut lines: Vec<Line> = Vec::new();
     for (case, of_case) in panels(runs, point, |r| settings(r).join(", ")) {
@@ -207,10 +212,10 @@ mod tests {
                 essential: Some(essential.into()),
                 support_scale: Some(scale),
                 nodes: 216,
-                quantity: "condition-median".into(),
                 value: condition,
                 ..Record::blank()
             }
+            .with(&metric::CONDITION_MEDIAN)
             .of_its_run()
         };
         let mut records = vec![cloud("a-coupled", 1.6, "coupling", 9e4)];
@@ -218,7 +223,7 @@ mod tests {
             records.push(cloud("plain", scale, "nitsche", condition));
         }
         let lines = |records: &[Record]| {
-            let point = |r: &Run| r.value("condition-median").map(|v| (v, v, v));
+            let point = |r: &Run| r.value(&metric::CONDITION_MEDIAN).map(|v| (v, v, v));
             panels(&runs(records), point, |r| settings(r).join(", ")).remove(0).1
         };
         let plain = (

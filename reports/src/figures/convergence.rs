@@ -1,5 +1,7 @@
 //! Error as a function of spacing, with the theoretical slopes.
 
+use catalogue::metric::{self, Metric};
+
 use super::axes::{Axis, Panel, TEXT};
 use super::canvas::{Anchor, Canvas, GREY};
 use super::grid::{Content, multiples};
@@ -15,16 +17,16 @@ const SPACING: &str = "node spacing h [mm]";
 /// Figures of each error (L2, energy, pressure), on one or more pages.
 pub(super) fn figures(runs: &[Run]) -> Vec<Figure> {
     let mut out = Vec::new();
-    for quantity in ["l2", "energy", "pressure"] {
+    for error in [&metric::L2, &metric::ENERGY, &metric::PRESSURE] {
         let mut panels = Vec::new();
         for (title, group) in chosen(runs) {
-            let lines = lines(group, quantity);
+            let lines = lines(group, error);
             if !lines.is_empty() {
                 panels.push((title, group[0].is.case.clone(), lines));
             }
         }
         for (page, panels) in panels.chunks(PAGE).enumerate() {
-            out.push(figure(quantity, page, panels));
+            out.push(figure(error, page, panels));
         }
     }
     out
@@ -33,18 +35,18 @@ pub(super) fn figures(runs: &[Run]) -> Vec<Figure> {
 /// A series with its theoretical order.
 type Line = (Curve, Option<f64>);
 
-fn lines(runs: &[Run], quantity: &str) -> Vec<Line> {
+fn lines(runs: &[Run], error: &'static Metric) -> Vec<Line> {
     let all: Vec<Series> = series(runs);
     labels(all.iter().map(|s| s.is()))
         .into_iter()
         .zip(&all)
         .map(|(label, s)| {
             let usable = |run: &Run| {
-                let (h, e) = (run.is.spacing, run.value(quantity).filter(|e| *e > ROUNDING)?);
+                let (h, e) = (run.is.spacing, run.value(error).filter(|e| *e > ROUNDING)?);
                 (h > 0.0).then(|| ((h * 1e3, e), run.is.run.clone()))
             };
             let (points, ids) = s.runs.iter().filter_map(usable).unzip();
-            (Curve::new(label, s.is().family, points, ids), s.theory(quantity))
+            (Curve::new(label, s.is().family, points, ids), s.theory(error))
         })
         .filter(|(curve, _)| curve.points.len() > 1)
         .collect()
@@ -53,15 +55,15 @@ fn lines(runs: &[Run], quantity: &str) -> Vec<Line> {
 /// Title, case and series of one panel.
 type Paned = (String, String, Vec<Line>);
 
-fn figure(quantity: &str, page: usize, panels: &[Paned]) -> Figure {
-    let plots: Vec<Plot> = panels.iter().map(|panel| plotted(panel, quantity)).collect();
+fn figure(error: &'static Metric, page: usize, panels: &[Paned]) -> Figure {
+    let plots: Vec<Plot> = panels.iter().map(|panel| plotted(panel, error)).collect();
     let styles = styles(&plot::labels(&plots));
     let contents = panels
         .iter()
         .enumerate()
         .map(|(i, (title, _, lines))| {
             let points = || lines.iter().flat_map(|l| l.0.points.iter());
-            let y = Axis::log(&label(quantity), points().map(|p| p.1));
+            let y = Axis::log(&label(error), points().map(|p| p.1));
             let styles = &styles;
             Content {
                 title: title.clone(),
@@ -81,9 +83,9 @@ fn figure(quantity: &str, page: usize, panels: &[Paned]) -> Figure {
         .collect();
     let note = "Grey: theoretical slopes. Errors at rounding level are not drawn.";
     Figure {
-        name: paged(&format!("convergence-{quantity}"), page),
+        name: paged(&format!("convergence-{}", error.name), page),
         title: continued(
-            &format!("Convergence of the {}", label(quantity).trim_end_matches(" [1]")),
+            &format!("Convergence of the {}", label(error).trim_end_matches(" [1]")),
             page,
         ),
         caption: "Error against node spacing on logarithmic axes; the grey fan shows the theoretical slopes of the \
@@ -93,12 +95,12 @@ fn figure(quantity: &str, page: usize, panels: &[Paned]) -> Figure {
     }
 }
 
-fn plotted((title, case, lines): &Paned, quantity: &str) -> Plot {
+fn plotted((title, case, lines): &Paned, error: &'static Metric) -> Plot {
     Plot {
         case: case.clone(),
         title: title.clone(),
         x: Scale::log(SPACING),
-        y: Scale::log(&label(quantity)),
+        y: Scale::log(&label(error)),
         curves: lines.iter().map(|l| l.0.clone()).collect(),
     }
 }

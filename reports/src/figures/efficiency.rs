@@ -259,6 +259,7 @@ mod tests {
     use crate::fronts::tests::run;
     use crate::questions::Rank;
     use crate::select::runs;
+    use catalogue::metric;
     use records::Family;
 
     #[test]
@@ -274,7 +275,7 @@ mod tests {
                 question: &QUESTIONS[0],
                 clock: Clock::First,
                 by: Seconds::Wall,
-                error: "l2",
+                error: &metric::L2,
                 lines: vec![Line { label: "tet4".into(), family: Family::Fem, runs }],
                 reference: None,
                 band: None,

@@ -1,6 +1,7 @@
 //! Histories of a closing tool (force against travel and time, and energies over time), and frequency errors
 //! by mode.
 
+use catalogue::metric::{self, Metric};
 use records::Family;
 
 use super::axes::Axis;
@@ -16,16 +17,16 @@ use crate::select::{Run, by_case, labels, series};
 const UNCERTAIN: Colour = [0xd6, 0xd6, 0xd6];
 /// Largest number of markers on a line; more would hide it.
 const MARKS: usize = 12;
-const ENERGIES: [(&str, &str); 9] = [
-    ("external-work", "work of loads and tools"),
-    ("work-on-body", "work on the body"),
-    ("strain-energy", "strain"),
-    ("internal-work", "work of the stress"),
-    ("kinetic-energy", "kinetic"),
-    ("contact-energy", "contact springs"),
-    ("friction-dissipation", "lost in friction"),
-    ("damping-dissipation", "lost in damping"),
-    ("scheme-dissipation", "lost in the scheme"),
+const ENERGIES: [(&Metric, &str); 9] = [
+    (&metric::EXTERNAL_WORK, "work of loads and tools"),
+    (&metric::WORK_ON_BODY, "work on the body"),
+    (&metric::STRAIN_ENERGY, "strain"),
+    (&metric::INTERNAL_WORK, "work of the stress"),
+    (&metric::KINETIC_ENERGY, "kinetic"),
+    (&metric::CONTACT_ENERGY, "contact springs"),
+    (&metric::FRICTION_DISSIPATION, "lost in friction"),
+    (&metric::DAMPING_DISSIPATION, "lost in damping"),
+    (&metric::SCHEME_DISSIPATION, "lost in the scheme"),
 ];
 
 /// Figures of the tool force for the finest run of every method: against travel, against time (if there is
@@ -37,24 +38,24 @@ pub(super) fn forces(runs: &[Run]) -> Vec<Figure> {
         // The reference is drawn below the methods compared with it.
         all.sort_by_key(|s| s.is().family != Family::Reference);
         let names = labels(all.iter().map(|s| s.is()));
-        let each = |x: &str, scale: f64| -> Vec<Curve> {
+        let each = |x: &'static Metric, scale: f64| -> Vec<Curve> {
             let lines = all.iter().zip(&names).map(|(s, name)| {
                 let run = s.finest();
-                let points = curve(run, x, "tool-force").into_iter().map(|p| (p.0 * scale, p.1));
-                let around = band(run, x, "tool-force").into_iter().map(|b| (b.0 * scale, b.1, b.2));
+                let points = curve(run, x, &metric::TOOL_FORCE).into_iter().map(|p| (p.0 * scale, p.1));
+                let around = band(run, x, &metric::TOOL_FORCE).into_iter().map(|b| (b.0 * scale, b.1, b.2));
                 Curve { band: around.collect(), ..line(name.clone(), run, points.collect()) }
             });
             lines.filter(drawn).collect()
         };
-        let closing = each("closure", 1e3);
+        let closing = each(&metric::CLOSURE, 1e3);
         let off = against(case, &closing);
         let is = &case[0].is.case;
         panels.push(Pane::new(is, "", ("closure [mm]", "tool force [N]"), closing));
-        panels.push(Pane::new(is, ", over time", ("time [s]", "tool force [N]"), each("time", 1.0)));
+        panels.push(Pane::new(is, ", over time", ("time [s]", "tool force [N]"), each(&metric::TIME, 1.0)));
         panels.push(Pane::new(is, ", minus the reference", ("closure [mm]", "difference of force [N]"), off));
     }
     figures(
-        "tool-force",
+        metric::TOOL_FORCE.name,
         "Tool force",
         "Force on the tool during closure, for the finest run of each method: over the closure, over time if the \
          scene is dynamic, and minus the reference force at the same closure",
@@ -66,7 +67,7 @@ pub(super) fn forces(runs: &[Run]) -> Vec<Figure> {
 /// uncertainty.
 fn against(case: &[Run], closing: &[Curve]) -> Vec<Curve> {
     let Some(known) = reference(case) else { return Vec::new() };
-    let scaled = curve(known, "closure", "tool-force").into_iter().map(|p| (p.0 * 1e3, p.1));
+    let scaled = curve(known, &metric::CLOSURE, &metric::TOOL_FORCE).into_iter().map(|p| (p.0 * 1e3, p.1));
     let force: Vec<(f64, f64)> = scaled.collect();
     let minus = |x: f64, value: f64| Some(value - between(&force, x)?);
     let off = closing.iter().map(|line| Curve {
@@ -87,7 +88,7 @@ pub(super) fn energies(runs: &[Run]) -> Vec<Figure> {
         let names = labels(all.iter().map(|s| s.is()));
         for (s, name) in all.iter().zip(names) {
             let lines = ENERGIES.iter().map(|(quantity, label)| {
-                let points = curve(s.finest(), "time", quantity).into_iter().map(|p| (p.0, p.1 * 1e3));
+                let points = curve(s.finest(), &metric::TIME, quantity).into_iter().map(|p| (p.0, p.1 * 1e3));
                 let ids = vec![s.finest().is.run.clone()];
                 Curve::new(label.to_string(), Family::Reference, points.collect(), ids)
             });
@@ -117,7 +118,7 @@ pub(super) fn spectra(runs: &[Run]) -> Vec<Figure> {
             let of_mass = all.iter().zip(&names).filter(|(s, _)| s.is().mass.as_deref() == Some(mass));
             let lines = of_mass.map(|(s, name)| {
                 let name = name.replacen(&format!("-{mass}"), "", 1);
-                let points = curve(s.finest(), "mode", "omega-ratio");
+                let points = curve(s.finest(), &metric::MODE, &metric::OMEGA_RATIO);
                 line(name, s.finest(), points)
             });
             let axes = ("mode [1]", "computed over exact frequency [1]");

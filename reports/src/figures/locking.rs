@@ -89,7 +89,7 @@ pub(super) fn figures(runs: &[Run]) -> Vec<Figure> {
 }
 
 fn usable(run: &Run, measure: &Measure) -> Option<f64> {
-    run.value(measure.metric.name).map(|v| if measure.is_error() { v.max(FLOOR) } else { v })
+    run.value(measure.metric).map(|v| if measure.is_error() { v.max(FLOOR) } else { v })
 }
 
 /// A measure that grows without bound as the material becomes incompressible.
@@ -118,7 +118,7 @@ fn figure(page: usize, panels: &[(String, &'static Measure, Vec<Sweep>)]) -> Fig
                 x: Axis::log("Poisson's ratio ν [1], as 1/(1 − 2ν)", ratios.iter().map(|r| stiffness(*r)))
                     .with_ticks(ticks),
                 y: if measure.is_error() {
-                    Axis::log(&label(measure.metric.name), values().map(|p| p.1))
+                    Axis::log(&label(measure.metric), values().map(|p| p.1))
                 } else {
                     Axis::linear(RATIO, values().map(|p| p.1).chain([1.0]), true)
                 },
@@ -155,7 +155,7 @@ fn plotted((case, measure, sweeps): &(String, &'static Measure, Vec<Sweep>)) -> 
         let (points, ids) = own.map(|(r, y)| ((stiffness(r.is.poisson), y), r.is.run.clone())).unzip();
         Curve::new(name.clone(), *family, points, ids)
     };
-    let y = if measure.is_error() { Scale::log(&label(measure.metric.name)) } else { Scale::linear(RATIO) };
+    let y = if measure.is_error() { Scale::log(&label(measure.metric)) } else { Scale::linear(RATIO) };
     Plot {
         case: case.clone(),
         title: format!("{case}: {} against Poisson's ratio", measure.what),

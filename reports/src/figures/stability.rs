@@ -9,7 +9,7 @@ use super::axes::TEXT;
 use super::canvas::{Anchor, BLACK_INK, Canvas, Colour, GREY, text_width};
 use super::grid::{WIDTH, wrapped};
 use super::{Data, Figure};
-use crate::quantity::label;
+use crate::quantity::label_of_name;
 
 const ROW: f64 = 15.0;
 const TOP: f64 = 34.0;
@@ -23,7 +23,7 @@ pub(super) fn maps(axes: &[Axis]) -> Vec<Figure> {
         caption: format!(
             "Numbers: {} in per cent; colours: classes of this error. Bold: at least twice the error at {}, where a \
              method bends; a result with {} % or more is wrong",
-            label(&axis.judge),
+            label_of_name(&axis.judge),
             value(axis, axis.base),
             significant(100.0 * axis.wrong, 2),
         ),
@@ -112,7 +112,7 @@ fn draw(axis: &Axis) -> Canvas {
 fn note(axis: &Axis) -> String {
     format!(
         "Numbers: {} in per cent. Bold: at least twice the value at {} (the method bends). Wrong: {} % or more.",
-        label(&axis.judge),
+        label_of_name(&axis.judge),
         value(axis, axis.base),
         significant(100.0 * axis.wrong, 2),
     )

@@ -1,5 +1,6 @@
 //! Bodies seen from outside, deformed and coloured by displacement magnitude.
 
+use catalogue::metric;
 use records::store::slug;
 use records::text::significant;
 use records::{Family, SurfaceField};
@@ -47,7 +48,7 @@ pub(super) fn pictured<'f>(mut fields: Vec<&'f SurfaceField>, runs: &[Run], room
 /// The fraction of the load reached by a method that ended early, in words; empty for a complete run.
 pub(super) fn carried(field: &SurfaceField, runs: &[Run]) -> String {
     let own = |r: &&Run| r.is.case == field.case && r.is.method == field.method;
-    match runs.iter().filter(own).find_map(|r| r.value("load-carried")) {
+    match runs.iter().filter(own).find_map(|r| r.value(&metric::LOAD_CARRIED)) {
         Some(load) if load < 0.9995 => format!("ended at {} % of the load", significant(100.0 * load, 2)),
         _ => String::new(),
     }
@@ -59,7 +60,7 @@ fn chosen<'f>(fields: Vec<&'f SurfaceField>, runs: &[Run]) -> Vec<Chosen<'f>> {
     let of = |family: Family| -> Vec<(&'f SurfaceField, f64)> {
         let error = |f: &SurfaceField| {
             let own = |r: &&Run| r.is.case == f.case && r.is.method == f.method && r.is.family == family;
-            runs.iter().find(own).and_then(|r| r.value("rms"))
+            runs.iter().find(own).and_then(|r| r.value(&metric::RMS))
         };
         let mut known: Vec<_> = fields.iter().filter_map(|f| Some((*f, error(f)?))).collect();
         known.sort_by(|a, b| b.1.total_cmp(&a.1));

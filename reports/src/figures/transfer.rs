@@ -2,6 +2,7 @@
 
 use std::collections::BTreeSet;
 
+use catalogue::metric;
 use records::Family;
 use records::cell::csv_line;
 use records::store::slug;
@@ -26,11 +27,11 @@ pub(super) fn figures(runs: &[Run]) -> Vec<Figure> {
 
 fn transfer_figure(runs: &[Run]) -> Option<Figure> {
     let (quantity, label, scale) = [
-        ("rms", "RMS error after the transfer, from the reference [mm]", 1e3),
-        ("l2", "relative L2 error after the transfer [1]", 1.0),
+        (&metric::RMS, "RMS error after the transfer, from the reference [mm]", 1e3),
+        (&metric::L2, "relative L2 error after the transfer [1]", 1.0),
     ]
     .into_iter()
-    .find(|(q, _, _)| runs.iter().any(|r| r.value(q).is_some()))?;
+    .find(|(q, _, _)| runs.iter().any(|r| r.value(*q).is_some()))?;
     let scheme = |r: &Run| {
         // The kernel is that of the method whose field is transferred.
         let own = r.is.settings().into_iter().filter(|(name, _)| !["from", "kernel"].contains(name));

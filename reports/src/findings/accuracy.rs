@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use catalogue::metric;
 use records::Purpose;
 use records::text::{list, percent, plural, significant};
 
@@ -23,17 +24,19 @@ pub(super) fn locking(runs: &[Run]) -> Vec<String> {
         for (label, _, sweep) in sweeps(case) {
             // 0.495 represents tissue; larger ratios are a stress test.
             let usable: Vec<&Run> =
-                sweep.iter().filter(|r| r.is.poisson <= 0.4951 && r.value("l2").is_some()).collect();
+                sweep.iter().filter(|r| r.is.poisson <= 0.4951 && r.value(&metric::L2).is_some()).collect();
             let [first, .., last] = usable.as_slice() else { continue };
-            let (Some(before), Some(after)) = (first.value("l2"), last.value("l2")) else { continue };
+            let (Some(before), Some(after)) = (first.value(&metric::L2), last.value(&metric::L2)) else {
+                continue;
+            };
             span = Some((first.is.poisson, last.is.poisson));
             if after > LOCKS * before && after > 1e-3 {
                 let tip = last
-                    .value("tip")
+                    .value(&metric::TIP)
                     .map(|t| format!(", tip at {} of the exact deflection", percent(t)))
                     .unwrap_or_default();
                 let pressure = last
-                    .value("pressure")
+                    .value(&metric::PRESSURE)
                     .map(|p| format!(", pressure error {}", percent(p)))
                     .unwrap_or_default();
                 let text = format!("{label}, {} to {}{tip}{pressure}", percent(before), percent(after));
@@ -72,7 +75,7 @@ pub(super) fn patch(runs: &[Run]) -> Vec<String> {
     for case in patches {
         let mut worst: BTreeMap<String, f64> = BTreeMap::new();
         for (label, run) in labels(case.iter().map(|r| r.is)).into_iter().zip(case) {
-            if let Some(error) = run.value("l2") {
+            if let Some(error) = run.value(&metric::L2) {
                 let entry = worst.entry(label).or_insert(error);
                 *entry = entry.max(error);
             }
@@ -114,9 +117,8 @@ pub(super) fn orders(runs: &[Run]) -> Vec<String> {
     for (name, group) in cases(runs) {
         let all = series(group);
         for (label, s) in labels(all.iter().map(|s| s.is())).into_iter().zip(&all) {
-            for quantity in ["l2", "energy"] {
-                let (Some(order), Some(theory)) = (order::observed(&s.points(quantity)), s.theory(quantity))
-                else {
+            for error in [&metric::L2, &metric::ENERGY] {
+                let (Some(order), Some(theory)) = (order::observed(&s.points(error)), s.theory(error)) else {
                     continue;
                 };
                 let Some(finest) = order.pairs.last().copied() else { continue };
@@ -126,7 +128,8 @@ pub(super) fn orders(runs: &[Run]) -> Vec<String> {
                     held += 1;
                 } else {
                     below.push(format!(
-                        "{label} in {name} ({quantity} {}, theory {theory})",
+                        "{label} in {name} ({} {}, theory {theory})",
+                        error.name,
                         significant(finest, 2)
                     ));
                 }

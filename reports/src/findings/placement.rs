@@ -1,13 +1,14 @@
 //! Findings on the sensitivity of results to node placement.
 
+use catalogue::metric::{self, Metric};
 use records::Family;
 use records::text::significant;
 
 use crate::clouds::{Clouds, Spread};
 
 /// Candidate errors, of which a method's first is reported, each with its words, unit and scale factor.
-const ERRORS: [(&str, &str, &str, f64); 2] =
-    [("rms", "the RMS error", " mm", 1e3), ("l2", "the relative L2 error", " %", 1e2)];
+const ERRORS: [(&Metric, &str, &str, f64); 2] =
+    [(&metric::RMS, "the RMS error", " mm", 1e3), (&metric::L2, "the relative L2 error", " %", 1e2)];
 
 /// One sentence for every method that ran on many clouds.
 pub(super) fn placement(clouds: &[Clouds]) -> Vec<String> {
@@ -20,7 +21,9 @@ pub(super) fn placement(clouds: &[Clouds]) -> Vec<String> {
         });
         let Some((whole, error)) = error else { continue };
         let mut parts = vec![error];
-        if let Some(force) = Spread::of(group, "tool-force").filter(|f| f.quantiles[0] != f.quantiles[4]) {
+        if let Some(force) =
+            Spread::of(group, &metric::TOOL_FORCE).filter(|f| f.quantiles[0] != f.quantiles[4])
+        {
             parts.push(phrase(force, "the tool force", " N", 1.0));
         }
         let failed = match group.len() - whole {

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use catalogue::metric;
 use records::Family;
 use records::text::{duration, percent, significant};
 
@@ -53,7 +54,7 @@ fn three(values: [f64; 3]) -> String {
 }
 
 fn largest_displacements(run: &Run) -> Option<[f64; 3]> {
-    let [x, y, z] = ["max-x", "max-y", "max-z"].map(|quantity| run.value(quantity));
+    let [x, y, z] = metric::MAX.components().map(|of| run.value(of));
     Some([x?, y?, z?])
 }
 
@@ -77,12 +78,14 @@ fn largest_part(split: &Split) -> Option<String> {
 fn limits(runs: &[Run]) -> Vec<String> {
     let mut out = Vec::new();
     for run in runs.iter().filter(|r| reproduced(r.is).is_some()) {
-        let (Some(load), Some(force), Some(closure)) =
-            (run.value("limit-load"), run.value("limit-tool-force"), run.value("limit-closure"))
-        else {
+        let (Some(load), Some(force), Some(closure)) = (
+            run.value(&metric::LIMIT_LOAD),
+            run.value(&metric::LIMIT_TOOL_FORCE),
+            run.value(&metric::LIMIT_CLOSURE),
+        ) else {
             continue;
         };
-        let on = match (run.value("relaxation-steps"), run.value("load-carried")) {
+        let on = match (run.value(&metric::RELAXATION_STEPS), run.value(&metric::LOAD_CARRIED)) {
             (Some(steps), Some(reached)) if reached > load => {
                 format!(
                     " Dynamic relaxation then reaches {} of the load in {steps:.0} steps.",
@@ -117,10 +120,11 @@ fn ramps(runs: &[Run]) -> Vec<String> {
     let reading = |r: &&Run| reproduced(r.is).is_some() && r.is.family == Family::Fem && r.whole();
     let readings = || runs.iter().filter(reading);
     let mut out = Vec::new();
-    for ramp in readings().filter(|r| r.value("time-steps").is_some()) {
-        let still = |r: &Run| r.value("newton-iterations").is_some() && r.value("time-steps").is_none();
+    for ramp in readings().filter(|r| r.value(&metric::TIME_STEPS).is_some()) {
+        let still =
+            |r: &Run| r.value(&metric::NEWTON_ITERATIONS).is_some() && r.value(&metric::TIME_STEPS).is_none();
         let same = |r: &&Run| r.is.method == ramp.is.method && still(r);
-        let (Some(still), Some(seconds)) = (readings().find(same), ramp.value("time-reached")) else {
+        let (Some(still), Some(seconds)) = (readings().find(same), ramp.value(&metric::TIME_REACHED)) else {
             continue;
         };
         let (Some(moved), Some(rest)) = (largest_displacements(ramp), largest_displacements(still)) else {

@@ -1,5 +1,6 @@
 //! Findings on the error added by each transfer scheme.
 
+use catalogue::metric;
 use records::Family;
 use records::text::significant;
 
@@ -17,7 +18,7 @@ pub(super) fn transfer(runs: &[Run]) -> Vec<String> {
             let own: Vec<(&Run, f64)> = case
                 .iter()
                 .filter(|r| source(r) == from)
-                .filter_map(|r| r.value("rms").map(|v| (r, v)))
+                .filter_map(|r| r.value(&metric::RMS).map(|v| (r, v)))
                 .collect();
             let (Some(best), Some(worst)) = (
                 own.iter().min_by(|a, b| a.1.total_cmp(&b.1)),

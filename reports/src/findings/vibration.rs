@@ -1,5 +1,6 @@
 //! Findings on the effect of the mass matrix on frequencies.
 
+use catalogue::metric;
 use records::Family;
 use records::text::{list, significant};
 
@@ -20,7 +21,7 @@ pub(super) fn vibrations(runs: &[Run]) -> Vec<String> {
                 let mut errors: Vec<f64> = finest
                     .iter()
                     .filter(|r| r.is.family == family && r.is.mass.as_deref() == Some(mass))
-                    .filter_map(|r| Some((r.value("frequency-ratio")? - 1.0) * 1e2))
+                    .filter_map(|r| Some((r.value(&metric::FREQUENCY_RATIO)? - 1.0) * 1e2))
                     .collect();
                 errors.sort_by(f64::total_cmp);
                 if let (Some(low), Some(high)) = (errors.first(), errors.last()) {
@@ -38,7 +39,7 @@ pub(super) fn vibrations(runs: &[Run]) -> Vec<String> {
         let slow: Vec<String> = finest
             .iter()
             .zip(names)
-            .filter_map(|(r, name)| Some((name, r.value("slow-modes").filter(|count| *count > 0.0)?)))
+            .filter_map(|(r, name)| Some((name, r.value(&metric::SLOW_MODES).filter(|count| *count > 0.0)?)))
             .map(|(name, count)| format!("{name} has {count}"))
             .collect();
         if !slow.is_empty() {
@@ -46,7 +47,7 @@ pub(super) fn vibrations(runs: &[Run]) -> Vec<String> {
                 "{case}: some methods have spurious modes below the first frequency of the body: {}.",
                 list(&slow)
             ));
-        } else if finest.iter().any(|r| r.value("slow-modes").is_some()) {
+        } else if finest.iter().any(|r| r.value(&metric::SLOW_MODES).is_some()) {
             out.push(format!("{case}: no method has spurious modes below the first frequency of the body."));
         }
     }

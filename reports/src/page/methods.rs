@@ -2,6 +2,9 @@
 
 use std::collections::{BTreeMap, HashMap};
 
+use catalogue::metric::{
+    ENERGY, L2, Metric, PEAK_ERROR, PENETRATION, PRESSURE, RELATIVE_RMS, TOOL_FORCE_ERROR,
+};
 use records::Family;
 use serde::Serialize;
 
@@ -50,8 +53,8 @@ pub(super) struct RunColumns {
 }
 
 /// Errors in the description of a run.
-const ERRORS: [&str; 7] =
-    ["l2", "relative-rms", "energy", "pressure", "tool-force-error", "peak-error", "penetration"];
+const ERRORS: [&Metric; 7] =
+    [&L2, &RELATIVE_RMS, &ENERGY, &PRESSURE, &TOOL_FORCE_ERROR, &PEAK_ERROR, &PENETRATION];
 
 /// Collector of labels and runs.
 pub(super) struct Methods {
@@ -93,7 +96,7 @@ impl Methods {
         runs.seconds.push(run.total().map(|t| t as f32));
         runs.memory.push(run.memory());
         for error in ERRORS {
-            runs.errors.entry(error).or_default().push(run.value(error).map(|v| v as f32));
+            runs.errors.entry(error.name).or_default().push(run.value(error).map(|v| v as f32));
         }
     }
 

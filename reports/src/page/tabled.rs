@@ -4,7 +4,7 @@ use records::text::short;
 use records::{Axis, Trial};
 use serde::Serialize;
 
-use crate::quantity::label;
+use crate::quantity::label_of_name;
 use crate::table::{Column, Table};
 
 #[derive(Serialize)]
@@ -89,7 +89,7 @@ impl<'a> MapView<'a> {
             case: &axis.case,
             name: &axis.name,
             unit: &axis.unit,
-            judge: label(&axis.judge),
+            judge: label_of_name(&axis.judge),
             base: short(axis.base),
             wrong: axis.wrong,
             classes: axis.classes(),

@@ -1,5 +1,6 @@
 //! Tool force against travel, step by step, compared with the reference and its uncertainty.
 
+use catalogue::metric;
 use records::Family;
 
 use crate::history::{band, between, curve, reference};
@@ -33,11 +34,12 @@ pub(super) fn force_closure(runs: &[Run]) -> Table {
         let all: Vec<_> = series(case).into_iter().filter(|s| s.is().family != Family::Reference).collect();
         let names = labels(all.iter().map(|s| s.is()));
         let known = reference(case);
-        let force = known.map(|r| curve(r, "closure", "tool-force")).unwrap_or_default();
-        let around = known.map(|r| band(r, "closure", "tool-force")).unwrap_or_default();
+        let force = known.map(|r| curve(r, &metric::CLOSURE, &metric::TOOL_FORCE)).unwrap_or_default();
+        let around = known.map(|r| band(r, &metric::CLOSURE, &metric::TOOL_FORCE)).unwrap_or_default();
         let low: Vec<(f64, f64)> = around.iter().map(|b| (b.0, b.1)).collect();
         let high: Vec<(f64, f64)> = around.iter().map(|b| (b.0, b.2)).collect();
-        let curves: Vec<_> = all.iter().map(|s| curve(s.finest(), "closure", "tool-force")).collect();
+        let curves: Vec<_> =
+            all.iter().map(|s| curve(s.finest(), &metric::CLOSURE, &metric::TOOL_FORCE)).collect();
         // Step 0 is the start of every tool, without a force.
         for step in 1..curves.iter().map(Vec::len).max().unwrap_or(0) {
             for ((s, name), points) in all.iter().zip(&names).zip(&curves) {

@@ -1,5 +1,7 @@
 //! Neighbours, conditioning and fallbacks of the meshfree methods.
 
+use catalogue::metric;
+
 use crate::select::Run;
 use crate::table::Column::{Number, Words};
 use crate::table::{Cell, Table};
@@ -31,9 +33,9 @@ pub(super) fn conditioning(runs: &[Run]) -> Table {
     );
     for run in runs {
         if run
-            .value("neighbours-mean")
-            .or(run.value("condition-max"))
-            .or(run.value("condition-median"))
+            .value(&metric::NEIGHBOURS_MEAN)
+            .or(run.value(&metric::CONDITION_MAX))
+            .or(run.value(&metric::CONDITION_MEDIAN))
             .is_none()
         {
             continue;
@@ -41,7 +43,6 @@ pub(super) fn conditioning(runs: &[Run]) -> Table {
         let words = |value: &'_ Option<String>| value.clone().unwrap_or_else(|| "—".into());
         let scale = run.is.support_scale.map_or("—".into(), |scale| scale.to_string());
         let (basis, integration) = (words(&run.is.basis), words(&run.is.integration));
-        let count = |quantity| Cell::Digits(run.value(quantity), 4);
         // Poisson's ratio has no influence here, so all ratios share one row.
         table.row_once(&[
             Cell::Text(&run.is.case),
@@ -51,14 +52,14 @@ pub(super) fn conditioning(runs: &[Run]) -> Table {
             Cell::Text(&scale),
             Cell::Text(&integration),
             Cell::Count(run.is.nodes),
-            whole(run.value("neighbours-min")),
-            count("neighbours-mean"),
-            whole(run.value("neighbours-max")),
-            Cell::Digits(run.value("condition-median"), 3),
-            Cell::Digits(run.value("condition-max"), 3),
-            whole(run.value("fallbacks-enlarged")),
-            whole(run.value("fallbacks-regularised")),
-            whole(run.value("fallbacks-reduced")),
+            whole(run.value(&metric::NEIGHBOURS_MIN)),
+            Cell::Digits(run.value(&metric::NEIGHBOURS_MEAN), 4),
+            whole(run.value(&metric::NEIGHBOURS_MAX)),
+            Cell::Digits(run.value(&metric::CONDITION_MEDIAN), 3),
+            Cell::Digits(run.value(&metric::CONDITION_MAX), 3),
+            whole(run.value(&metric::FALLBACKS_ENLARGED)),
+            whole(run.value(&metric::FALLBACKS_REGULARISED)),
+            whole(run.value(&metric::FALLBACKS_REDUCED)),
         ]);
     }
     table

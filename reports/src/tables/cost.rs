@@ -85,6 +85,7 @@ mod tests {
     use super::*;
     use crate::blank::Blank as _;
     use crate::select::{runs, series};
+    use catalogue::metric;
     use records::{Family, Record};
 
     fn exponent(times: &[(u64, f64)]) -> Option<f64> {
@@ -94,12 +95,12 @@ mod tests {
                 family: Family::Efg,
                 nodes,
                 spacing: (nodes as f64).powf(-1.0 / 3.0),
-                quantity: "time".into(),
                 phase: "prepare".into(),
                 statistic: "median".into(),
                 value,
                 ..Record::default()
             }
+            .with(&metric::TIME)
             .of_its_run()
         };
         let records: Vec<Record> = times.iter().map(record).collect();

@@ -1,5 +1,6 @@
 //! Components of the errors of clouds: reference, discretisation, integration, transfer.
 
+use catalogue::metric;
 use records::Family;
 use records::text::ratio;
 
@@ -47,8 +48,8 @@ pub(crate) fn parts<'a, 'r>(runs: &'a [Run<'r>]) -> Vec<Parts<'a, 'r>> {
             let same =
                 |r: &&Run| r.is.case == run.is.case && r.is.poisson.to_bits() == run.is.poisson.to_bits();
             let elements = runs.iter().filter(same).filter(|r| r.is.family == Family::Fem);
-            let from_reference = elements.filter_map(|r| r.value("rms")).filter(|rms| *rms > 0.0);
-            let exact = run.value("l2").map(|_| 0.0);
+            let from_reference = elements.filter_map(|r| r.value(&metric::RMS)).filter(|rms| *rms > 0.0);
+            let exact = run.value(&metric::L2).map(|_| 0.0);
             let carried = runs.iter().filter(same).find(|r| {
                 (r.is.variant.as_str(), r.is.nodes) == ("inverse-distance", run.is.nodes)
                     && r.is.from.as_ref() == Some(&run.is.method)
@@ -58,10 +59,10 @@ pub(crate) fn parts<'a, 'r>(runs: &'a [Run<'r>]) -> Vec<Parts<'a, 'r>> {
                 run,
                 label,
                 reference: exact.or_else(|| from_reference.reduce(f64::min)),
-                discretisation: run.value("discretisation-rms")?,
-                integration: run.value("integration-rms")?,
-                transfer: carried.and_then(|r| r.value("transfer-rms")),
-                total: run.value("rms"),
+                discretisation: run.value(&metric::DISCRETISATION_RMS)?,
+                integration: run.value(&metric::INTEGRATION_RMS)?,
+                transfer: carried.and_then(|r| r.value(&metric::TRANSFER_RMS)),
+                total: run.value(&metric::RMS),
             })
         })
         .collect()
@@ -127,10 +128,10 @@ mod tests {
             kernel: from.map(|_| "cubic-spline".into()),
             nodes,
             elements: 10 * nodes,
-            quantity: quantity.into(),
             value,
             ..Record::blank()
         }
+        .named(quantity)
         .of_its_run()
     }
 

@@ -1,5 +1,6 @@
 //! Tables of errors and largest displacements of every run.
 
+use catalogue::metric::{self, Address};
 use records::text::ratio;
 
 use super::{labelled, millimetres};
@@ -15,10 +16,10 @@ pub(super) fn relative(runs: &[Run]) -> Table {
         "Relative errors",
         "L2 norm of the displacement, energy norm and L2 norm of the pressure, each relative to the reference; ν is Poisson's ratio, h the mean node spacing",
         &[
-            ("L2 [1]", "l2"),
-            ("energy [1]", "energy"),
-            ("pressure [1]", "pressure"),
-            ("tip / exact [1]", "tip"),
+            ("L2 [1]", metric::L2.whole()),
+            ("energy [1]", metric::ENERGY.whole()),
+            ("pressure [1]", metric::PRESSURE.whole()),
+            ("tip / exact [1]", metric::TIP.whole()),
         ],
         1.0,
         Cell::Scientific,
@@ -27,12 +28,13 @@ pub(super) fn relative(runs: &[Run]) -> Table {
 
 /// Table of the RMS of the displacement error, by direction and of its magnitude.
 pub(super) fn rms(runs: &[Run]) -> Table {
+    let [x, y, z, all] = metric::RMS.parts();
     rows(
         runs,
-        "rms",
+        metric::RMS.name,
         "RMS errors",
         "Root mean square of the displacement difference from the reference, by direction and in magnitude",
-        &[("RMS x [mm]", "rms-x"), ("RMS y [mm]", "rms-y"), ("RMS z [mm]", "rms-z"), ("RMS |u| [mm]", "rms")],
+        &[("RMS x [mm]", x), ("RMS y [mm]", y), ("RMS z [mm]", z), ("RMS |u| [mm]", all)],
         1e3,
         Cell::Scientific,
     )
@@ -40,6 +42,7 @@ pub(super) fn rms(runs: &[Run]) -> Table {
 
 /// Table of the largest displacements, and of the largest error.
 pub(super) fn maxima(runs: &[Run]) -> Table {
+    let [x, y, z, max] = metric::MAX.parts();
     rows(
         runs,
         "maxima",
@@ -47,12 +50,12 @@ pub(super) fn maxima(runs: &[Run]) -> Table {
         "Largest displacement at the end by direction and in magnitude, the largest magnitude over all recorded \
          states in dynamics, and the largest error of the magnitude",
         &[
-            ("max x [mm]", "max-x"),
-            ("max y [mm]", "max-y"),
-            ("max z [mm]", "max-z"),
-            ("max |u| [mm]", "max"),
-            ("max over time [mm]", "max-over-time"),
-            ("max error [mm]", "max-error"),
+            ("max x [mm]", x),
+            ("max y [mm]", y),
+            ("max z [mm]", z),
+            ("max |u| [mm]", max),
+            ("max over time [mm]", metric::MAX_OVER_TIME.whole()),
+            ("max error [mm]", metric::MAX_ERROR.whole()),
         ],
         1e3,
         |v| Cell::Digits(v, 4),
@@ -65,19 +68,19 @@ fn rows(
     name: &'static str,
     title: &str,
     caption: &str,
-    columns: &[(&str, &str)],
+    columns: &[(&str, Address)],
     scale: f64,
     cell: impl Fn(Option<f64>) -> Cell<'static>,
 ) -> Table {
     let solved = solved(runs);
-    let filled: Vec<&(&str, &str)> =
-        columns.iter().filter(|(_, q)| solved.iter().any(|r| r.value(q).is_some())).collect();
+    let filled: Vec<&(&str, Address)> =
+        columns.iter().filter(|(_, of)| solved.iter().any(|r| r.value(*of).is_some())).collect();
     let mut header =
         vec![("case", Words), ("ν [1]", Number), ("method", Words), ("nodes", Number), ("h [mm]", Number)];
     header.extend(filled.iter().map(|(head, _)| (*head, Number)));
     let mut table = Table::new(name, title, caption, &header);
     for (run, label) in labelled(&solved) {
-        let values: Vec<Option<f64>> = filled.iter().map(|(_, q)| run.value(q)).collect();
+        let values: Vec<Option<f64>> = filled.iter().map(|(_, of)| run.value(*of)).collect();
         if values.iter().all(Option::is_none) {
             continue;
         }
@@ -89,10 +92,10 @@ fn rows(
             Cell::Count(run.is.nodes),
             Cell::Digits(millimetres(Some(run.is.spacing)).filter(|h| *h > 0.0), 4),
         ];
-        cells.extend(filled.iter().zip(&values).map(|((_, quantity), v)| match *quantity {
+        cells.extend(filled.iter().zip(&values).map(|((_, of), v)| match of.metric {
             // A ratio close to one is most readable in plain notation.
-            "tip" => Cell::Digits(*v, 4),
-            _ if name == "rms" && run.is_reference() => Cell::Named("reference", 0.0),
+            metric if *metric == metric::TIP => Cell::Digits(*v, 4),
+            metric if *metric == metric::RMS && run.is_reference() => Cell::Named("reference", 0.0),
             _ => cell(v.map(|v| v * scale)),
         }));
         table.row(&cells);

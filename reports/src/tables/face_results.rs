@@ -1,5 +1,6 @@
 //! Results other than errors: support forces, mean displacements of faces, and frequencies.
 
+use catalogue::metric::{self, Metric};
 use records::Purpose;
 
 use crate::history::curve;
@@ -19,21 +20,15 @@ fn finest<'a>(runs: &[Run<'a>]) -> Vec<(Run<'a>, String)> {
     out
 }
 
-/// Vector of the quantities `NAME-x`, `NAME-y` and `NAME-z` at the place with this number, from 1; `None`
-/// without any of them.
-fn vector(run: &Run, name: &str, place: usize) -> Option<[Option<f64>; 3]> {
-    let ending = if place == 1 { String::new() } else { format!("-{place}") };
-    let found = ["x", "y", "z"].map(|axis| run.value(&format!("{name}-{axis}{ending}")));
-    found.iter().any(Option::is_some).then_some(found)
-}
-
 /// Adds a row for every place of every run; places are numbered in the order of the scene.
-fn of_places(mut table: Table, runs: &[Run], name: &str, scale: f64) -> Table {
+fn of_places(mut table: Table, runs: &[Run], vector: &'static Metric, scale: f64) -> Table {
     for (run, label) in finest(runs) {
-        for (place, found) in (1..).map_while(|place| Some((place, vector(&run, name, place)?))) {
+        let at = |place: usize| vector.components().map(|component| run.value(component.at(place)));
+        let recorded = |found: &[Option<f64>; 3]| found.iter().any(Option::is_some);
+        for (place, found) in (1..).zip((0..).map(at).take_while(recorded)) {
             let [x, y, z] = found.map(|value| Cell::Digits(value.map(|v| v * scale), 4));
             let (case, nodes) = (Cell::Text(&run.is.case), Cell::Count(run.is.nodes));
-            table.row(&[case, Cell::Text(&label), nodes, Cell::Count(place as u64), x, y, z]);
+            table.row(&[case, Cell::Text(&label), nodes, Cell::Count(place), x, y, z]);
         }
     }
     table
@@ -52,7 +47,12 @@ pub(super) fn supports(runs: &[Run]) -> Table {
     ];
     let caption = "Force of each support on the body at the end, along the constrained axes, for the finest run of \
                    each method; supports are numbered as in the scene";
-    of_places(Table::new("support-forces", "Forces of supports", caption, &header), runs, "reaction", 1.0)
+    of_places(
+        Table::new("support-forces", "Forces of supports", caption, &header),
+        runs,
+        &metric::REACTION,
+        1.0,
+    )
 }
 
 /// Table of the mean displacement of every requested face.
@@ -68,7 +68,12 @@ pub(super) fn means(runs: &[Run]) -> Table {
     ];
     let caption = "Area-weighted mean displacement of the faces in output.means at the end, for the finest run of \
                    each method; faces are numbered as in the scene";
-    of_places(Table::new("face-means", "Mean displacement of faces", caption, &header), runs, "mean", 1e3)
+    of_places(
+        Table::new("face-means", "Mean displacement of faces", caption, &header),
+        runs,
+        &metric::MEAN,
+        1e3,
+    )
 }
 
 /// Table of the frequency of every mode.
@@ -88,8 +93,8 @@ pub(super) fn frequencies(runs: &[Run]) -> Table {
         ],
     );
     for (run, label) in finest(runs) {
-        let ratios = curve(&run, "mode", "omega-ratio");
-        for (mode, frequency) in curve(&run, "mode", "frequency") {
+        let ratios = curve(&run, &metric::MODE, &metric::OMEGA_RATIO);
+        for (mode, frequency) in curve(&run, &metric::MODE, &metric::FREQUENCY) {
             let ratio = ratios.iter().find(|(other, _)| *other == mode).map(|(_, ratio)| *ratio);
             table.row(&[
                 Cell::Text(&run.is.case),

@@ -1,5 +1,7 @@
 //! Free vibrations: the first frequency, and spurious modes.
 
+use catalogue::metric::{self, Metric};
+
 use super::labelled;
 use crate::select::Run;
 use crate::table::Column::{Number, Words};
@@ -30,22 +32,22 @@ pub(super) fn modes(runs: &[Run]) -> Table {
     );
     for (run, label) in labelled(runs) {
         let Some(mass) = &run.is.mass else { continue };
-        let percent = |quantity: &str| run.value(quantity).map(|v| v * 1e2);
-        let count = |quantity: &str| Cell::Digits(run.value(quantity), 3);
-        let whole = |quantity: &str| run.value(quantity).map_or(count(quantity), |v| Cell::Count(v as u64));
+        let percent = |of: &'static Metric| run.value(of).map(|v| v * 1e2);
+        let whole =
+            |of: &'static Metric| run.value(of).map_or(Cell::Digits(None, 3), |v| Cell::Count(v as u64));
         table.row(&[
             Cell::Text(&run.is.case),
             Cell::Text(&label),
             Cell::Text(mass),
             Cell::Count(run.is.nodes),
             Cell::Count(run.is.dofs),
-            Cell::Digits(percent("frequency-ratio").map(|v| v - 1e2), 3),
-            Cell::Digits(percent("mode-overlap"), 4),
-            Cell::Digits(percent("spectrum-error"), 3),
-            whole("slow-modes"),
-            whole("rigid-modes"),
-            whole("massless"),
-            Cell::Digits(run.value("critical-step").map(|s| s * 1e3), 3),
+            Cell::Digits(percent(&metric::FREQUENCY_RATIO).map(|v| v - 1e2), 3),
+            Cell::Digits(percent(&metric::MODE_OVERLAP), 4),
+            Cell::Digits(percent(&metric::SPECTRUM_ERROR), 3),
+            whole(&metric::SLOW_MODES),
+            whole(&metric::RIGID_MODES),
+            whole(&metric::MASSLESS),
+            Cell::Digits(run.value(&metric::CRITICAL_STEP).map(|s| s * 1e3), 3),
         ]);
     }
     table

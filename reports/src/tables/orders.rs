@@ -1,18 +1,19 @@
 //! Observed orders of convergence and grid convergence indices.
 
-use catalogue::Dimension;
 use catalogue::metric::{self, Metric};
 use records::text::ratio;
 
 use crate::order;
+use crate::quantity::{scale, unit};
 use crate::select::{Run, Series, by_material, labels, series, solved};
 use crate::table::Column::{Number, Words};
 use crate::table::{Cell, Table};
 
 /// Outcomes with a grid convergence index.
-const OUTCOMES: [&Metric; 6] =
-    [&metric::TIP, &metric::STRAIN_ENERGY, &metric::MAX, &metric::MAX_X, &metric::MAX_Y, &metric::MAX_Z];
-const ERRORS: [&str; 5] = ["l2", "energy", "pressure", "rms", "max-error"];
+const OUTCOMES: [&Metric; 3] = [&metric::TIP, &metric::STRAIN_ENERGY, &metric::MAX];
+/// Errors with an observed order.
+const ERRORS: [&Metric; 5] =
+    [&metric::L2, &metric::ENERGY, &metric::PRESSURE, &metric::RMS, &metric::MAX_ERROR];
 
 /// Table of observed orders, by least squares and between the finest levels.
 pub(super) fn observed(runs: &[Run]) -> Table {
@@ -37,16 +38,16 @@ pub(super) fn observed(runs: &[Run]) -> Table {
         ],
     );
     for (label, series) in labelled(runs) {
-        for quantity in ERRORS {
-            let Some(order) = order::observed(&series.points(quantity)) else { continue };
+        for error in ERRORS {
+            let Some(order) = order::observed(&series.points(error)) else { continue };
             let poisson = ratio(series.is().poisson);
             table.row(&[
                 Cell::Text(&series.is().case),
                 Cell::Text(&poisson),
                 Cell::Text(&label),
-                Cell::Text(quantity),
+                Cell::Text(error.name),
                 Cell::Count(order.pairs.len() as u64 + 1),
-                Cell::Digits(series.theory(quantity), 1),
+                Cell::Digits(series.theory(error), 1),
                 Cell::Digits(Some(order.fit), 3),
                 Cell::Digits(order.error, 2),
                 Cell::Digits(order.band, 2),
@@ -83,31 +84,29 @@ pub(super) fn convergence_index(runs: &[Run]) -> Table {
         ],
     );
     for (label, series) in labelled(runs) {
-        for outcome in OUTCOMES {
-            let quantity = outcome.name;
+        for outcome in OUTCOMES.into_iter().flat_map(Metric::addresses) {
             let points: Vec<(f64, f64)> = series
                 .runs
                 .iter()
-                .filter_map(|r| r.value(quantity).map(|v| (r.is.spacing, v)))
+                .filter_map(|r| r.value(outcome).map(|v| (r.is.spacing, v)))
                 .filter(|(h, _)| *h > 0.0)
                 .collect();
             // In a direction that hardly moves, rounding or the asymmetry of the mesh dominates, not a
             // converging outcome.
-            let still = |v: f64| v < 1e-3 * series.finest().value(metric::MAX.name).unwrap_or(0.0);
-            let is_length = outcome.dimension == Dimension::Length;
-            if is_length && *outcome != metric::MAX && points.last().is_some_and(|p| still(p.1)) {
+            let still = |v: f64| v < 1e-3 * series.finest().value(&metric::MAX).unwrap_or(0.0);
+            if !outcome.component.is_empty() && points.last().is_some_and(|p| still(p.1)) {
                 continue;
             }
             let Some(found) = order::grid_convergence(&points) else { continue };
             let of = |value: fn(&order::Gci) -> f64| found.index.as_ref().map(value);
             let poisson = ratio(series.is().poisson);
-            let (unit, scale) = if is_length { ("mm", 1e3) } else { (outcome.unit(), 1.0) };
+            let (name, scale) = (outcome.to_string(), scale(outcome));
             table.row(&[
                 Cell::Text(&series.is().case),
                 Cell::Text(&poisson),
                 Cell::Text(&label),
-                Cell::Text(quantity),
-                Cell::Text(unit),
+                Cell::Text(&name),
+                Cell::Text(unit(outcome)),
                 Cell::Digits(points.last().map(|p| p.1 * scale), 5),
                 Cell::Digits(of(|gci| gci.order), 3),
                 Cell::Digits(of(|gci| gci.extrapolated).map(|value| value * scale), 5),

@@ -1,5 +1,6 @@
 //! Times and errors of external solvers relative to this program's elements on the same mesh.
 
+use catalogue::metric;
 use records::Family;
 use records::text::ratio;
 
@@ -78,10 +79,7 @@ fn is_same_problem(ours: &Run, theirs: &Run) -> bool {
 
 /// Median CPU time of the whole run, s.
 fn cpu(run: &Run) -> Option<f64> {
-    let fits = |quantity: &str, phase: &str, statistic: &str| {
-        quantity == "cpu-time" && phase == "total" && statistic == "median"
-    };
-    run.records().iter().find(|r| fits(&r.quantity, &r.phase, &r.statistic)).map(|r| r.value)
+    run.timed(&metric::CPU_TIME, "total", "median")
 }
 
 /// Total time of the phases that a solver reports itself, s.
@@ -89,7 +87,7 @@ fn own_phases(run: &Run) -> Option<f64> {
     let own = run
         .records()
         .iter()
-        .filter(|r| r.quantity == "time" && r.statistic == "median" && r.phase.starts_with(OWN));
+        .filter(|r| r.is(&metric::TIME) && r.statistic == "median" && r.phase.starts_with(OWN));
     own.map(|r| r.value).reduce(|a, b| a + b)
 }
 
@@ -101,8 +99,7 @@ mod tests {
     use records::Record;
 
     fn with_cpu(mut records: Vec<Record>, seconds: f64) -> Vec<Record> {
-        let mut cpu = records[0].clone();
-        (cpu.quantity, cpu.value) = ("cpu-time".into(), seconds);
+        let cpu = Record { value: seconds, ..records[0].clone() }.with(&metric::CPU_TIME);
         records.push(cpu);
         records
     }

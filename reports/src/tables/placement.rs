@@ -1,15 +1,16 @@
 //! Results on clouds with the same number of nodes, placed by different seeds.
 
+use catalogue::metric::{ENERGY, L2, MAX, Metric, PRESSURE, RMS, SMALLEST_J, TOOL_FORCE};
 use records::Family;
 
 use crate::clouds::{Clouds, Spread};
-use crate::quantity::Shown;
+use crate::quantity::{label, scale};
 use crate::select::groups;
 use crate::table::Column::{Number, Words};
 use crate::table::{Cell, Table};
 
 /// Quantities reported if they are recorded.
-const QUANTITIES: [&str; 7] = ["rms", "l2", "energy", "pressure", "max", "tool-force", "smallest-j"];
+const QUANTITIES: [&Metric; 7] = [&RMS, &L2, &ENERGY, &PRESSURE, &MAX, &TOOL_FORCE, &SMALLEST_J];
 
 /// Table of the quartiles of every quantity over the clouds of a method.
 pub(super) fn placement(clouds: &[Clouds]) -> Table {
@@ -35,9 +36,9 @@ pub(super) fn placement(clouds: &[Clouds]) -> Table {
     );
     for case in groups(clouds, |g| (g[0].is.case.clone(), g[0].is.poisson.to_bits())) {
         for group in case.iter().filter(|g| g[0].is.family != Family::Interp) {
-            for (quantity, shown) in QUANTITIES.into_iter().filter_map(|q| Some((q, Shown::of(q)?))) {
+            for quantity in QUANTITIES {
                 let Some(Spread { count, quantiles }) = Spread::of(group, quantity) else { continue };
-                let name = shown.with_unit();
+                let (name, scale) = (label(quantity), scale(quantity.whole()));
                 let mut row = vec![
                     Cell::Text(&group[0].is.case),
                     Cell::Text(group[0].name()),
@@ -46,7 +47,7 @@ pub(super) fn placement(clouds: &[Clouds]) -> Table {
                     Cell::Text(&name),
                     Cell::Count(count as u64),
                 ];
-                row.extend(quantiles.map(|q| Cell::Digits(Some(q * shown.scale()), 3)));
+                row.extend(quantiles.map(|q| Cell::Digits(Some(q * scale), 3)));
                 table.row(&row);
             }
         }

@@ -1,5 +1,7 @@
 //! Tables of computed numbers next to published numbers.
 
+use catalogue::metric;
+
 use super::millimetres;
 use crate::claims::{pairs, splits};
 use crate::select::Run;
@@ -41,7 +43,7 @@ pub(super) fn beside_ours(runs: &[Run]) -> Table {
             Cell::Text(&pair.run.is.case),
             Cell::Text(&pair.run.is.method),
             Cell::Count(pair.run.is.nodes),
-            Cell::Digits(Some(pair.run.value("load-carried").unwrap_or(1.0)), 4),
+            Cell::Digits(Some(pair.run.value(&metric::LOAD_CARRIED).unwrap_or(1.0)), 4),
             match ours.filter(|_| published.unit() == "1") {
                 Some(count) => Cell::Count(count as u64),
                 None => Cell::Digits(ours, 3),

@@ -3,7 +3,7 @@
 use records::text::short;
 use records::{Axis, AxisVerdict as Verdict, RunSet};
 
-use crate::quantity::label;
+use crate::quantity::label_of_name;
 use crate::table::Column::{Number, Words};
 use crate::table::{Cell, Table};
 
@@ -38,7 +38,7 @@ pub(super) fn stability(set: &RunSet) -> Table {
                 Cell::Text(method),
                 Cell::Digits(Some(axis.base), 4),
                 Cell::Digits(axis.trial(method, axis.base).and_then(|t| t.error), 3),
-                Cell::Text(&label(&axis.judge)),
+                Cell::Text(&label_of_name(&axis.judge)),
                 Cell::Text(&first(Verdict::Bends, false)),
                 Cell::Text(&first(Verdict::Bends, true)),
                 Cell::Text(&first(Verdict::Warned, false)),

@@ -1,5 +1,6 @@
 //! Comparison of transfer schemes.
 
+use catalogue::metric;
 use records::Family;
 
 use super::millimetres;
@@ -38,6 +39,7 @@ pub(super) fn schemes(runs: &[Run]) -> Table {
     );
     for run in runs.iter().filter(|r| r.is.family == Family::Interp) {
         let (from, settings) = carried(run);
+        let [x, y, z, all] = metric::RMS.parts().map(|part| Cell::Digits(millimetres(run.value(part)), 3));
         table.row(&[
             Cell::Text(&run.is.case),
             Cell::Text(&from),
@@ -45,12 +47,12 @@ pub(super) fn schemes(runs: &[Run]) -> Table {
             Cell::Text(&settings),
             Cell::Count(run.is.nodes),
             Cell::Count(run.is.points),
-            Cell::Scientific(run.value("l2")),
-            Cell::Digits(millimetres(run.value("rms-x")), 3),
-            Cell::Digits(millimetres(run.value("rms-y")), 3),
-            Cell::Digits(millimetres(run.value("rms-z")), 3),
-            Cell::Digits(millimetres(run.value("rms")), 3),
-            Cell::Digits(millimetres(run.value("transfer-rms")), 3),
+            Cell::Scientific(run.value(&metric::L2)),
+            x,
+            y,
+            z,
+            all,
+            Cell::Digits(millimetres(run.value(&metric::TRANSFER_RMS)), 3),
             Cell::Digits(millimetres(run.time("prepare", "median")), 3),
             Cell::Digits(millimetres(run.time("transfer", "median")), 3),
         ]);

@@ -36,8 +36,7 @@ fn base(case: &str, method: &str, family: Family, variant: &str, settings: Setti
 }
 
 fn push(set: &mut RunSet, run: &Record, quantity: &str, unit: &str, value: f64) {
-    let record = Record { quantity: quantity.into(), unit: unit.into(), value, ..run.clone() };
-    set.records.push(record);
+    set.records.push(Record { unit: unit.into(), value, ..run.clone() }.named(quantity));
 }
 
 fn push_times(set: &mut RunSet, run: &Record, phases: &[(&str, f64)]) {
@@ -290,15 +289,17 @@ fn grasp(set: &mut RunSet) {
         ("measured", Family::Reference, 0, 1.0),
     ] {
         for step in 0..=40u32 {
-            let at = |statistic: &str, quantity: &str, unit: &str, value: f64| Record {
-                nodes,
-                spacing: if nodes == 0 { 0.0 } else { 0.1 / (nodes as f64).cbrt() },
-                quantity: quantity.into(),
-                unit: unit.into(),
-                step: Some(step.into()),
-                statistic: statistic.into(),
-                value,
-                ..base("grasp", method, family, method, PLAIN)
+            let at = |statistic: &str, quantity: &str, unit: &str, value: f64| {
+                let record = Record {
+                    nodes,
+                    spacing: if nodes == 0 { 0.0 } else { 0.1 / (nodes as f64).cbrt() },
+                    unit: unit.into(),
+                    step: Some(step.into()),
+                    statistic: statistic.into(),
+                    value,
+                    ..base("grasp", method, family, method, PLAIN)
+                };
+                record.named(quantity)
             };
             let closure = 0.25e-3 * f64::from(step);
             let force = stiffness * (120.0 * closure + 9e3 * closure * closure);

@@ -6,7 +6,7 @@ mod schema;
 use std::path::Path;
 
 use cases::exact::SOLUTIONS;
-use catalogue::metric::METRICS;
+use catalogue::metric::{METRICS, Metric};
 use catalogue::warning::WARNINGS;
 use catalogue::{Dimension, suggest, units};
 use contact::TOOL_SHAPES;
@@ -104,7 +104,14 @@ fn dimensions() -> Vec<Item> {
 }
 
 fn metrics() -> Vec<Item> {
-    METRICS.iter().map(|metric| Item::new(metric.name, metric.unit(), metric.meaning)).collect()
+    let item = |metric: &&'static Metric| {
+        let second = metric.addresses().next().filter(|of| of.index.is_some()).map(|of| of.at(1));
+        let names: Vec<String> = metric.addresses().chain(second).map(|of| of.to_string()).collect();
+        let names =
+            if names.len() > 1 { format!("; recorded as {}", names.join(", ")) } else { String::new() };
+        Item::new(metric.name, metric.unit(), &format!("{}{names}", metric.meaning))
+    };
+    METRICS.iter().map(item).collect()
 }
 
 fn warnings() -> Vec<Item> {

@@ -52,7 +52,7 @@ impl Quantity {
     /// Returns the relative error of a run, the largest over several tools; `None` if the run has none.
     pub fn error(&self, outcome: &Outcome) -> Option<f64> {
         self.metrics.iter().find_map(|metric| {
-            let each = outcome.metrics.iter().filter(|m| m.entry == *metric).map(|m| m.value);
+            let each = outcome.metrics.iter().filter(|m| m.of.metric == *metric).map(|m| m.value);
             each.reduce(f64::max)
         })
     }
@@ -60,7 +60,7 @@ impl Quantity {
     /// Returns the reference's own error of this quantity, the largest over several tools; `None` if unknown.
     pub fn band(&self, reference: &Reference) -> Option<f64> {
         self.metrics.iter().find_map(|metric| {
-            let of = |index: usize| reference.band.get(&metric.numbered(index)).copied();
+            let of = |index: usize| reference.band.get(&metric.at(index).to_string()).copied();
             (0..).map_while(of).reduce(f64::max)
         })
     }

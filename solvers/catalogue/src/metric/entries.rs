@@ -1,11 +1,14 @@
 //! Definitions of the metrics.
 
-use super::{Kind, Metric, Needs};
+use super::{Kind, Metric, Needs, Shape};
 use crate::Dimension;
 
 /// Declares each metric as a separate static and lists them all.
 macro_rules! metrics {
-    ($($id:ident: $name:literal, $label:literal, $dimension:ident, $kind:ident, $needs:ident, $meaning:literal;)*) => {
+    (@shape) => { Shape::Scalar };
+    (@shape $shape:ident) => { Shape::$shape };
+    ($($id:ident: $name:literal, $label:literal, $dimension:ident, $kind:ident, $needs:ident $(, $shape:ident)?,
+        $meaning:literal;)*) => {
         $(
             #[doc = concat!("`", $name, "`: ", $meaning, ".")]
             pub static $id: Metric = Metric {
@@ -14,6 +17,7 @@ macro_rules! metrics {
                 dimension: Dimension::$dimension,
                 kind: Kind::$kind,
                 needs: Needs::$needs,
+                shape: metrics!(@shape $($shape)?),
                 meaning: $meaning,
             };
         )*
@@ -24,13 +28,7 @@ macro_rules! metrics {
 
 metrics! {
     // Errors of displacement, stress and energy.
-    RMS_X: "rms-x", "RMS error along x", Length, Error, Reference,
-        "root mean square error of the displacement along x";
-    RMS_Y: "rms-y", "RMS error along y", Length, Error, Reference,
-        "root mean square error of the displacement along y";
-    RMS_Z: "rms-z", "RMS error along z", Length, Error, Reference,
-        "root mean square error of the displacement along z";
-    RMS: "rms", "RMS error", Length, Error, Reference,
+    RMS: "rms", "RMS error", Length, Error, Reference, Vector,
         "root mean square error of the displacement; for a transfer, of the transferred displacement, which \
          includes the errors of the method and of the transfer";
     MAX_ERROR: "max-error", "largest error", Length, Error, Reference,
@@ -59,29 +57,11 @@ metrics! {
     TIP: "tip", "ratio of computed to exact", None, Value, Probes,
         "ratio of computed to exact displacement at the first probe";
     // Parts of an error, and distances from a secondary reference.
-    INTEGRATION_RMS_X: "integration-rms-x", "integration error along x", Length, Error, Reference,
-        "root mean square difference along x from the same method with the study's integration rule";
-    INTEGRATION_RMS_Y: "integration-rms-y", "integration error along y", Length, Error, Reference,
-        "root mean square difference along y from the same method with the study's integration rule";
-    INTEGRATION_RMS_Z: "integration-rms-z", "integration error along z", Length, Error, Reference,
-        "root mean square difference along z from the same method with the study's integration rule";
-    INTEGRATION_RMS: "integration-rms", "integration error", Length, Error, Reference,
+    INTEGRATION_RMS: "integration-rms", "integration error", Length, Error, Reference, Vector,
         "root mean square difference from the same method with the study's integration rule";
-    DISCRETISATION_RMS_X: "discretisation-rms-x", "discretisation error along x", Length, Error, Reference,
-        "root mean square error along x of the method with the study's integration rule";
-    DISCRETISATION_RMS_Y: "discretisation-rms-y", "discretisation error along y", Length, Error, Reference,
-        "root mean square error along y of the method with the study's integration rule";
-    DISCRETISATION_RMS_Z: "discretisation-rms-z", "discretisation error along z", Length, Error, Reference,
-        "root mean square error along z of the method with the study's integration rule";
-    DISCRETISATION_RMS: "discretisation-rms", "discretisation error", Length, Error, Reference,
+    DISCRETISATION_RMS: "discretisation-rms", "discretisation error", Length, Error, Reference, Vector,
         "root mean square error of the method with the study's integration rule";
-    BESIDE_RMS_X: "beside-rms-x", "RMS difference from the secondary reference along x", Length, Value, Reference,
-        "root mean square difference along x from the secondary reference (output.beside)";
-    BESIDE_RMS_Y: "beside-rms-y", "RMS difference from the secondary reference along y", Length, Value, Reference,
-        "root mean square difference along y from the secondary reference (output.beside)";
-    BESIDE_RMS_Z: "beside-rms-z", "RMS difference from the secondary reference along z", Length, Value, Reference,
-        "root mean square difference along z from the secondary reference (output.beside)";
-    BESIDE_RMS: "beside-rms", "RMS difference from the secondary reference", Length, Value, Reference,
+    BESIDE_RMS: "beside-rms", "RMS difference from the secondary reference", Length, Value, Reference, Vector,
         "root mean square difference from the secondary reference (output.beside)";
     // Transfers to other points.
     TRANSFER_RMS: "transfer-rms", "RMS change made by a transfer", Length, Error, Transfer,
@@ -90,21 +70,9 @@ metrics! {
          schemes";
     LINEAR_RMS: "linear-rms", "RMS error of a linear field", Length, Error, Transfer,
         "root mean square error of a transferred linear field of 10 % strain";
-    TRANSFER_ONLY_RMS_X: "transfer-only-rms-x", "RMS error of the reference's field after transfer along x", Length, Error, Transfer,
-        "root mean square error along x of the reference's own field, transferred from the cloud's nodes";
-    TRANSFER_ONLY_RMS_Y: "transfer-only-rms-y", "RMS error of the reference's field after transfer along y", Length, Error, Transfer,
-        "root mean square error along y of the reference's own field, transferred from the cloud's nodes";
-    TRANSFER_ONLY_RMS_Z: "transfer-only-rms-z", "RMS error of the reference's field after transfer along z", Length, Error, Transfer,
-        "root mean square error along z of the reference's own field, transferred from the cloud's nodes";
-    TRANSFER_ONLY_RMS: "transfer-only-rms", "RMS error of the reference's field after transfer", Length, Error, Transfer,
+    TRANSFER_ONLY_RMS: "transfer-only-rms", "RMS error of the reference's field after transfer", Length, Error, Transfer, Vector,
         "root mean square error of the reference's own field, transferred from the cloud's nodes";
-    BESIDE_TRANSFER_RMS_X: "beside-transfer-rms-x", "RMS error of transfer alone along x, secondary reference", Length, Error, Transfer,
-        "root mean square error along x of the secondary reference's own field, transferred from the cloud's nodes";
-    BESIDE_TRANSFER_RMS_Y: "beside-transfer-rms-y", "RMS error of transfer alone along y, secondary reference", Length, Error, Transfer,
-        "root mean square error along y of the secondary reference's own field, transferred from the cloud's nodes";
-    BESIDE_TRANSFER_RMS_Z: "beside-transfer-rms-z", "RMS error of transfer alone along z, secondary reference", Length, Error, Transfer,
-        "root mean square error along z of the secondary reference's own field, transferred from the cloud's nodes";
-    BESIDE_TRANSFER_RMS: "beside-transfer-rms", "RMS error of transfer alone, secondary reference", Length, Error, Transfer,
+    BESIDE_TRANSFER_RMS: "beside-transfer-rms", "RMS error of the secondary reference's field after transfer", Length, Error, Transfer, Vector,
         "root mean square error of the secondary reference's own field, transferred from the cloud's nodes";
     OUTSIDE: "outside", "targets outside the nodes' hull", None, Count, Transfer,
         "targets of a transfer outside the convex hull of the nodes or outside the mesh";
@@ -165,18 +133,10 @@ metrics! {
     LIMIT_TOOL_FORCE: "limit-tool-force", "tool force at the limit", Force, Tool, Tool,
         "force of the tool at the last stable step before the body first lost stability";
     // Supports and faces.
-    REACTION_X: "reaction-x", "support force along x", Force, Place, Support,
-        "force along x of a support on the body, at the end; the forces of all supports, loads and tools are in equilibrium";
-    REACTION_Y: "reaction-y", "support force along y", Force, Place, Support,
-        "force along y of a support on the body, at the end";
-    REACTION_Z: "reaction-z", "support force along z", Force, Place, Support,
-        "force along z of a support on the body, at the end";
-    MEAN_X: "mean-x", "mean displacement along x", Length, Place, Mean,
-        "area-weighted mean displacement along x of a face listed in output.means, at the end";
-    MEAN_Y: "mean-y", "mean displacement along y", Length, Place, Mean,
-        "area-weighted mean displacement along y of a face listed in output.means, at the end";
-    MEAN_Z: "mean-z", "mean displacement along z", Length, Place, Mean,
-        "area-weighted mean displacement along z of a face listed in output.means, at the end";
+    REACTION: "reaction", "support force", Force, Place, Support, Components,
+        "force of a support on the body, at the end; the forces of all supports, loads and tools are in equilibrium";
+    MEAN: "mean", "mean displacement", Length, Place, Mean, Components,
+        "area-weighted mean displacement of a face listed in output.means, at the end";
     // Load steps, Newton's method, relaxation.
     LOAD_CARRIED: "load-carried", "applied load fraction", None, Value, Steps,
         "fraction of the load that was reached, 0 to 1";
@@ -246,22 +206,12 @@ metrics! {
     SCHEME_DISSIPATION: "scheme-dissipation", "numerical dissipation", Energy, Value, Dynamics,
         "energy dissipated by the implicit time-stepping scheme";
     // Any run.
-    MAX_X: "max-x", "largest displacement along x", Length, Value, Run,
-        "largest absolute displacement along x at the end";
-    MAX_Y: "max-y", "largest displacement along y", Length, Value, Run,
-        "largest absolute displacement along y at the end";
-    MAX_Z: "max-z", "largest displacement along z", Length, Value, Run,
-        "largest absolute displacement along z at the end";
-    MAX: "max", "largest displacement", Length, Value, Run,
+    MAX: "max", "largest displacement", Length, Value, Run, Vector,
         "largest displacement at the end";
     STRAIN_ENERGY: "strain-energy", "strain energy", Energy, Value, Run,
         "strain energy";
-    LOAD_X: "load-x", "load along x", Force, Value, Run,
-        "sum of all nodal loads along x";
-    LOAD_Y: "load-y", "load along y", Force, Value, Run,
-        "sum of all nodal loads along y";
-    LOAD_Z: "load-z", "load along z", Force, Value, Run,
-        "sum of all nodal loads along z";
+    LOAD: "load", "load", Force, Value, Run, Components,
+        "sum of all nodal loads";
     VOLUME: "volume", "volume", Volume, Value, Run,
         "sum of the weights of all quadrature points";
     VOLUME_ERROR: "volume-error", "relative volume error", None, Error, Run,
@@ -304,8 +254,6 @@ metrics! {
         "mean number of nodes whose supports contain a quadrature point";
     NEIGHBOURS_MAX: "neighbours-max", "most neighbours", None, Count, Run,
         "largest number of nodes whose supports contain a quadrature point";
-    CONDITION: "condition", "largest condition", None, Value, Run,
-        "largest condition estimate of a moment matrix; called condition-max in records";
     CONDITION_MEDIAN: "condition-median", "median condition", None, Value, Run,
         "median condition estimate of the moment matrices";
     CONDITION_MAX: "condition-max", "largest condition", None, Value, Run,
@@ -321,6 +269,8 @@ metrics! {
     // Costs.
     MEMORY: "memory", "memory", Bytes, Cost, Run,
         "peak memory allocated in the run, excluding its input";
+    CPU_TIME: "cpu-time", "CPU time", Time, Cost, Run,
+        "CPU time of a phase, of all threads of the process";
     TIME_PREPARE: "time-prepare", "time to prepare", Time, Cost, Run,
         "seconds for search and shape functions";
     TIME_ASSEMBLE: "time-assemble", "time to assemble", Time, Cost, Run,
@@ -334,31 +284,3 @@ metrics! {
     TIME_TOTAL: "time-total", "total time", Time, Cost, Run,
         "seconds for all phases except reading files";
 }
-
-/// [`RMS`] along x, y and z, then of the magnitude of the difference.
-pub static RMS_PARTS: [&Metric; 4] = [&RMS_X, &RMS_Y, &RMS_Z, &RMS];
-
-/// [`INTEGRATION_RMS`] along x, y and z, then of the magnitude of the difference.
-pub static INTEGRATION_RMS_PARTS: [&Metric; 4] =
-    [&INTEGRATION_RMS_X, &INTEGRATION_RMS_Y, &INTEGRATION_RMS_Z, &INTEGRATION_RMS];
-
-/// [`DISCRETISATION_RMS`] along x, y and z, then of the magnitude of the difference.
-pub static DISCRETISATION_RMS_PARTS: [&Metric; 4] =
-    [&DISCRETISATION_RMS_X, &DISCRETISATION_RMS_Y, &DISCRETISATION_RMS_Z, &DISCRETISATION_RMS];
-
-/// Metrics of the force of a support along x, y and z.
-pub static REACTION_PARTS: [&Metric; 3] = [&REACTION_X, &REACTION_Y, &REACTION_Z];
-
-/// Metrics of the mean displacement of a face along x, y and z.
-pub static MEAN_PARTS: [&Metric; 3] = [&MEAN_X, &MEAN_Y, &MEAN_Z];
-
-/// [`BESIDE_RMS`] along x, y and z, then of the magnitude of the difference.
-pub static BESIDE_RMS_PARTS: [&Metric; 4] = [&BESIDE_RMS_X, &BESIDE_RMS_Y, &BESIDE_RMS_Z, &BESIDE_RMS];
-
-/// [`TRANSFER_ONLY_RMS`] along x, y and z, then of the magnitude of the difference.
-pub static TRANSFER_ONLY_RMS_PARTS: [&Metric; 4] =
-    [&TRANSFER_ONLY_RMS_X, &TRANSFER_ONLY_RMS_Y, &TRANSFER_ONLY_RMS_Z, &TRANSFER_ONLY_RMS];
-
-/// [`BESIDE_TRANSFER_RMS`] along x, y and z, then of the magnitude of the difference.
-pub static BESIDE_TRANSFER_RMS_PARTS: [&Metric; 4] =
-    [&BESIDE_TRANSFER_RMS_X, &BESIDE_TRANSFER_RMS_Y, &BESIDE_TRANSFER_RMS_Z, &BESIDE_TRANSFER_RMS];

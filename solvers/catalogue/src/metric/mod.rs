@@ -1,12 +1,12 @@
 //! Metrics: every number that is recorded, checked or drawn, with an explanation.
 
+mod address;
 mod entries;
 
+pub use address::{Address, address, find, named};
 pub use entries::*;
 
 use crate::Dimension;
-use crate::names::nearest;
-use crate::problem::Problem;
 
 /// Name, label, dimension and meaning of a number that is computed from one run, or from a family of runs at
 /// several levels.
@@ -22,6 +22,8 @@ pub struct Metric {
     pub kind: Kind,
     /// Requirement that a scene must meet for this metric.
     pub needs: Needs,
+    /// Components of the value.
+    pub shape: Shape,
     /// Meaning, in one phrase.
     pub meaning: &'static str,
 }
@@ -39,10 +41,21 @@ pub enum Kind {
     Value,
     /// A number of events or objects.
     Count,
-    /// One value per tool: the first tool has the bare name, the others have `-2`, `-3` and so on appended.
+    /// One value per tool, numbered from 1.
     Tool,
     /// One value per support, or per face with a requested mean, numbered like the tools.
     Place,
+}
+
+/// Components of a metric, each of which is a number of its own.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Shape {
+    /// A single number.
+    Scalar,
+    /// Components along x, y and z, and the magnitude.
+    Vector,
+    /// Components along x, y and z.
+    Components,
 }
 
 /// Requirement for computing a metric.
@@ -105,42 +118,10 @@ impl Metric {
         matches!(self.kind, Kind::Error | Kind::Cost)
     }
 
-    /// Returns the name of the metric for one tool, support or face. `index` counts from 0: 0 gives the bare
-    /// name, 1 appends `-2`, 2 appends `-3`.
-    pub fn numbered(&self, index: usize) -> String {
-        if index == 0 { self.name.into() } else { format!("{}-{}", self.name, index + 1) }
+    /// Whether a run has a number for each of its tools, supports or faces.
+    pub const fn is_numbered(&self) -> bool {
+        matches!(self.kind, Kind::Tool | Kind::Place)
     }
-}
-
-/// Returns the metric with that name. A name may end in the number of a tool, a support or a face, from 2:
-/// `tool-force-2` returns the metric `tool-force`.
-pub fn find(name: &str) -> Option<&'static Metric> {
-    let named = |name: &str| METRICS.iter().copied().find(|metric| metric.name == name);
-    named(name).or_else(|| {
-        let (bare, number) = name.rsplit_once('-')?;
-        let numbered = number.parse::<usize>().is_ok_and(|n| n >= 2) && !number.starts_with(['0', '+']);
-        named(bare).filter(|metric| numbered && matches!(metric.kind, Kind::Tool | Kind::Place))
-    })
-}
-
-/// Renamed metrics: old and new name.
-const RENAMED: [(&str, &str); 1] = [("estimated-error", "stress-jump")];
-
-/// Returns the metric with exactly that name.
-///
-/// # Errors
-///
-/// The name is unknown or was renamed; the help gives the nearest or the new name.
-pub fn named(name: &str) -> Result<&'static Metric, Problem> {
-    METRICS.iter().copied().find(|metric| metric.name == name).ok_or_else(|| {
-        if let Some((_, new)) = RENAMED.iter().find(|(old, _)| *old == name) {
-            return Problem::new(format!("is called '{new}' now")).found(name);
-        }
-        let near = nearest(name, METRICS.iter().map(|metric| metric.name));
-        let near = near.map_or(String::new(), |near| format!("did you mean '{near}'? "));
-        let help = format!("{near}`tissuebench list metrics` explains all of them");
-        Problem::new("is not a known metric").found(name).help(help)
-    })
 }
 
 #[cfg(test)]
@@ -148,27 +129,10 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_metric_under_its_old_name_is_refused_with_the_new_one() {
-        assert!(RENAMED.iter().all(|(old, new)| find(old).is_none() && find(new).is_some()));
-        assert!(named("estimated-error").unwrap_err().to_string().contains("'stress-jump'"));
-    }
-
-    #[test]
     fn every_metric_has_one_name_a_label_and_a_meaning() {
         for (i, metric) in METRICS.iter().enumerate() {
             assert!(!metric.label.is_empty() && !metric.meaning.is_empty(), "{}", metric.name);
             assert!(METRICS[..i].iter().all(|other| other.name != metric.name), "{} twice", metric.name);
-            assert_eq!(find(metric.name), Some(*metric));
         }
-    }
-
-    #[test]
-    fn tools_are_numbered_from_two() {
-        assert_eq!(TOOL_FORCE.numbered(0), "tool-force");
-        assert_eq!(find(&TOOL_FORCE.numbered(1)), Some(&TOOL_FORCE));
-        for none in ["tool-force-1", "tool-force-02", "rms-2", "force"] {
-            assert_eq!(find(none), None, "{none}");
-        }
-        assert_eq!(named("tool-farce").unwrap_err().help.unwrap().split(' ').nth(3), Some("'tool-force'?"));
     }
 }
