@@ -37,7 +37,10 @@ fn format(py: Python<'_>, path: &Path, version: Option<&str>) -> PyResult<Format
     };
     match format {
         Format::Gmsh(_) => Ok(Format::Gmsh(version)),
-        _ => Err(input(py, &format!("{}: version applies to Gmsh's format only; write a .msh file", path.display()))),
+        _ => Err(input(
+            py,
+            &format!("{}: version applies to Gmsh's format only; write a .msh file", path.display()),
+        )),
     }
 }
 

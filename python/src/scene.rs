@@ -52,10 +52,14 @@ impl Scene {
     fn method(&self, py: Python<'_>, id: &str) -> PyResult<scene::Method> {
         let Some(method) = self.scene.method(id) else {
             let known = self.methods().join(", ");
-            return Err(input(py, &format!("{}: no method '{id}'; known methods are {known}", self.scene.file())));
+            return Err(input(
+                py,
+                &format!("{}: no method '{id}'; known methods are {known}", self.scene.file()),
+            ));
         };
         if matches!(method.family, Family::External(_)) {
-            let problem = format!("method '{id}' uses an adapter: run the method with the command tissuebench");
+            let problem =
+                format!("method '{id}' uses an adapter: run the method with the command tissuebench");
             return Err(not_run(py, problem));
         }
         Ok(method.clone())

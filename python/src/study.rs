@@ -3,11 +3,11 @@
 use std::io::{self, Write};
 use std::path::PathBuf;
 
-use records::Status;
 use cases::scene;
 use harness::study::{Events, Filters, Finished, Plan, VerifyArgs};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+use records::Status;
 
 use crate::error::{input, of_failure, of_scene};
 use crate::table::Table;

@@ -2,7 +2,6 @@
 
 use std::path::PathBuf;
 
-use records::Record;
 use arrow_array::cast::AsArray;
 use arrow_array::ffi::FFI_ArrowSchema;
 use arrow_array::ffi_stream::FFI_ArrowArrayStream;
@@ -13,6 +12,7 @@ use numpy::PyArray1;
 use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
 use pyo3::types::{PyCapsule, PyList};
+use records::Record;
 
 use crate::columns::batch;
 use crate::error::not_run;
