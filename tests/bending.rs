@@ -8,7 +8,8 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use cases::scene::parse_study;
-use harness::study::{Plan, VerifyArgs, check};
+use catalogue::metric;
+use harness::study::{StudyPlan, VerifyArgs, check};
 use records::Record;
 
 use one_percent::within_one_percent;
@@ -26,7 +27,7 @@ fn bending() -> Vec<Record> {
         scene.display()
     );
     let dir = tempfile::tempdir().unwrap();
-    let plan = Plan::new(parse_study(&text, "study.toml").unwrap()).unwrap();
+    let plan = StudyPlan::new(parse_study(&text, "study.toml").unwrap()).unwrap();
     let args = VerifyArgs { out: dir.path().into(), ..VerifyArgs::of(Path::new("study.toml")) };
     let finished = plan.execute(&args);
     assert!(finished.set.failures.is_empty(), "{:?}", finished.set.failures);
@@ -51,7 +52,8 @@ fn errors(records: &[Record]) -> String {
             let run = run(records, method, poisson, 1);
             write!(text, "{method} {poisson} {}", run[0].nodes).unwrap();
             for quantity in QUANTITIES {
-                write!(text, " {}", number(check::value(quantity, &run).unwrap())).unwrap();
+                write!(text, " {}", number(check::value(metric::find(quantity).unwrap(), &run).unwrap()))
+                    .unwrap();
             }
             text.push('\n');
         }
@@ -61,7 +63,8 @@ fn errors(records: &[Record]) -> String {
 
 fn order(records: &[Record], method: &str, poisson: f64, quantity: &str) -> f64 {
     let levels = [1, 2].map(|level| run(records, method, poisson, level));
-    check::order(&format!("order-{quantity}"), &levels.each_ref().map(Vec::as_slice)).unwrap()
+    let order = metric::find(&format!("order-{quantity}")).unwrap();
+    check::of_many(order, &levels.each_ref().map(Vec::as_slice)).unwrap()
 }
 
 /// Whether a method reproduces the quadratic solution. Its error is then rounding and has no order.
@@ -83,7 +86,8 @@ fn orders(records: &[Record]) -> String {
 #[test]
 fn errors_and_orders_of_pure_bending() {
     let records = bending();
-    let l2 = |method, poisson, level| check::value("l2", &run(&records, method, poisson, level)).unwrap();
+    let l2 = metric::L2.whole();
+    let l2 = |method, poisson, level| check::value(l2, &run(&records, method, poisson, level)).unwrap();
     for poisson in RATIOS {
         for method in METHODS {
             if is_exact(method) {

@@ -10,7 +10,7 @@ use geometry::generate::{Jitter, box_mesh};
 use geometry::{CellKind, Facet, Mesh, cloud_from_mesh};
 use shape::{DilationGroups, TraceRows, VolumeRows};
 use shape::{Matrix3, Point3, Vector3};
-use statics::{Body, LinearProblem, Load, SolveError, Weak, WeakSupport};
+use statics::{LinearBody, LinearProblem, Load, SolveError, Weak, WeakSupport};
 
 /// A cube of 20 mm with 5 x 5 x 5 cells of six tetrahedra and inner nodes jittered by a quarter of the
 /// spacing.
@@ -81,8 +81,13 @@ fn errors(
     let materials = [tissue(poisson)];
     let law = &materials[0];
     let groups = projected.then(|| DilationGroups::nodal(volume).unwrap());
-    let body =
-        Body { nodes: mls.nodes(), volume, materials: &materials, region: &[], dilation: groups.as_ref() };
+    let body = LinearBody {
+        nodes: mls.nodes(),
+        volume,
+        materials: &materials,
+        region: &[],
+        dilation: groups.as_ref(),
+    };
     let held: Vec<Facet> = match support {
         Held::All => mesh.boundary(),
         Held::OneSide => mesh.group("x-min").unwrap().to_vec(),

@@ -10,7 +10,7 @@ use geometry::generate::{Jitter, box_mesh};
 use geometry::{CellKind, cloud_from_mesh};
 use shape::VolumeRows;
 use shape::{Point3, Vector3};
-use statics::{Body, LinearProblem, Load, Weak, WeakSupport};
+use statics::{LinearBody, LinearProblem, Load, Weak, WeakSupport};
 
 /// Returns the relative errors of displacement and stress over the integration points.
 fn errors(dilatation: f64, gauss: Option<usize>, face_points: usize, poisson: f64) -> [f64; 2] {
@@ -42,8 +42,13 @@ fn errors(dilatation: f64, gauss: Option<usize>, face_points: usize, poisson: f6
         trace,
     }];
     let loads = [Load::Body { values: volume.points().iter().map(|x| exact.body_force(x)).collect() }];
-    let body =
-        Body { nodes: mls.nodes(), volume: &volume, materials: &materials, region: &[], dilation: None };
+    let body = LinearBody {
+        nodes: mls.nodes(),
+        volume: &volume,
+        materials: &materials,
+        region: &[],
+        dilation: None,
+    };
     let problem = LinearProblem { body, loads: &loads, fixed: &[], constraints: &[], weak: &weak };
     let u = statics::assemble(&problem).unwrap().factor().unwrap().solve(1.0).unwrap().u;
     let known: Vec<Vector3> = volume.points().iter().map(|x| exact.displacement(x)).collect();

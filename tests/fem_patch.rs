@@ -8,7 +8,7 @@ use fem::{SurfaceRule, VolumeRule};
 use geometry::{CellKind, Facet, Mesh};
 use shape::{DilationGroups, VolumeRows};
 use shape::{FixedDof, Vector3};
-use statics::{Body, LinearProblem, Load, SolveError, Weak, WeakSupport};
+use statics::{LinearBody, LinearProblem, Load, SolveError, Weak, WeakSupport};
 
 /// Volumetric treatments with which every element must pass.
 const TREATMENTS: [&str; 3] = ["standard", "element-mean", "nodal-mean"];
@@ -27,8 +27,13 @@ fn errors(mesh: &Mesh, treatment: &str, poisson: f64, support: &Support) -> Resu
     let dilation = groups(treatment, mesh, &volume);
     let materials = [tissue(poisson)];
     let nodes = mesh.points();
-    let body =
-        Body { nodes, volume: &volume, materials: &materials, region: &[], dilation: dilation.as_ref() };
+    let body = LinearBody {
+        nodes,
+        volume: &volume,
+        materials: &materials,
+        region: &[],
+        dilation: dilation.as_ref(),
+    };
     let sigma = materials[0].stress(&gradient());
     let all = mesh.boundary();
     let surface = fem::surface_rows(mesh, &all, &SurfaceRule::STANDARD).unwrap();
@@ -131,8 +136,13 @@ fn the_patch_tests_see_a_spoiled_table() {
     weights[40] *= 1.001;
     let volume = VolumeRows::new(volume.at().clone(), weights).unwrap();
     let materials = [tissue(0.3)];
-    let body =
-        Body { nodes: mesh.points(), volume: &volume, materials: &materials, region: &[], dilation: None };
+    let body = LinearBody {
+        nodes: mesh.points(),
+        volume: &volume,
+        materials: &materials,
+        region: &[],
+        dilation: None,
+    };
     let fixed: Vec<FixedDof> = mesh
         .facet_group_nodes(&mesh.boundary())
         .into_iter()

@@ -9,7 +9,7 @@ use geometry::{CellKind, Mesh, cloud_from_mesh};
 use nalgebra::DMatrix;
 use shape::Vector3;
 use shape::{DilationGroups, VolumeRows};
-use statics::{Body, LinearProblem};
+use statics::{LinearBody, LinearProblem};
 
 /// Returns the stiffness of the free body. The six constraints are only needed by the assembly and do not
 /// change it.
@@ -20,7 +20,7 @@ fn stiffness(
     poisson: f64,
 ) -> DMatrix<f64> {
     let materials = [tissue(poisson)];
-    let body = Body { nodes: mesh.points(), volume, materials: &materials, region: &[], dilation };
+    let body = LinearBody { nodes: mesh.points(), volume, materials: &materials, region: &[], dilation };
     let fixed = six_holds(mesh, |_| Vector3::zeros());
     let problem = LinearProblem { body, loads: &[], fixed: &fixed, constraints: &[], weak: &[] };
     let assembled = statics::assemble(&problem).unwrap();

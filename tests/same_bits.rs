@@ -9,7 +9,7 @@ use geometry::{CellKind, Mesh, Point3, cloud_from_mesh};
 use interp::Scheme;
 use shape::Vector3;
 use shape::{DilationGroups, FluxRows, PointRows, SurfaceRows, VolumeRows};
-use statics::{Body, LinearProblem, Load, Weak, WeakSupport};
+use statics::{LinearBody, LinearProblem, Load, Weak, WeakSupport};
 
 /// All results of a run.
 #[derive(PartialEq)]
@@ -25,7 +25,7 @@ fn run(mesh: &Mesh, tables: impl Fn(&Mesh) -> (VolumeRows, FluxRows, SurfaceRows
     let (volume, flux, surface) = tables(mesh);
     let materials = [tissue(0.495)];
     let groups = DilationGroups::nodal(&volume).unwrap();
-    let body = Body {
+    let body = LinearBody {
         nodes: mesh.points(),
         volume: &volume,
         materials: &materials,

@@ -9,7 +9,7 @@ use fem::{SurfaceRule, VolumeRule};
 use geometry::{CellKind, Mesh, cloud_from_mesh};
 use shape::{DilationGroups, FluxRows, SurfaceRows, TraceRows, VolumeRows};
 use shape::{Matrix3, Point3, Vector3};
-use statics::{Body, LinearProblem, Load, Weak, WeakSupport};
+use statics::{LinearBody, LinearProblem, Load, Weak, WeakSupport};
 
 /// Rotations by one degree about an oblique axis, by a third of a turn, and by nearly half a turn.
 fn turns() -> impl Iterator<Item = Matrix3> {
@@ -57,8 +57,13 @@ fn cloud(mesh: &Mesh, functions: &Approximation, smoothed: bool) -> Tables {
 /// in the frame of the body, which `turn` rotates.
 fn solve(mesh: &Mesh, tables: &Tables, dilation: Option<&DilationGroups>, turn: &Matrix3) -> Vec<Vector3> {
     let materials = [tissue(0.45)];
-    let body =
-        Body { nodes: mesh.points(), volume: &tables.volume, materials: &materials, region: &[], dilation };
+    let body = LinearBody {
+        nodes: mesh.points(),
+        volume: &tables.volume,
+        materials: &materials,
+        region: &[],
+        dilation,
+    };
     let back = |x: &Point3| Point3::from(turn.tr_mul(&x.coords));
     let field = |x: &Point3| turn * (affine(&back(x)) + Vector3::new(0.0, 3.0, -2.0) * back(x).z * back(x).y);
     let weak = [WeakSupport {

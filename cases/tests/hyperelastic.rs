@@ -100,7 +100,9 @@ fn a_bar_pulled_to_nothing_is_refused() {
 
 #[test]
 fn hertz_balances_its_far_field() {
-    let (elastic, radius, depth) = (Elastic::new(YOUNG, 0.3).unwrap(), 0.01, 1e-5);
+    let elastic = Elastic::new(YOUNG, 0.3).unwrap();
+    let radius = 0.01;
+    let depth = 1e-5;
     let hertz = Hertz::new(elastic, radius, depth).unwrap();
     // F = (2/3) p0 pi a^2 (Johnson, eq. 4.23) is the resultant of the pressure.
     let resultant = 2.0 / 3.0 * hertz.peak_pressure() * std::f64::consts::PI * hertz.contact_radius().powi(2);
@@ -108,7 +110,8 @@ fn hertz_balances_its_far_field() {
     // Tractions of the far field on a half sphere of radius L, by differences with step 1e-4 L and midpoint
     // sums.
     let (length, n) = (0.02, 400);
-    let (h, mut force) = (1e-4 * length, 0.0);
+    let h = 1e-4 * length;
+    let mut force = 0.0;
     for k in 0..n {
         let angle = 0.5 * std::f64::consts::PI * (k as f64 + 0.5) / n as f64;
         let normal = Vector3::new(angle.sin(), 0.0, -angle.cos());

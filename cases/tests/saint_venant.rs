@@ -6,7 +6,7 @@ use geometry::generate::box_mesh;
 use geometry::quadrature::gauss_legendre;
 use material::LinearElastic;
 use shape::FixedDof;
-use statics::{Body, LinearProblem, Load, assemble};
+use statics::{LinearBody, LinearProblem, Load, assemble};
 use tissuebench_cases::exact::{Elastic, Exact, Point3, SaintVenantFlexure, Vector3};
 
 const LENGTH: f64 = 5.0;
@@ -59,7 +59,8 @@ fn every_section_carries_the_load_and_its_moment() {
                         moment += Vector3::new(0.0, y, z).cross(&df);
                     }
                 }
-                let (load, arm) = (Vector3::new(0.0, 2.0, 0.0), Vector3::new(0.0, 0.0, 2.0 * (LENGTH - x)));
+                let load = Vector3::new(0.0, 2.0, 0.0);
+                let arm = Vector3::new(0.0, 0.0, 2.0 * (LENGTH - x));
                 assert!((force - load).norm() < 1e-10, "{section:?} nu {poisson} x {x}: force {force}");
                 assert!((moment - arm).norm() < 1e-10, "{section:?} nu {poisson} x {x}: moment {moment}");
             }
@@ -104,7 +105,7 @@ fn errors(kind: CellKind, cells: [usize; 3]) -> [f64; 2] {
     let values = end.points().iter().zip(end.normals()).map(|(x, n)| exact.traction(x, n)).collect();
     let volume = volume_rows(&mesh, &VolumeRule::STANDARD).unwrap();
     let materials = [LinearElastic::new(young, poisson).unwrap()];
-    let body = Body { nodes, volume: &volume, materials: &materials, region: &[], dilation: None };
+    let body = LinearBody { nodes, volume: &volume, materials: &materials, region: &[], dilation: None };
     let loads = [Load::Traction { surface: &end, values }];
     let problem = LinearProblem { body, loads: &loads, fixed: &fixed, constraints: &[], weak: &[] };
     let solution = assemble(&problem).unwrap().factor().unwrap().solve(1.0).unwrap();
@@ -137,7 +138,8 @@ fn hex20_has_the_errors_of_other_codes() {
 fn errors_fall_at_the_orders_of_theory() {
     // The coarsest pairs in the asymptotic range; theory gives order + 1 in displacement, order in energy.
     for (kind, coarse) in [(CellKind::Hex8, [20, 4, 4]), (CellKind::Hex20, [10, 2, 2])] {
-        let (first, second) = (errors(kind, coarse), errors(kind, coarse.map(|n| 2 * n)));
+        let first = errors(kind, coarse);
+        let second = errors(kind, coarse.map(|n| 2 * n));
         let order = kind.order() as f64;
         let [energy, l2] = [0, 1].map(|i| f64::log2(first[i] / second[i]));
         assert!((energy - order).abs() < 0.15, "{}: energy order {energy}", kind.name());

@@ -53,7 +53,8 @@ impl Material for BlatzKo {
 fn main() {
     let law = BlatzKo { mu: 8.0e3, b: 0.5 };
     let h = Matrix3::new(0.1, 0.02, -0.05, 0.03, -0.08, 0.04, 0.01, 0.06, 0.12);
-    let (step, tangent) = (1e-6, law.tangent(&h));
+    let step = 1e-6;
+    let tangent = law.tangent(&h);
     for column in 0..9 {
         let mut d = Matrix3::zeros();
         d[column] = step;

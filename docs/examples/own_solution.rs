@@ -27,7 +27,8 @@ impl Exact for Torsion {
 // ANCHOR: check
 fn main() {
     let bar = Torsion { elastic: Elastic::new(20e3, 0.3).expect("sound moduli"), twist: 2.0 };
-    let (x, step) = (Point3::new(0.01, -0.004, 0.03), 1e-5);
+    let x = Point3::new(0.01, -0.004, 0.03);
+    let step = 1e-5;
     let mut divergence = Vector3::zeros();
     for axis in 0..3 {
         let mut d = Vector3::zeros();

@@ -2,6 +2,8 @@
 
 use cases::scene;
 
+use crate::messages::sound;
+
 pub(crate) fn run(data: &[u8]) {
     let Ok(text) = std::str::from_utf8(data) else { return };
     let plain: String = text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
@@ -19,7 +21,7 @@ pub(crate) fn run(data: &[u8]) {
              method = [{{ id = \"hex8\", family = \"fem\", element = \"hex8\", size = {{ cells = [1, 1, 1] }} }}]\n"
         );
         match scene::parse(&scene, "fuzz.toml") {
-            Err(errors) => super::sound(&errors, &scene, "fuzz.toml"),
+            Err(errors) => sound(&errors, &scene, "fuzz.toml"),
             Ok(scene) => evaluate(&scene),
         }
     }

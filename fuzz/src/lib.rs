@@ -12,7 +12,9 @@
 
 mod adapter;
 mod expression;
+mod inputs;
 mod mesh;
+mod messages;
 mod records;
 mod reference;
 mod scene;
@@ -37,22 +39,3 @@ pub const TARGETS: [Target; 7] = [
     Target { name: "reference", run: reference::run },
     Target { name: "adapter", run: adapter::run },
 ];
-
-/// Folder of files that fuzzed scenes and studies refer to.
-const INPUTS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/inputs");
-
-/// Returns the path of a file with this name in the folder of inputs; the file need not exist.
-fn beside(name: &str) -> String {
-    format!("{INPUTS}/{name}")
-}
-
-/// Checks that every message is a single line and refers to an existing line of the text.
-fn sound(errors: &[cases::scene::SceneError], text: &str, file: &str) {
-    let lines = text.split('\n').count();
-    for error in errors {
-        let message = error.to_string();
-        assert!(!message.contains('\n') && !error.problem.is_empty(), "{message}");
-        let own = error.file != file || (1..=lines).contains(&error.line);
-        assert!(own, "line {} of {lines}: {message}", error.line);
-    }
-}

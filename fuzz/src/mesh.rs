@@ -2,10 +2,10 @@
 
 use std::path::Path;
 
-use geometry::files::{Format, GmshVersion};
 use geometry::generate::{raise_order, to_tets};
 use geometry::stuffing::{Stuffing, stuff};
-use geometry::{CellKind, Mesh, Surface, cloud_from_mesh, files, quality, read_points_text};
+use geometry::{CellKind, Mesh, Surface, cloud_from_mesh, quality, read_points_text};
+use mesh_files::{Format, GmshVersion};
 
 pub(crate) fn run(data: &[u8]) {
     let points = std::str::from_utf8(data).map(|text| read_points_text(text, Path::new("fuzz.csv"), 1e-3));
@@ -15,11 +15,11 @@ pub(crate) fn run(data: &[u8]) {
             let _ = geometry::Cloud::from_points(points.points);
         }
     }
-    if let Ok(surface) = files::read_surface_bytes(data, Path::new("fuzz.stl"), 1e-3) {
+    if let Ok(surface) = mesh_files::read_surface_bytes(data, Path::new("fuzz.stl"), 1e-3) {
         fill(&surface);
     }
     // The folder for included files of an input deck is empty.
-    match files::read_bytes(data, Path::new("/nonexistent/fuzz.msh"), 1e-3) {
+    match mesh_files::read_bytes(data, Path::new("/nonexistent/fuzz.msh"), 1e-3) {
         Err(bad) => assert!(!bad.to_string().is_empty()),
         Ok((mesh, rows)) => {
             assert_eq!(rows.len(), mesh.cell_count());
@@ -60,11 +60,11 @@ fn take(mesh: &Mesh) {
     for name in ["again.msh", "again-4.1.msh", "again.inp", "again.vtu"] {
         let file = folder.path().join(name);
         let written = match name {
-            "again-4.1.msh" => files::write_as(mesh, &file, 1.0, Format::Gmsh(GmshVersion::FourOne)),
-            _ => files::write(mesh, &file, 1.0),
+            "again-4.1.msh" => mesh_files::write_as(mesh, &file, 1.0, Format::Gmsh(GmshVersion::FourOne)),
+            _ => mesh_files::write(mesh, &file, 1.0),
         };
         if written.is_ok() {
-            let again = files::read(&file, 1.0).expect("what is written can be read");
+            let again = mesh_files::read(&file, 1.0).expect("what is written can be read");
             assert!(again.points() == mesh.points() && again.cell_count() == mesh.cell_count());
             assert!(again.region_names() == mesh.region_names(), "{name}: names of regions");
         }

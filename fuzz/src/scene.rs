@@ -3,17 +3,20 @@
 use cases::scene::{self, Procedure, Scene};
 use harness::run::{Group, Repeats, RunOptions};
 
+use crate::inputs::beside;
+use crate::messages::sound;
+
 /// Largest number of nodes of a planned method. A plan generates the mesh, and a large mesh legitimately
 /// takes time.
 const NODES: f64 = 300.0;
 
 pub(crate) fn run(data: &[u8]) {
     let Ok(text) = std::str::from_utf8(data) else { return };
-    let file = super::beside("fuzz.toml");
+    let file = beside("fuzz.toml");
     match scene::parse(text, &file) {
         Err(errors) => {
             assert!(!errors.is_empty());
-            super::sound(&errors, text, &file);
+            sound(&errors, text, &file);
         }
         Ok(scene) => plan(&scene),
     }

@@ -3,15 +3,18 @@
 use std::path::Path;
 
 use cases::scene;
-use harness::study::{Plan, VerifyArgs};
+use harness::study::{StudyPlan, VerifyArgs};
+
+use crate::inputs::beside;
+use crate::messages::sound;
 
 pub(crate) fn run(data: &[u8]) {
     let Ok(text) = std::str::from_utf8(data) else { return };
-    let file = super::beside("fuzz-study.toml");
+    let file = beside("fuzz-study.toml");
     match scene::parse_study(text, &file) {
-        Err(errors) => super::sound(&errors, text, &file),
+        Err(errors) => sound(&errors, text, &file),
         Ok(study) => {
-            if let Ok(plan) = Plan::new(study) {
+            if let Ok(plan) = StudyPlan::new(study) {
                 assert_eq!(plan.planned(&VerifyArgs::of(Path::new(&file))).len(), plan.len());
             }
         }

@@ -28,10 +28,12 @@ fn every_input_is_read_or_refused_in_time() {
         for file in files {
             let data = std::fs::read(&file).unwrap();
             assert!(data.len() < 1 << 20, "{} is too long", file.display());
-            let (before, start) = (MemoryBaseline::new(), ProcessTime::now());
+            let before = MemoryBaseline::new();
+            let start = ProcessTime::now();
             let ended = std::panic::catch_unwind(|| (target.run)(&data));
             assert!(ended.is_ok(), "{} panics", file.display());
-            let (bytes, seconds) = (before.peak(), start.elapsed().as_secs_f64());
+            let bytes = before.peak();
+            let seconds = start.elapsed().as_secs_f64();
             assert!(bytes < BYTES, "{} takes {bytes} bytes", file.display());
             assert!(seconds < SECONDS, "{} takes {seconds:.2} s", file.display());
         }

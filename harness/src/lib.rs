@@ -1,6 +1,6 @@
 //! From a scene through a plan to records; studies and their checks; the command line.
 //!
-//! The modules form layers in one order. A module uses only modules to its right (`tests/rooms.rs` checks
+//! The modules form layers in one order. A module uses only modules to its right (`tests/rooms` checks
 //! this):
 //!
 //! `cli` > `study` > `run` > `measure` > `procedure` > `prepare` > `scenario` > `discretise` > `adapter` >

@@ -38,7 +38,8 @@ fn beside_the_reference_itself_both_differences_are_one() {
     let runs = outcomes(r#"{ method = "tet4" }"#);
     for run in &runs {
         for name in ["rms-x", "rms-y", "rms-z", "rms"] {
-            let (one, other) = (value(&run.metrics, name), value(&run.metrics, &format!("beside-{name}")));
+            let one = value(&run.metrics, name);
+            let other = value(&run.metrics, &format!("beside-{name}"));
             assert_eq!(one, other, "{} {name}", run.identity.method);
             assert_eq!(one == 0.0, run.identity.method == "tet4", "{} {name}", run.identity.method);
         }

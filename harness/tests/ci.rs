@@ -63,7 +63,8 @@ fn runs_are_chosen_by_case_method_and_tag() {
 #[test]
 fn stored_times_are_what_runs_are_foreseen_to_take() {
     let dir = tempfile::tempdir().unwrap();
-    let (study, out) = (study(&dir), inside(&dir, "out"));
+    let study = study(&dir);
+    let out = inside(&dir, "out");
     assert_eq!(tissuebench(&["verify", &study, "--case", "two", "--quiet", "--out", &out]).code, 1);
     // Stores a time that no estimate would give.
     for entry in std::fs::read_dir(dir.path().join("out/tasks")).unwrap() {
@@ -100,7 +101,8 @@ fn stored_times_are_what_runs_are_foreseen_to_take() {
 #[test]
 fn what_failed_is_in_junit_annotations_and_events() {
     let dir = tempfile::tempdir().unwrap();
-    let (study, out) = (study(&dir), inside(&dir, "out"));
+    let study = study(&dir);
+    let out = inside(&dir, "out");
     let (junit, events) = (inside(&dir, "junit.xml"), inside(&dir, "events.jsonl"));
     let options = ["--junit", &junit, "--annotations", "--events", &events, "--quiet", "--out", &out];
     let done = tissuebench(&[&["verify", &study], &options[..]].concat());
@@ -133,7 +135,8 @@ fn what_failed_is_in_junit_annotations_and_events() {
 #[test]
 fn a_verbose_run_says_what_each_took() {
     let dir = tempfile::tempdir().unwrap();
-    let (study, out) = (study(&dir), inside(&dir, "out"));
+    let study = study(&dir);
+    let out = inside(&dir, "out");
     let done = tissuebench(&["verify", &study, "--case", "block", "--verbose", "--out", &out]);
     assert_eq!(done.code, 0, "{}", done.stderr);
     let said =
@@ -144,7 +147,8 @@ fn a_verbose_run_says_what_each_took() {
 #[test]
 fn colours_are_for_terminals_unless_they_are_asked_for() {
     let dir = tempfile::tempdir().unwrap();
-    let (study, out) = (study(&dir), inside(&dir, "out"));
+    let study = study(&dir);
+    let out = inside(&dir, "out");
     let run = |options: &[&str]| {
         let all = ["verify", &study, "--case", "two", "--out", &out];
         tissuebench(&[&all[..], options].concat())

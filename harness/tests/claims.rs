@@ -29,7 +29,8 @@ relation = [{ kind = "error-ratio", error = "l2", at_most = 0.1 }]
 #[test]
 fn a_claim_is_judged_by_runs() {
     let dir = tempfile::tempdir().unwrap();
-    let (scene, results) = (write(&dir, "ball.toml", BALL), inside(&dir, "results"));
+    let scene = write(&dir, "ball.toml", BALL);
+    let results = inside(&dir, "results");
     let done = tissuebench(&["run", &scene, "--once", "--out", &results]);
     assert_eq!(done.code, 0, "{}", done.stderr);
     let judge = |text: &str| tissuebench(&["claims", &results, "--file", &write(&dir, "claims.toml", text)]);

@@ -170,7 +170,8 @@ fn a_tool_that_loses_its_contact_is_named_and_exits_with_3() {
         assert!(message.contains("(limit 2.5e-3 m, half the tool's inradius)"), "{message}");
         // The ball touches the block at 1 mm or somewhat later. If the block does not yield, this depth is
         // reached at 3.5 mm. States are 0.9 mm apart.
-        let (states, closure) = (object["steps"].as_array().unwrap().len(), metric(object, "closure"));
+        let states = object["steps"].as_array().unwrap().len();
+        let closure = metric(object, "closure");
         assert!(states == 3 && closure > 2.6e-3 && closure < 4.4e-3, "{states}: {closure}");
         assert!((metric(object, "load-carried") - 0.3).abs() < 1e-12);
         assert!(metric(object, "tool-force") > 0.0 && metric(object, "penetration") < 2.5e-3);

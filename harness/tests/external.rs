@@ -400,8 +400,8 @@ fn a_problem_is_written_for_others() {
         assert!(read(&format!("{name}.npy")).starts_with(b"\x93NUMPY"), "{name}");
     }
     // The mesh has 7 x 7 x 5 nodes; 1 kPa on 16 cm^2 gives 1.6 N downwards.
-    let nodes = geometry::files::read(&problem.join("mesh.vtu"), 1.0).unwrap();
-    assert_eq!(nodes, geometry::files::read(&problem.join("mesh.inp"), 1.0).unwrap());
+    let nodes = mesh_files::read(&problem.join("mesh.vtu"), 1.0).unwrap();
+    assert_eq!(nodes, mesh_files::read(&problem.join("mesh.inp"), 1.0).unwrap());
     assert_eq!(nodes.points().len(), 245);
     let force = read("force.npy");
     let values =

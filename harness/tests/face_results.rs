@@ -127,7 +127,8 @@ method = [
         (0..3).for_each(|axis| near(force[axis], tool[axis], 1e-5 * tool[2]));
         assert_eq!(run["steps"].as_array().unwrap().len(), 2);
         for step in run["steps"].as_array().unwrap() {
-            let (support, tool) = (vector(&step["supports"][0]), vector(&step["tools"][0]["force"]));
+            let support = vector(&step["supports"][0]);
+            let tool = vector(&step["tools"][0]["force"]);
             near(support[2], tool[2], 1e-5 * tool[2]);
             assert!(vector(&step["means"][0])[2] < 0.0);
         }

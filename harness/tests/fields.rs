@@ -164,7 +164,8 @@ support = [{ on = "x-min", fix = "xyz" }]
 procedure = { kind = "modes", modes = 3 }
 method = [{ id = "hex8", family = "fem", element = "hex8", size = { cells = [4, 2, 2] }, mass = "consistent" }]
 "#;
-    let (scene, out) = (write(&dir, "scene.toml", modes), dir.path().join("results"));
+    let scene = write(&dir, "scene.toml", modes);
+    let out = dir.path().join("results");
     let done = tissuebench(&["run", &scene, "--out", out.to_str().unwrap()]);
     assert_eq!(done.code, 0, "{}", done.stderr);
     let volumes = out.join("volumes");

@@ -36,7 +36,8 @@ fn a_folder_that_takes_no_results_is_refused_before_anything_runs() {
 #[test]
 fn a_run_says_what_it_replaces() {
     let dir = tempfile::tempdir().unwrap();
-    let (scene, out) = (write(&dir, "block.toml", &two_methods()), inside(&dir, "out"));
+    let scene = write(&dir, "block.toml", &two_methods());
+    let out = inside(&dir, "out");
     let first = tissuebench(&["run", &scene, "--out", &out]);
     assert!(first.code == 0 && !first.stderr.contains("replaces"), "{}", first.stderr);
     assert!(first.stderr.contains(&format!("open {out}/report/report.html")), "{}", first.stderr);
@@ -53,7 +54,8 @@ fn a_run_says_what_it_replaces() {
 #[test]
 fn a_baseline_that_is_not_there_is_bad_input() {
     let dir = tempfile::tempdir().unwrap();
-    let (scene, out) = (write(&dir, "block.toml", BLOCK), inside(&dir, "out"));
+    let scene = write(&dir, "block.toml", BLOCK);
+    let out = inside(&dir, "out");
     assert_eq!(tissuebench(&["run", &scene, "--out", &out]).code, 0);
     let folder = inside(&dir, "accepted");
     let done = tissuebench(&["baseline", &out, "--accepted", &folder, "--check"]);
@@ -126,7 +128,9 @@ fn a_mesh_is_not_converted_onto_itself() {
 #[test]
 fn a_version_of_gmsh_is_chosen_for_its_files_alone() {
     let dir = tempfile::tempdir().unwrap();
-    let (from, to, vtu) = (write(&dir, "two.msh", MESH), inside(&dir, "new.msh"), inside(&dir, "new.vtu"));
+    let from = write(&dir, "two.msh", MESH);
+    let to = inside(&dir, "new.msh");
+    let vtu = inside(&dir, "new.vtu");
     for (version, head) in [("4.1", "$MeshFormat\n4.1 0 8\n"), ("2.2", "$MeshFormat\n2.2 0 8\n")] {
         assert_eq!(tissuebench(&["mesh", "convert", &from, &to, "--version", version]).code, 0);
         assert!(std::fs::read_to_string(&to).unwrap().starts_with(head), "{version}");

@@ -24,7 +24,10 @@ fn metric(object: &Value, name: &str) -> f64 {
 /// ```
 #[test]
 fn held_tissue_relaxes_as_its_series_says() {
-    let (young, poisson, duration, strain) = (20e3, 0.3, 2.0, -0.05);
+    let young = 20e3;
+    let poisson = 0.3;
+    let duration = 2.0;
+    let strain = -0.05;
     let series = [(0.4, 0.3), (0.2, 5.0)];
     let text = r#"title = "A block that is squeezed slowly"
 body = { shape = "box", size = ["40 mm", "40 mm", "20 mm"] }
@@ -42,7 +45,8 @@ method = [
 ]
 output = { probes = [["20 mm", "20 mm", "10 mm"]] }
 "#;
-    let (mu, bulk) = (young / (2.0 * (1.0 + poisson)), young / (3.0 * (1.0 - 2.0 * poisson)));
+    let mu = young / (2.0 * (1.0 + poisson));
+    let bulk = young / (3.0 * (1.0 - 2.0 * poisson));
     let (volume, rate): (f64, f64) = (0.04 * 0.04 * 0.02, strain / duration);
     let work = |t: f64| {
         let relaxed = 1.0 - series.iter().map(|(g, _)| g).sum::<f64>();

@@ -142,7 +142,8 @@ fn a_plate_on_a_tip_is_carried_from_outside() {
     // Flat ends, and a ridge of 1 mm instead of a tip.
     let blade = turned(&[[12.0, 0.0], [0.5, 30.0]], 4);
     for (name, stl) in [("spindle", spindle), ("blade", blade)] {
-        let (file, out) = (write(&dir, &format!("{name}.stl"), &stl), inside(&dir, &format!("{name}.toml")));
+        let file = write(&dir, &format!("{name}.stl"), &stl);
+        let out = inside(&dir, &format!("{name}.toml"));
         let init =
             ["init", "--file", &file, "--methods", "tet4-nodal,tet10", "--nodes", "150", "--out", &out];
         let done = tissuebench(&init);

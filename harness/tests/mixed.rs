@@ -10,7 +10,7 @@ use tempfile::TempDir;
 /// A mesh file of the geometry crate: two cubes with hexahedra on the left and wedges on the right, 2 x 1 x
 /// 1.
 fn file(name: &str) -> String {
-    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../solvers/geometry/tests/files");
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../solvers/mesh-files/tests/files");
     format!("{folder}/{name}")
 }
 

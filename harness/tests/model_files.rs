@@ -90,7 +90,8 @@ fn pieces_of_a_tie_are_counted_and_joined_on_request() {
     let (whole, none) = largest(&held("plain.inp", ""));
     assert!(!none.iter().any(|code| code == "pieces-apart" || code == "left-out"), "{none:?}");
     for (parts, faces, line) in [(1, 1, 21), (2, 0, 26)] {
-        let (name, join) = (format!("tied-{parts}.inp"), ", join = true");
+        let name = format!("tied-{parts}.inp");
+        let join = ", join = true";
         let deck = write(&dir, &name, &tied(parts));
         let info = tissuebench(&["mesh", "info", &deck]);
         assert_eq!(info.code, 0, "{}", info.stderr);
@@ -145,7 +146,8 @@ fn mirrored_cells_are_turned_on_request() {
     let dir = tempfile::tempdir().unwrap();
     let text = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n4\n1 0 0 0\n2 -3 0 0\n3 0 2 0\n4 0 0 1\n$EndNodes\n\
                 $Elements\n1\n1 4 2 1 1 1 2 3 4\n$EndElements\n";
-    let (mirrored, turned) = (write(&dir, "mirrored.msh", text), inside(&dir, "turned.msh"));
+    let mirrored = write(&dir, "mirrored.msh", text);
+    let turned = inside(&dir, "turned.msh");
     assert_fails(
         &tissuebench(&["mesh", "info", &mirrored]),
         2,

@@ -10,7 +10,8 @@ use common::{inside, objects, tissuebench, write};
 /// Makes a scene of the surface and runs it.
 fn runs(name: &str, stl: &str) {
     let dir = tempfile::tempdir().unwrap();
-    let (file, scene) = (write(&dir, &format!("{name}.stl"), stl), inside(&dir, &format!("{name}.toml")));
+    let file = write(&dir, &format!("{name}.stl"), stl);
+    let scene = inside(&dir, &format!("{name}.toml"));
     let done = tissuebench(&["init", "--file", &file, "--out", &scene]);
     assert_eq!(done.code, 0, "{}", done.stderr);
     let done = tissuebench(&["run", &scene, "--once", "--format", "json"]);

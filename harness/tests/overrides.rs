@@ -82,7 +82,8 @@ fn a_run_that_is_stopped_keeps_the_methods_that_have_ended() {
     let text = BLOCK
         .replace("\"tet4\", size", more)
         .replace("size = { cells = [2, 2, 1] } }]", "size = { cells = [60, 60, 30] } }]");
-    let (scene, out) = (write(&dir, "block.toml", &text), inside(&dir, "out"));
+    let scene = write(&dir, "block.toml", &text);
+    let out = inside(&dir, "out");
     let mut run = Command::new(env!("CARGO_BIN_EXE_tissuebench"))
         .args(["run", &scene, "--once", "--format", "json", "--out", &out])
         .stdout(Stdio::piped())

@@ -10,7 +10,8 @@ use records::{Purpose, Record, RunSet, Status, read_run};
 use tempfile::TempDir;
 
 fn verified(dir: &TempDir, study: &str, out: &str) -> (RunSet, String) {
-    let (study, out) = (write(dir, &format!("{out}.toml"), study), inside(dir, out));
+    let study = write(dir, &format!("{out}.toml"), study);
+    let out = inside(dir, out);
     let done = tissuebench(&["verify", &study, "--out", &out]);
     assert_eq!(done.code, 0, "{}", done.stderr);
     (read_run(Path::new(&out)).unwrap(), out)

@@ -34,7 +34,8 @@ fn frames_of_a_static_path_come_to_its_end() {
     let scene = common::written_out("plates.toml");
     let scene = scene + "\n[output]\nrepeated = { frames = 30, cycle = 8 }\n";
     let dir = tempfile::tempdir().unwrap();
-    let (path, out) = (write(&dir, "plates.toml", &scene), common::inside(&dir, "out"));
+    let path = write(&dir, "plates.toml", &scene);
+    let out = common::inside(&dir, "out");
     let done = tissuebench(&["run", &path, "--method", "hex8", "--out", &out]);
     assert_eq!(done.code, 0, "{}", done.stderr);
     let records = records::read_run(std::path::Path::new(&out)).unwrap().records;

@@ -61,7 +61,8 @@ fn runs(set: &RunSet) -> BTreeSet<String> {
 #[test]
 fn shares_are_joined_to_the_results_of_one_run() {
     let dir = tempfile::tempdir().unwrap();
-    let (study, whole) = (study(&dir), inside(&dir, "whole"));
+    let study = study(&dir);
+    let whole = inside(&dir, "whole");
     let done = tissuebench(&["verify", &study, "--out", &whole]);
     assert_eq!(done.code, 0, "{}", done.stderr);
     let whole = results(&whole);
@@ -70,7 +71,8 @@ fn shares_are_joined_to_the_results_of_one_run() {
     for k in 1..=3 {
         let out = inside(&dir, &format!("share{k}"));
         // The third share appears to come from another machine, because it has other threads.
-        let (shard, threads) = (format!("{k}/3"), if k == 3 { "2" } else { "1" });
+        let shard = format!("{k}/3");
+        let threads = if k == 3 { "2" } else { "1" };
         let done = tissuebench(&["verify", &study, "--shard", &shard, "--threads", threads, "--out", &out]);
         assert_eq!(done.code, 0, "{}", done.stderr);
         let runs = runs(&results(&out));
@@ -119,7 +121,8 @@ fn the_costliest_run_has_a_share_of_its_own() {
 #[test]
 fn what_is_no_share_is_not_joined() {
     let dir = tempfile::tempdir().unwrap();
-    let (study, out) = (study(&dir), inside(&dir, "out"));
+    let study = study(&dir);
+    let out = inside(&dir, "out");
     let share = |name: &str, options: &[&str]| {
         let out = inside(&dir, name);
         assert_eq!(tissuebench(&[&["verify", &study, "--out", &out], options].concat()).code, 0);
@@ -146,7 +149,8 @@ fn script(name: &str) -> String {
 #[test]
 fn the_scripts_of_the_book_give_the_results_of_one_run() {
     let dir = tempfile::tempdir().unwrap();
-    let (study, whole) = (study(&dir), inside(&dir, "whole"));
+    let study = study(&dir);
+    let whole = inside(&dir, "whole");
     let done = tissuebench(&["verify", &study, "--out", &whole]);
     assert_eq!(done.code, 0, "{}", done.stderr);
     let program = Path::new(env!("CARGO_BIN_EXE_tissuebench")).parent().unwrap();

@@ -11,7 +11,7 @@ use tissuebench_harness::outcome::Counters;
 use tissuebench_harness::outcome::Outcome;
 use tissuebench_harness::run::Repeats;
 use tissuebench_harness::run::{Group, RunOptions};
-use tissuebench_harness::study::Plan;
+use tissuebench_harness::study::StudyPlan;
 use tissuebench_harness::study::VerifyArgs;
 
 fn runs(scene: &Scene, repeats: usize) -> Vec<Outcome> {
@@ -158,7 +158,7 @@ tool = [{{ name = "ball", shape = "sphere", radius = "5 mm", at = ["20 mm", "20 
 
 /// Counters of a study of one run.
 fn work(study: &str, dir: &tempfile::TempDir, resume: bool) -> Counters {
-    let plan = Plan::new(scene::load_study(Path::new(study)).unwrap()).unwrap();
+    let plan = StudyPlan::new(scene::load_study(Path::new(study)).unwrap()).unwrap();
     let out = inside(dir, "out").into();
     let args = VerifyArgs { resume, out, ..VerifyArgs::of(Path::new(study)) };
     let finished = plan.execute(&args);

@@ -15,7 +15,8 @@ fn metric(object: &Value, name: &str) -> f64 {
 /// = mu/2 (I1 - 3 - 2 ln J) + lambda/2 (ln J)^2` the side stretch `t` solves `mu (t - 1/t) + lambda ln(l t^2)
 /// / t = 0`, and `P = mu (l - 1/l) + lambda ln(l t^2) / l`.
 fn uniaxial(l: f64) -> f64 {
-    let (mu, lambda) = (20e3 / 2.9, 20e3 * 0.45 / (1.45 * 0.1));
+    let mu = 20e3 / 2.9;
+    let lambda = 20e3 * 0.45 / (1.45 * 0.1);
     let (mut low, mut high) = (0.5f64, 2.0f64);
     for _ in 0..200 {
         let t = 0.5 * (low + high);
@@ -313,7 +314,8 @@ fn where_newton_stalls_relaxation_comes_to_the_same_rest() {
     for (name, text) in [("led.toml", PRESSED), ("forced.toml", force.as_str())] {
         // A single iteration never confirms convergence.
         let stuck = text.replace("steps = 2 }", "steps = 2, iterations = 1, on_stall = \"relax\" }");
-        let (free, stuck) = (write(&dir, name, text), write(&dir, &format!("stuck-{name}"), &stuck));
+        let free = write(&dir, name, text);
+        let stuck = write(&dir, &format!("stuck-{name}"), &stuck);
         for method in ["hex8", "tet4-nodal"] {
             let run = |path: &str| tissuebench(&["run", path, "--format", "json", "--method", method]);
             let (newton, relaxed) = (run(&free), run(&stuck));

@@ -217,7 +217,8 @@ output = { probes = [["0 mm", "10 mm", "20 mm"]] }
 method = [{ id = "hex8", family = "fem", element = "hex8", size = { cells = [8, 4, 4] } }]
 "#;
     let corners = [[-15.0, 5.0, 5.0], [15.0, 5.0, 5.0], [-5.0, 15.0, 10.0], [5.0, 5.0, 15.0]];
-    let (scene, points) = (write(&dir, "whole.toml", whole), points(&dir, corners));
+    let scene = write(&dir, "whole.toml", whole);
+    let points = points(&dir, corners);
     let made = tissuebench(&["reference", &scene, "--points", &points, "--out", &inside(&dir, "r.json")]);
     assert_eq!(made.code, 0, "{}", made.stderr);
     let error = |from: &str, to: &str, plane: &str| {

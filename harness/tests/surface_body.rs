@@ -170,7 +170,7 @@ fn elements_and_clouds_of_any_size_pass_the_patch_test() {
 fn names_of_a_mesh_file_are_kept_at_other_sizes() {
     let dir = tempfile::tempdir().unwrap();
     let block = std::path::Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join("../solvers/geometry/tests/files/hex8-2.2-text.msh");
+        .join("../solvers/mesh-files/tests/files/hex8-2.2-text.msh");
     let text = format!(
         r#"title = "Two cubes of a file, one softer"
 body = {{ shape = "file", path = "{}", unit = "cm" }}

@@ -115,7 +115,9 @@ impl Chance {
 /// change nor disappear, and at the end all results must equal those of an undisturbed study.
 fn survives(scenes: usize, kills: usize, options: &[&str]) {
     let dir = tempfile::tempdir().unwrap();
-    let (study, out, calm) = (study(&dir, scenes), inside(&dir, "out"), inside(&dir, "calm"));
+    let study = study(&dir, scenes);
+    let out = inside(&dir, "out");
+    let calm = inside(&dir, "calm");
     let began = Instant::now();
     assert_eq!(tissuebench(&[&["verify", &study, "--out", &calm], options].concat()).code, 0);
     let whole = began.elapsed().as_secs_f64();
@@ -167,7 +169,8 @@ fn survives(scenes: usize, kills: usize, options: &[&str]) {
 #[test]
 fn two_workers_make_each_run_once() {
     let dir = tempfile::tempdir().unwrap();
-    let (study, out) = (study(&dir, 40), inside(&dir, "out"));
+    let study = study(&dir, 40);
+    let out = inside(&dir, "out");
     let args = ["verify", &study, "--out", &out, "--join"];
     let workers = [start(&args), start(&args)];
     let made = workers.map(|worker| {
@@ -195,7 +198,8 @@ fn two_workers_survive_a_hundred_kills() {
 #[test]
 fn results_of_a_killed_study_are_incomplete() {
     let dir = tempfile::tempdir().unwrap();
-    let (study, out) = (study(&dir, 3), inside(&dir, "out"));
+    let study = study(&dir, 3);
+    let out = inside(&dir, "out");
     let verify = ["verify", &study, "--out", &out];
     assert_eq!(tissuebench(&verify).code, 0);
     let before = exact(&out);
@@ -222,7 +226,8 @@ fn results_of_a_killed_study_are_incomplete() {
 #[test]
 fn an_interrupt_ends_with_a_word_and_keeps_what_is_finished() {
     let dir = tempfile::tempdir().unwrap();
-    let (study, out) = (study(&dir, 2), inside(&dir, "out"));
+    let study = study(&dir, 2);
+    let out = inside(&dir, "out");
     write(&dir, "b1.toml", &endless());
     for options in [&[][..], &["--isolate"]] {
         let child = start(&[&["verify", &study, "--out", &out, "--resume"], options].concat());
@@ -243,7 +248,8 @@ fn an_interrupt_ends_with_a_word_and_keeps_what_is_finished() {
 #[test]
 fn stdout_that_takes_nothing_costs_no_results() {
     let dir = tempfile::tempdir().unwrap();
-    let (study, scene) = (study(&dir, 2), inside(&dir, "b0.toml"));
+    let study = study(&dir, 2);
+    let scene = inside(&dir, "b0.toml");
     for (index, args) in [vec!["verify", &study], vec!["run", &scene, "--format", "json"]].iter().enumerate()
     {
         let (full, closed) = (inside(&dir, &format!("full{index}")), inside(&dir, &format!("closed{index}")));
@@ -264,7 +270,8 @@ fn stdout_that_takes_nothing_costs_no_results() {
 #[test]
 fn results_that_cannot_be_written_are_5_and_the_folder_opens_afterwards() {
     let dir = tempfile::tempdir().unwrap();
-    let (study, out) = (study(&dir, 2), inside(&dir, "out"));
+    let study = study(&dir, 2);
+    let out = inside(&dir, "out");
     assert_eq!(tissuebench(&["verify", &study, "--out", &out]).code, 0);
     let before = exact(&out);
     // A folder blocks the temporary file of the output.
@@ -281,7 +288,8 @@ fn results_that_cannot_be_written_are_5_and_the_folder_opens_afterwards() {
 #[test]
 fn memory_and_time_cost_one_run_alone() {
     let dir = tempfile::tempdir().unwrap();
-    let (study, out) = (study(&dir, 4), inside(&dir, "out"));
+    let study = study(&dir, 4);
+    let out = inside(&dir, "out");
     write(&dir, "b1.toml", &endless());
     write(&dir, "b2.toml", &BLOCK.replace("cells = [2, 2, 1]", "cells = [40, 40, 40]"));
     let done = tissuebench(&[
@@ -317,7 +325,8 @@ fn memory_and_time_cost_one_run_alone() {
 #[test]
 fn a_crash_costs_one_run_alone() {
     let dir = tempfile::tempdir().unwrap();
-    let (study, out) = (study(&dir, 3), inside(&dir, "out"));
+    let study = study(&dir, 3);
+    let out = inside(&dir, "out");
     write(&dir, "b1.toml", &endless());
     let child = start(&["verify", &study, "--out", &out, "--isolate"]);
     // The first run is finished; the second never ends.

@@ -85,7 +85,8 @@ methods = ["efg"]
 seeds = 3
 "#
     );
-    let (study, out) = (write(&dir, "study.toml", &text), inside(&dir, "out"));
+    let study = write(&dir, "study.toml", &text);
+    let out = inside(&dir, "out");
     let done = tissuebench(&["verify", &study, "--out", &out]);
     assert_eq!(done.code, 0, "{}", done.stderr);
     let mut found: Vec<(u64, f64)> = results(&out)
@@ -171,7 +172,8 @@ fn a_share_of_clouds_must_carry_the_load() {
 fn a_check_without_a_number_fails() {
     // Elements have no fallbacks of moving least squares, so there is no record for the check to bound.
     let dir = tempfile::tempdir().unwrap();
-    let (study, out) = (bounded(&dir, "metric = \"fallbacks-enlarged\"\nat_most = 0"), inside(&dir, "out"));
+    let study = bounded(&dir, "metric = \"fallbacks-enlarged\"\nat_most = 0");
+    let out = inside(&dir, "out");
     assert_fails(&tissuebench(&["verify", &study, "--out", &out]), 1, "gives no such number");
     assert_eq!(results(&out).checks[0].status, Status::Fail);
 }
@@ -235,7 +237,8 @@ fn a_check_that_does_not_hold_is_1() {
         ("metric = \"max-z\"\nknown_band = [\"2 mm\", \"3 mm\"]\nreason = \"soft\"", 1, Status::Fail),
     ] {
         let dir = tempfile::tempdir().unwrap();
-        let (study, out) = (bounded(&dir, check), inside(&dir, "out"));
+        let study = bounded(&dir, check);
+        let out = inside(&dir, "out");
         let done = tissuebench(&["verify", &study, "--out", &out]);
         assert_eq!(done.code, code, "{check}: {}", done.stderr);
         let checks = results(&out).checks;
@@ -255,7 +258,8 @@ fn the_checks_of_a_scene_gate_a_single_run_too() {
 #[test]
 fn a_filter_that_fits_nothing_is_4_and_leaves_nothing() {
     let dir = tempfile::tempdir().unwrap();
-    let (study, out) = (bounded(&dir, "metric = \"max-z\"\nat_most = \"2 mm\""), inside(&dir, "out"));
+    let study = bounded(&dir, "metric = \"max-z\"\nat_most = \"2 mm\"");
+    let out = inside(&dir, "out");
     let done = tissuebench(&["verify", &study, "--filter", "no-such-thing", "--out", &out]);
     assert_fails(&done, 4, "nothing ran");
     assert!(!Path::new(&out).exists());
@@ -271,7 +275,8 @@ fn a_run_that_fails_is_3_and_the_others_go_on() {
     let free = write(&dir, "free.toml", &without(BLOCK, "support"));
     let block = write(&dir, "block.toml", BLOCK);
     let text = format!("title = \"One fails\"\n[[run]]\nscene = '{free}'\n[[run]]\nscene = '{block}'\n");
-    let (study, out) = (write(&dir, "study.toml", &text), inside(&dir, "out"));
+    let study = write(&dir, "study.toml", &text);
+    let out = inside(&dir, "out");
     assert_fails(&tissuebench(&["verify", &study, "--out", &out]), 3, "rigid motion");
     let set = results(&out);
     assert_eq!(set.failures.iter().map(|f| f.case.as_str()).collect::<Vec<_>>(), ["free"]);
@@ -281,7 +286,8 @@ fn a_run_that_fails_is_3_and_the_others_go_on() {
 #[test]
 fn stored_runs_are_kept_until_their_scene_changes() {
     let dir = tempfile::tempdir().unwrap();
-    let (study, out) = (bounded(&dir, "metric = \"max-z\"\nat_most = \"1 m\""), inside(&dir, "out"));
+    let study = bounded(&dir, "metric = \"max-z\"\nat_most = \"1 m\"");
+    let out = inside(&dir, "out");
     let run = |options: &[&str]| {
         let done = tissuebench(&[&["verify", &study, "--out", &out], options].concat());
         assert_eq!(done.code, 0, "{}", done.stderr);
@@ -310,7 +316,8 @@ fn results_of_each_poisson_ratio_are_stored_apart() {
     let dir = tempfile::tempdir().unwrap();
     let study = |name: &str, ratios: &str| {
         let text = format!("title = \"Ratios\"\n[[run]]\nscene = \"block.toml\"\npoisson = {ratios}\n");
-        let (study, out) = (write(&dir, name, &text), inside(&dir, &format!("{name}-out")));
+        let study = write(&dir, name, &text);
+        let out = inside(&dir, &format!("{name}-out"));
         let done = tissuebench(&["verify", &study, "--out", &out, "--resume"]);
         assert_eq!(done.code, 0, "{}", done.stderr);
         exact(&results(&out))
@@ -324,7 +331,8 @@ fn results_of_each_poisson_ratio_are_stored_apart() {
 #[test]
 fn the_program_knows_its_commit_without_asking_git() {
     let dir = tempfile::tempdir().unwrap();
-    let (scene, out) = (write(&dir, "block.toml", BLOCK), inside(&dir, "out"));
+    let scene = write(&dir, "block.toml", BLOCK);
+    let out = inside(&dir, "out");
     let done = std::process::Command::new(env!("CARGO_BIN_EXE_tissuebench"))
         .args(["run", &scene, "--out", &out])
         .env("PATH", "")

@@ -130,7 +130,7 @@ method = [{{ id = "tet10", family = "fem", element = "tet10", size = {{ file = "
     );
     // Coordinates on the planes differ from zero by rounding, as in files of mesh generators.
     let mesh = mesh.unwrap().moved(|x| x.map(|c| if c == 0.0 { 3e-18 } else { c })).unwrap();
-    geometry::files::write(&mesh, dir.path().join("octant.msh").as_path(), 1e-3).unwrap();
+    mesh_files::write(&mesh, dir.path().join("octant.msh").as_path(), 1e-3).unwrap();
     assert!(warned(&run_in(&dir, &scene("100")), "exact-misfit").is_none());
     assert!(warned(&run_in(&dir, &scene("-100")), "exact-misfit").is_some());
 }

@@ -138,7 +138,8 @@ fn a_check_can_forbid_warnings_and_a_folder_keeps_them() {
     let dir = tempfile::tempdir().unwrap();
     let still = without(BLOCK, "load")
         .replace("method =", "check = [{ metric = \"warnings\", at_most = 0 }]\nmethod =");
-    let (scene, out) = (write(&dir, "still.toml", &still), inside(&dir, "out"));
+    let scene = write(&dir, "still.toml", &still);
+    let out = inside(&dir, "out");
     let done = tissuebench(&["run", &scene, "--out", &out]);
     assert_fails(&done, 1, "FAILED: still tet4 warnings");
     assert!(done.stdout.contains("warning: tet4: nothing moves this body"), "{}", done.stdout);

@@ -53,7 +53,8 @@ pub(crate) fn numbers(py: Python<'_>, what: &str, array: ArrayView2<'_, f64>) ->
     let largest = f64::from(u32::MAX);
     match array.iter().position(|n| !(n.fract() == 0.0 && (0.0..=largest).contains(n))) {
         Some(bad) => {
-            let (row, n) = (bad / array.ncols(), array.iter().nth(bad).copied().unwrap_or(f64::NAN));
+            let row = bad / array.ncols();
+            let n = array.iter().nth(bad).copied().unwrap_or(f64::NAN);
             Err(input(py, &format!("{what}: row {row} names node {n}; give whole numbers from 0 on")))
         }
         None => Ok(array.iter().map(|&n| n as u32).collect()),

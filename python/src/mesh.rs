@@ -3,8 +3,8 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use geometry::files::{self, Format, GmshVersion};
 use geometry::{CellKind, quality};
+use mesh_files::{Format, GmshVersion};
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 
@@ -62,7 +62,8 @@ impl Mesh {
     /// Builds a mesh from positions (n, 3) and the nodes of cells (m, 4), (m, 10), (m, 8) or (m, 20).
     #[new]
     fn new(py: Python<'_>, points: Floats2<'_>, cells: Floats2<'_>) -> PyResult<Mesh> {
-        let (positions, cells) = (self::points(py, "points", points.as_array())?, cells.as_array());
+        let positions = self::points(py, "points", points.as_array())?;
+        let cells = cells.as_array();
         let kind = CellKind::ALL.into_iter().find(|kind| kind.node_count() == cells.ncols());
         let wrong = || input(py, &format!("cells: have {} nodes each; give 4, 10, 8 or 20", cells.ncols()));
         let kind = kind.ok_or_else(wrong)?;
@@ -78,7 +79,7 @@ impl Mesh {
     #[pyo3(signature = (path, unit = "mm"))]
     fn read(py: Python<'_>, path: PathBuf, unit: &str) -> PyResult<Mesh> {
         let unit = metres(py, unit)?;
-        let read = py.detach(|| files::read(&path, unit));
+        let read = py.detach(|| mesh_files::read(&path, unit));
         let mesh = read.map_err(|bad| input(py, &bad.to_string()))?;
         Ok(Mesh { source: disk::Identity::of(&path), ..Mesh::from(mesh) })
     }
@@ -93,7 +94,7 @@ impl Mesh {
             let problem = "is the input file of the mesh; give another name";
             return Err(input(py, &format!("{}: {problem}", path.display())));
         }
-        let written = py.detach(|| files::write_as(&self.mesh, &path, unit, format));
+        let written = py.detach(|| mesh_files::write_as(&self.mesh, &path, unit, format));
         written.map_err(|bad| input(py, &bad.to_string()))
     }
 
@@ -123,7 +124,8 @@ impl Mesh {
     }
 
     fn __repr__(&self) -> String {
-        let (points, cells) = (self.mesh.points().len(), self.mesh.cell_count());
+        let points = self.mesh.points().len();
+        let cells = self.mesh.cell_count();
         format!("<tissuebench.Mesh: {points} points, {cells} cells>")
     }
 }

@@ -42,7 +42,8 @@ impl Problem {
         reference: Arc<Referenced>,
         method: scene::Method,
     ) -> PyResult<Problem> {
-        let (from, id) = (scene.clone(), method.id.clone());
+        let from = scene.clone();
+        let id = method.id.clone();
         let posed = wait(py, None, move |_, _| {
             let group = Group::unreferenced(&from, Repeats::ONCE)?;
             group.pose(&group.scenario(method, 0))
@@ -64,8 +65,10 @@ impl Problem {
         let largest = u.iter().map(|u| u.norm()).chain(prescribed).fold(0.0, f64::max);
         let gap = missed(&worst);
         if gap > OFF_SUPPORTS * largest {
-            let (node, axis) = (worst.node, ["x", "y", "z"][worst.axis as usize]);
-            let (value, percent) = (worst.value, 100.0 * OFF_SUPPORTS);
+            let node = worst.node;
+            let axis = ["x", "y", "z"][worst.axis as usize];
+            let value = worst.value;
+            let percent = 100.0 * OFF_SUPPORTS;
             return Err(input(
                 py,
                 &format!(
@@ -87,7 +90,8 @@ impl Problem {
                 let along = |(forces, tool): (Vec<Vector3>, harness::run::PosedTool)| {
                     forces.iter().sum::<Vector3>().dot(&tool.along)
                 };
-                let (count, tools) = (given.shape()[0], self.posed.tools());
+                let count = given.shape()[0];
+                let tools = self.posed.tools();
                 if count != tools.len() {
                     let problem = format!("tool_forces: {count} tools given; the scene has {}", tools.len());
                     return Err(input(py, &problem));
@@ -183,7 +187,8 @@ impl Problem {
     #[pyo3(signature = (points, *, gradients = false))]
     fn table(&self, py: Python<'_>, points: Floats2<'_>, gradients: bool) -> PyResult<ShapeTable> {
         let targets = self::points(py, "points", points.as_array())?;
-        let (posed, at) = (self.posed.clone(), targets.clone());
+        let posed = self.posed.clone();
+        let at = targets.clone();
         let found = wait(py, None, move |_, _| {
             let (rows, outside) = posed.at_points(&at)?;
             let gradients = if gradients { Some(posed.gradients_at(&at)?) } else { None };

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex};
 
 use cases::scene;
-use harness::outcome::{Outcome, provenance};
+use harness::outcome::{Outcome, Unfinished, provenance};
 use harness::run::case_name;
 use harness::study::{check, compared_with, failed, reference_records, stalled, warn_if_busy};
 use pyo3::prelude::*;
@@ -12,9 +12,11 @@ use records::{Failure as FailedRun, Machine, Record, RunSet};
 
 use crate::error::{input, not_run, of_failure};
 use crate::run::Run;
-use crate::scene::Ended;
 use crate::table::Table;
 use crate::worker::unforked;
+
+/// Result of a method.
+pub(crate) type Ended = Result<Outcome, Unfinished>;
 
 /// Runs of one scene.
 #[pyclass(frozen, module = "tissuebench")]
@@ -71,11 +73,13 @@ impl Results {
     fn set(&self, case: String) -> RunSet {
         let mut set = RunSet { records: self.all_records(), ..RunSet::default() };
         for outcome in self.finished() {
-            let (method, records) = (&outcome.identity.method, outcome.records());
+            let method = &outcome.identity.method;
+            let records = outcome.records();
             let own = |c: &&scene::Check| c.methods.is_empty() || c.methods.contains(method);
             for check in self.scene.checks.iter().filter(own).filter(|c| !check::is_of_many(c)) {
                 let of = check.address;
-                let (value, band) = (check::value(of, &records), check::band(of, &records));
+                let value = check::value(of, &records);
+                let band = check::band(of, &records);
                 set.checks.push(check::judge(check, &case, method, value, band));
             }
             set.plans.extend(outcome.plan_entries());

@@ -130,7 +130,8 @@ impl Run {
     #[getter]
     fn displacements<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray3<f64>>> {
         let states = self.outcome.states.as_ref().ok_or_else(|| no_states(py))?;
-        let (count, points) = (states.displacements().len(), states.mesh().points().len());
+        let count = states.displacements().len();
+        let points = states.mesh().points().len();
         let all = states.displacements().flat_map(|(_, u)| u.iter().flat_map(|u| [u.x, u.y, u.z])).collect();
         PyArray1::from_vec(py, all).reshape([count, points, 3])
     }

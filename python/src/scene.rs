@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use cases::scene::{self, Family};
-use harness::outcome::{Outcome, Unfinished, Watch, provenance};
+use harness::outcome::{Watch, provenance};
 use harness::run;
 use harness::run::{Group, Repeats, RunOptions};
 use pyo3::prelude::*;
@@ -13,7 +13,7 @@ use serde_json::json;
 use crate::error::{input, not_run, of_failure, of_scene};
 use crate::problem::Problem;
 use crate::reference::Referenced;
-use crate::results::Results;
+use crate::results::{Ended, Results};
 use crate::run::Run;
 use crate::worker::{Reporter, wait};
 
@@ -26,9 +26,6 @@ pub(crate) struct Scene {
     scene: Arc<scene::Scene>,
     reference: Arc<Referenced>,
 }
-
-/// Result of a method.
-pub(crate) type Ended = Result<Outcome, Unfinished>;
 
 /// Options shared by all runs of a call.
 #[derive(Clone, Copy)]

@@ -4,7 +4,7 @@ use std::io::{self, Write};
 use std::path::PathBuf;
 
 use cases::scene;
-use harness::study::{Events, Filters, Finished, Plan, VerifyArgs};
+use harness::study::{Events, Filters, FinishedStudy, StudyPlan, VerifyArgs};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use records::Status;
@@ -16,7 +16,7 @@ use crate::worker::{Reporter, wait};
 /// A finished study.
 #[pyclass(frozen, module = "tissuebench")]
 pub(crate) struct Study {
-    finished: Finished,
+    finished: FinishedStudy,
 }
 
 /// Events as lines of text, passed on to the waiting thread.
@@ -107,7 +107,7 @@ pub(crate) fn verify(
     }
     let filters = Filters { cases, methods, tags, not: leave_out };
     let args = VerifyArgs { out, quick, filters, resume, jobs, force, quiet: true, ..VerifyArgs::of(&study) };
-    let read = scene::load_study(&study).and_then(Plan::new);
+    let read = scene::load_study(&study).and_then(StudyPlan::new);
     let mut plan = read.map_err(|errors| of_scene(py, &errors))?;
     plan.select(&args);
     if plan.is_empty() {

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 /// Surface of a body, composed of element faces; the faces of quadratic elements are curved.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Body {
+pub struct RecordedBody {
     /// Coordinates of the points in the reference configuration (m), [`pack`]ed.
     pub points: String,
     /// Faces by their number of nodes.

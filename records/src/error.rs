@@ -1,6 +1,7 @@
 //! Errors in writing, reading and comparing records.
 
-use std::path::PathBuf;
+use std::io;
+use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
@@ -69,7 +70,7 @@ pub enum RecordError {
         /// The file or folder.
         path: PathBuf,
         /// Error of the operating system.
-        source: std::io::Error,
+        source: io::Error,
     },
     /// A file or folder that could not be read.
     #[error("{}: {source}", path.display())]
@@ -77,7 +78,7 @@ pub enum RecordError {
         /// The file or folder.
         path: PathBuf,
         /// Error of the operating system.
-        source: std::io::Error,
+        source: io::Error,
     },
     /// A file with invalid content.
     #[error("{}: {reason}", path.display())]
@@ -90,4 +91,9 @@ pub enum RecordError {
     /// A data frame that could not be created, joined or written.
     #[error("records: {0}")]
     Frame(#[from] polars::error::PolarsError),
+}
+
+/// Error of a file or folder that could not be written.
+pub(crate) fn unwritten(path: &Path, source: io::Error) -> RecordError {
+    RecordError::Unwritten { path: path.into(), source }
 }

@@ -10,10 +10,9 @@ use serde::Serialize;
 
 use crate::cell::{guarded, unguarded};
 use crate::columns;
-use crate::error::RecordError;
+use crate::error::{RecordError, unwritten};
 use crate::provenance::Provenance;
 use crate::record::Record;
-use crate::store::unwritten;
 
 /// File of the table in the folder of a run.
 const CSV: &str = "records.csv";

@@ -19,7 +19,7 @@ pub mod store;
 pub mod text;
 
 pub use axis::{Axis, Ended, Trial, Verdict as AxisVerdict};
-pub use body::{Body, BodyState, Faces, Inside, InsideState, Skin, pack};
+pub use body::{BodyState, Faces, Inside, InsideState, RecordedBody, Skin, pack};
 pub use difference::{Difference, Numbers, Pair, Paired, difference, numbers};
 pub use error::RecordError;
 pub use provenance::{FORMAT, Machine, Program, Provenance, SceneHash};

@@ -4,7 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::axis::Axis;
-use crate::body::Body;
+use crate::body::RecordedBody;
 use crate::error::RecordError;
 use crate::provenance::Provenance;
 use crate::record::{Family, Record};
@@ -92,7 +92,7 @@ pub struct SurfaceField {
     pub section: Option<Section>,
     /// Data of the three-dimensional view.
     #[serde(default)]
-    pub body: Option<Body>,
+    pub body: Option<RecordedBody>,
 }
 
 /// A tool as the convex hull of points.

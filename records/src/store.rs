@@ -30,7 +30,7 @@ use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
 use crate::cell::csv_line;
-use crate::error::RecordError;
+use crate::error::{RecordError, unwritten};
 use crate::frame;
 use crate::provenance::{FORMAT, Provenance};
 use crate::record::Record;
@@ -244,10 +244,6 @@ pub fn make_dir(dir: &Path) -> Result<(), RecordError> {
 /// A file that cannot be written.
 pub fn write_text(path: &Path, text: impl AsRef<[u8]>) -> Result<(), RecordError> {
     disk::replace(path, |file| file.write_all(text.as_ref())).map_err(|source| unwritten(path, source))
-}
-
-pub(crate) fn unwritten(path: &Path, source: io::Error) -> RecordError {
-    RecordError::Unwritten { path: path.into(), source }
 }
 
 /// Replaces all but ASCII letters (in lower case), digits and dots by dashes, for use as a file name.

@@ -166,7 +166,8 @@ pub(crate) const DEADLINES: [Deadline; 2] = [
 /// `(seconds, relative error)` of a run that reached its whole load. An error of exactly zero belongs to the
 /// reference and gives `None`.
 pub(crate) fn point(run: &Run, error: &'static Metric, clock: Clock) -> Option<(f64, f64)> {
-    let (time, error) = (clock.seconds(run)?, worst(run, error)?);
+    let time = clock.seconds(run)?;
+    let error = worst(run, error)?;
     (run.whole() && time > 0.0 && error > 0.0).then_some((time, error))
 }
 

@@ -292,6 +292,33 @@ pub(crate) fn labels<'r>(records: impl IntoIterator<Item = &'r Record>) -> Vec<S
     all.iter().map(label).collect()
 }
 
+/// Runs, each with a label that is unique within its case and Poisson's ratio.
+pub(crate) fn labelled<'a, 'r>(runs: &'a [Run<'r>]) -> Vec<(&'a Run<'r>, String)> {
+    let mut out = Vec::new();
+    for group in by_material(runs) {
+        out.extend(group.iter().zip(labels(group.iter().map(|r| r.is))));
+    }
+    out
+}
+
+/// Runs of each case, named `case` or `case at ν = 0.3`, without patch tests.
+pub(crate) fn named_cases<'a, 'r>(runs: &'a [Run<'r>]) -> Vec<(String, &'a [Run<'r>])> {
+    let mut out = Vec::new();
+    for case in competing(runs) {
+        let by_ratio = groups(case, |r| r.is.poisson.to_bits());
+        for group in &by_ratio {
+            let is = group[0].is;
+            let name = if by_ratio.len() > 1 {
+                format!("{} at ν = {}", is.case, records::text::ratio(is.poisson))
+            } else {
+                is.case.clone()
+            };
+            out.push((name, *group));
+        }
+    }
+    out
+}
+
 /// Adjacent runs grouped by case.
 pub(crate) fn by_case<'a, 'r>(runs: &'a [Run<'r>]) -> impl Iterator<Item = &'a [Run<'r>]> {
     runs.chunk_by(|a, b| a.is.case == b.is.case)

@@ -197,6 +197,11 @@ impl Table {
     }
 }
 
+/// Value in thousandths of its unit, such as millimetres.
+pub(crate) fn thousandths(value: Option<f64>) -> Option<f64> {
+    value.map(|v| v * 1e3)
+}
+
 /// Escapes Markdown markup in a table cell; a line break becomes a space.
 pub(crate) fn markdown(text: &str) -> String {
     let mut out = String::new();

@@ -29,7 +29,8 @@ fn names<'a>(data: &'a Value, list: &str, key: impl serde_json::value::Index + C
 #[test]
 fn a_second_page_leaves_no_table_or_figure_of_the_first() {
     let dir = tempfile::tempdir().unwrap();
-    let (figures, mut set) = (dir.path().join("figures"), common::study());
+    let figures = dir.path().join("figures");
+    let mut set = common::study();
     write_run(dir.path(), &set).unwrap();
     // Without a page, no file in the folder is assumed to belong to a report.
     fs::create_dir(&figures).unwrap();

@@ -52,7 +52,9 @@ proptest! {
         let mut histories = [0, 1].map(|k: usize| ContactHistory::new(&tools[k], rows.points().len()));
         let mut search = ContactSearch::new(&surface, 2);
         let size = 10f64.powf(size);
-        let (mut shift, mut wave, mut closures) = (Vector3::zeros(), 0.0, [0.0; 2]);
+        let mut shift = Vector3::zeros();
+        let mut wave = 0.0;
+        let mut closures = [0.0; 2];
         for (way, waved, closed, kind) in steps {
             // One state in twelve repeats the last state, and one is far away.
             let size = match kind { 0 => 0.0, 1 => 20.0 * size, _ => size };
@@ -63,7 +65,8 @@ proptest! {
             let u: Vec<Vector3> = block.mesh.points().iter().map(moved).collect();
             let mut now = search.at(&u);
             for k in 0..2 {
-                let (history, mut counts) = (&histories[k], [ContactCounts::default(); 2]);
+                let history = &histories[k];
+                let mut counts = [ContactCounts::default(); 2];
                 let found = touching(now.tractions(k, &tools[k], closures[k], history, &mut counts[0]));
                 let expected = touching(surface.tractions(&tools[k], closures[k], &u, history, &mut counts[1]));
                 prop_assert_eq!(&found, &expected);

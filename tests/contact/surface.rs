@@ -98,7 +98,8 @@ fn the_same_as_point_by_point_and_in_balance() {
                 .iter()
                 .map(|&q| rows.weights()[q as usize] * all[q as usize].pressure)
                 .collect();
-            let (sum, most) = (forces.iter().sum::<f64>(), forces.iter().copied().fold(0.0, f64::max));
+            let sum = forces.iter().sum::<f64>();
+            let most = forces.iter().copied().fold(0.0, f64::max);
             let squares: f64 = forces.iter().map(|f| f * f).sum();
             assert!((found.carriers() * squares / (sum * sum) - 1.0).abs() < 1e-12);
             assert!(found.carriers() <= forces.len() as f64 && found.carriers() >= sum / most - 1e-9);
@@ -215,7 +216,9 @@ fn the_same_bits_at_any_number_of_threads() {
 fn augmentation_closes_the_gap_geometrically() {
     let rows = Rows::new(1, vec![0, 1], vec![0], vec![1.0], shape::Unity::Within(0.0)).unwrap();
     let at = PointRows::new(vec![Point3::origin()], rows).unwrap();
-    let (w, spring, k) = (2e-6, 3e3, 5e8);
+    let w = 2e-6;
+    let spring = 3e3;
+    let k = 5e8;
     let rows = SurfaceRows::new(at, vec![w], vec![Vector3::z()]).unwrap();
     let surface = ContactSurface::new(&rows);
     let law = ContactLaw::frictionless(k).unwrap();

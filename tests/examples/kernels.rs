@@ -14,7 +14,7 @@ use interp::Scheme;
 use lanes::LanePath;
 use material::{Law, LinearElastic, NeoHookean};
 use shape::{DilationGroups, FixedDof, Matrix3, Point3, RowBlocks, Vector3, VolumeRows};
-use statics::{Assembled, Body, LinearProblem, assemble};
+use statics::{Assembled, LinearBody, LinearProblem, assemble};
 
 type Kernels = Vec<(&'static str, fn(usize))>;
 
@@ -121,7 +121,7 @@ impl Held {
     }
 
     fn assembled(&self, projected: bool) -> Assembled<'_> {
-        let body = Body {
+        let body = LinearBody {
             nodes: self.mesh.points(),
             volume: &self.volume,
             materials: &self.material,
@@ -165,7 +165,7 @@ fn assembled_cloud(times: usize) {
     let fixed: Vec<_> =
         (0..3 * 83).map(|k| FixedDof { node: k / 3, axis: (k % 3) as u8, value: 0.0 }).collect();
     let body =
-        Body { nodes: mls.nodes(), volume: &volume, materials: &material, region: &[], dilation: None };
+        LinearBody { nodes: mls.nodes(), volume: &volume, materials: &material, region: &[], dilation: None };
     let problem = LinearProblem { body, loads: &[], fixed: &fixed, constraints: &[], weak: &[] };
     for _ in 0..times {
         black_box(assemble(black_box(&problem)).unwrap());

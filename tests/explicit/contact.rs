@@ -79,7 +79,8 @@ fn no_load(_: f64, _: &[Vector3], _: &[Vector3], _: &mut [Vector3]) {}
 #[test]
 fn the_body_gains_the_momentum_that_the_tool_gives() {
     let pressed = Pressed::new();
-    let (surface, tool) = (ContactSurface::new(&pressed.surface), jaw(Vector3::new(0.5, 0.2, -1.0), 0.3));
+    let surface = ContactSurface::new(&pressed.surface);
+    let tool = jaw(Vector3::new(0.5, 0.2, -1.0), 0.3);
     let mut force = pressed.force();
     let dt = pressed.step(0.8);
     let drive = Drive::Closure(12e-3);
@@ -147,14 +148,16 @@ fn energy_balances_with_tools_that_slide_and_swing() {
 #[test]
 fn a_force_comes_to_rest_where_the_tissue_carries_it() {
     let pressed = Pressed::new();
-    let (surface, tool) = (ContactSurface::new(&pressed.surface), jaw(-Vector3::z(), 0.0));
+    let surface = ContactSurface::new(&pressed.surface);
+    let tool = jaw(-Vector3::z(), 0.0);
     let hold = |_: f64| 0.0;
     let constrained = pressed.constrained(&hold);
     let body: f64 = pressed.mass.iter().sum();
     let dt = pressed.step(0.9);
     let mut ends = Vec::new();
     for mass in [0.1 * body, 0.3 * body] {
-        let (drive, damping) = (Drive::Force(0.5), 200.0);
+        let drive = Drive::Force(0.5);
+        let damping = 200.0;
         let moving = MovingTool { tool: &tool, drive, over: 0.05, mass, damping };
         let tools = Tools::new(&surface, &[moving], &pressed.zero()).unwrap();
         let mut force = pressed.force();
@@ -180,7 +183,8 @@ fn a_force_comes_to_rest_where_the_tissue_carries_it() {
 #[test]
 fn a_step_may_change_on_the_way() {
     let pressed = Pressed::new();
-    let (surface, tool) = (ContactSurface::new(&pressed.surface), jaw(-Vector3::z(), 0.0));
+    let surface = ContactSurface::new(&pressed.surface);
+    let tool = jaw(-Vector3::z(), 0.0);
     let hold = |_: f64| 0.0;
     let constrained = pressed.constrained(&hold);
     let body: f64 = pressed.mass.iter().sum();
@@ -258,7 +262,8 @@ fn bits_do_not_depend_on_threads_and_far_tools_cost_nothing() {
 #[test]
 fn what_cannot_go_on_is_named() {
     let pressed = Pressed::new();
-    let (surface, tool) = (ContactSurface::new(&pressed.surface), jaw(-Vector3::z(), 0.0));
+    let surface = ContactSurface::new(&pressed.surface);
+    let tool = jaw(-Vector3::z(), 0.0);
     let mut force = pressed.force();
     let dt = pressed.step(0.9);
     let moving = MovingTool { tool: &tool, drive: Drive::Force(1.0), over: 0.0, mass: 1e-6, damping: 0.0 };

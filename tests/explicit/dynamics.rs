@@ -92,10 +92,12 @@ fn critical_step_agrees_with_a_dense_eigenvalue() {
 #[test]
 fn springs_on_a_surface_shorten_the_critical_step() {
     let block = Block::new(CellKind::Tet4, [3, 2, 2]);
-    let (laws, surface) = (law(), block.surface(&["z-max", "x-min"]));
+    let laws = law();
+    let surface = block.surface(&["z-max", "x-min"]);
     let mass = lumped_mass(&block.volume, &[RHO], &[], Lumping::RowSum).unwrap();
     let mut force = InternalForce::new(body(&block.volume, &laws), LanePath::best()).unwrap();
-    let (n, modulus) = (mass.len(), 1e14);
+    let n = mass.len();
+    let modulus = 1e14;
     let mut dense = nalgebra::DMatrix::<f64>::zeros(n, n);
     for (q, w) in surface.weights().iter().enumerate() {
         let (nodes, values) = surface.rows().row(q);
@@ -157,7 +159,8 @@ fn a_free_body_keeps_momentum_and_energy() {
         let steps = (500.0 / part) as usize;
         let params = undamped(part * critical);
         let mut motion = Dynamics::new(&mut force, &free.mass, &[], params, u.clone(), v.clone()).unwrap();
-        let (mut worst, mut swing) = (0.0f64, (f64::INFINITY, 0.0f64));
+        let mut worst = 0.0f64;
+        let mut swing = (f64::INFINITY, 0.0f64);
         let mut record = |b: &Balance, _: &[Vector3]| {
             worst = worst.max(b.drift.abs());
             swing = (swing.0.min(b.strain), swing.1.max(b.strain));
@@ -209,7 +212,8 @@ fn energy_balance_with_loads_supports_and_damping() {
     let mut force = InternalForce::new(body(&free.block.volume, &laws), LanePath::best()).unwrap();
     let zero = vec![Vector3::zeros(); free.mass.len()];
     let dt = 0.5 * critical_step(&mut force, &free.mass, &zero, |_| true, LANCZOS).unwrap().dt;
-    let (hold, lead) = (|_: f64| 0.0, |t: f64| 0.6e-3 * (1.0 - (200.0 * t).cos()));
+    let hold = |_: f64| 0.0;
+    let lead = |t: f64| 0.6e-3 * (1.0 - (200.0 * t).cos());
     let mut prescribed = Vec::new();
     for node in free.block.nodes_of(&["x-min"]) {
         for axis in 0..3 {
@@ -250,7 +254,8 @@ fn a_bar_vibrates_at_the_frequency_of_its_dispersion() {
     let mass = lumped_mass(&volume, &[RHO], &[], Lumping::RowSum).unwrap();
     let mut force = InternalForce::new(body(&volume, &laws), LanePath::best()).unwrap();
     let hold = |_: f64| 0.0;
-    let (mut prescribed, n) = (Vec::new(), mesh.points().len());
+    let mut prescribed = Vec::new();
+    let n = mesh.points().len();
     for (i, x) in mesh.points().iter().enumerate() {
         for axis in 0..3u8 {
             if axis > 0 || x.x == 0.0 || x.x == length {

@@ -170,7 +170,8 @@ fn nodal_dilation_lanes_agree_with_the_plain_loop() {
 #[test]
 fn plain_forces_are_the_gradient_of_the_energy() {
     let block = Block::new(CellKind::Tet4, [2, 2, 1]);
-    let (laws, region) = (laws(), regions(&block));
+    let laws = laws();
+    let region = regions(&block);
     let nodal = DilationGroups::nodal(&block.volume).unwrap();
     for groups in [None, Some(&nodal)] {
         let body = ExplicitBody { volume: &block.volume, laws: &laws, region: &region, groups };

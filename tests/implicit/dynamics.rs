@@ -7,8 +7,8 @@ use integration::cuboid::{Cuboid, distance, largest, moving, params};
 use material::{Law, LinearElastic, NeoHookean};
 use shape::{FixedDof, Matrix3, Point3, Vector3};
 use statics::{
-    Dilation, Inertia, Load, Mass, NewtonParams, PenaltySurface, Ramp, Ramps, StaticParams, StaticProblem,
-    TimeError, TimeParams, TimeProblem, solve_in_time, solve_static,
+    Inertia, Load, Mass, NewtonParams, PenaltySurface, Ramp, Ramps, SolidDilation, StaticParams,
+    StaticProblem, TimeError, TimeParams, TimeProblem, solve_in_time, solve_static,
 };
 
 const DENSITY: f64 = 1000.0;
@@ -153,7 +153,7 @@ fn the_same_bits_with_one_thread_and_two() {
     let velocity = stirred(&block);
     let groups = fem::element_dilation(&block.mesh, &fem::VolumeRule::STANDARD).unwrap();
     let mut body = block.body(&laws, &fixed);
-    body.solid.dilation = Dilation::Groups(&groups);
+    body.solid.dilation = SolidDilation::Groups(&groups);
     let relaxation = [Some(material::Prony::new(&[(0.4, 0.02)]).unwrap())];
     let problem = TimeProblem { relaxation: &relaxation, ..moving(&body, &mass, &[], &velocity) };
     let run = |threads: usize| {
@@ -196,7 +196,8 @@ fn a_slow_tool_with_inertia_presses_as_a_static_one() {
     let path = solve_in_time(&problem, &TimeParams { newton, ..params(2.0, 20, 0.5) }, |_, _, _| ()).unwrap();
     assert_eq!(path.failure, None);
     let force = |tools: &[contact::ToolState]| tools[0].force.z;
-    let (moving, resting) = (path.steps.last().unwrap().clone(), force(&still.steps.last().unwrap().tools));
+    let moving = path.steps.last().unwrap().clone();
+    let resting = force(&still.steps.last().unwrap().tools);
     let found = force(&moving.step.tools);
     assert!((found / resting - 1.0).abs() < 2e-3, "{found} {resting}");
     let error = distance(&path.motion.u, &still.u) / largest(&still.u);

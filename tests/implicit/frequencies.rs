@@ -23,7 +23,8 @@ fn oscillator(rho_inf: f64, damping: f64, omega_dt: f64, steps: usize) -> (Vec<f
     let body = block.body(&laws, &fixed);
     let mass = block.lumped(DENSITY);
     let up = |value: f64| block.field(|x| Vector3::new(0.0, 0.0, if x.z > 0.0 { value } else { 0.0 }));
-    let (displacement, velocity) = (up(1e-3), up(0.02));
+    let displacement = up(1e-3);
+    let velocity = up(0.02);
     let inertia = Inertia { mass: &mass, damping, displacement: &displacement, velocity: &velocity };
     let problem =
         TimeProblem { body: &body, ramps: Ramps::all(Ramp::AtOnce), inertia: Some(inertia), relaxation: &[] };

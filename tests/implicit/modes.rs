@@ -6,7 +6,7 @@ use integration::cuboid::{Cuboid, distance};
 use material::LinearElastic;
 use shape::{FixedDof, Vector3};
 use shape::{Rows, Unity};
-use statics::{Body, LinearProblem, Mass, Modes, SolveError, TimeError, modes};
+use statics::{LinearBody, LinearProblem, Mass, Modes, SolveError, TimeError, modes};
 
 const DENSITY: f64 = 1000.0;
 
@@ -15,8 +15,13 @@ fn law(young: f64, poisson: f64) -> [LinearElastic; 1] {
 }
 
 fn problem<'a>(block: &'a Cuboid, laws: &'a [LinearElastic], fixed: &'a [FixedDof]) -> LinearProblem<'a> {
-    let body =
-        Body { nodes: block.nodes(), volume: &block.volume, materials: laws, region: &[], dilation: None };
+    let body = LinearBody {
+        nodes: block.nodes(),
+        volume: &block.volume,
+        materials: laws,
+        region: &[],
+        dilation: None,
+    };
     LinearProblem { body, loads: &[], fixed, constraints: &[], weak: &[] }
 }
 

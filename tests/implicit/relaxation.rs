@@ -8,7 +8,7 @@ use material::{
 };
 use shape::{FixedDof, Vector3};
 use statics::{
-    Dilation, Load, Motion, Ramp, Ramps, StaticProblem, TimeParams, TimeProblem, TimeStep, solve_in_time,
+    Load, Motion, Ramp, Ramps, SolidDilation, StaticProblem, TimeParams, TimeProblem, TimeStep, solve_in_time,
 };
 
 const YOUNG: f64 = 20e3;
@@ -80,9 +80,9 @@ fn a_stretched_and_held_bar_relaxes_by_the_series() {
             let block = cube(kind);
             let groups = fem::element_dilation(&block.mesh, &VolumeRule::STANDARD).unwrap();
             let pressure = fem::pressure_rows(&block.mesh, &VolumeRule::STANDARD, &[]);
-            let mut dilations = vec![Dilation::Standard, Dilation::Groups(&groups)];
+            let mut dilations = vec![SolidDilation::Standard, SolidDilation::Groups(&groups)];
             if let Ok(pressure) = &pressure {
-                dilations.push(Dilation::Mixed(pressure));
+                dilations.push(SolidDilation::Mixed(pressure));
             }
             let fixed = stretched(&block, by);
             for dilation in dilations {
@@ -164,14 +164,16 @@ fn a_loaded_bar_creeps_with_order_two() {
 fn at_the_end_a_bar_is_a_softer_one() {
     let prony = [Some(series())];
     let stiff = NeoHookeanIsochoric::new(YOUNG, 0.45).unwrap();
-    let (mu, bulk) = (stiff.mu() * series().relaxed(), stiff.bulk());
+    let mu = stiff.mu() * series().relaxed();
+    let bulk = stiff.bulk();
     let soft = [Law::MooneyRivlin(MooneyRivlin::new(0.5 * mu, 0.0, bulk).unwrap())];
     let laws = [Law::NeoHookeanIsochoric(stiff)];
     let block = cube(CellKind::Tet10);
     let groups = fem::element_dilation(&block.mesh, &VolumeRule::STANDARD).unwrap();
     let pressure = fem::pressure_rows(&block.mesh, &VolumeRule::STANDARD, &[]).unwrap();
     let fixed = symmetric(&block, Some(0.3 * SIDE));
-    for dilation in [Dilation::Standard, Dilation::Groups(&groups), Dilation::Mixed(&pressure)] {
+    for dilation in [SolidDilation::Standard, SolidDilation::Groups(&groups), SolidDilation::Mixed(&pressure)]
+    {
         let last = |laws: &[Law], relaxation: &[Option<Prony>]| {
             let mut body = block.body(laws, &fixed);
             body.solid.dilation = dilation;
@@ -182,7 +184,8 @@ fn at_the_end_a_bar_is_a_softer_one() {
             assert!(most <= 8, "{most} iterations");
             found.last().unwrap().1
         };
-        let (found, exact) = (last(&laws, &prony), last(&soft, &[]));
+        let found = last(&laws, &prony);
+        let exact = last(&soft, &[]);
         assert!((found / exact - 1.0).abs() < 1e-9, "{found} {exact}");
     }
 }
@@ -209,7 +212,8 @@ fn laws_without_a_split_converge() {
             found.last().unwrap().1
         };
         // The strain is homogeneous, so every projection gives the same result.
-        let (standard, groups) = (last(Dilation::Standard), last(Dilation::Groups(&groups)));
+        let standard = last(SolidDilation::Standard);
+        let groups = last(SolidDilation::Groups(&groups));
         assert!((standard / groups - 1.0).abs() < 1e-9 && standard > 0.0, "{standard} {groups}");
     }
 }

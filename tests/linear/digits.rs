@@ -6,7 +6,7 @@ use geometry::CellKind;
 use integration::cuboid::Cuboid;
 use material::LinearElastic;
 use shape::{DilationGroups, FixedDof, Point3, Vector3};
-use statics::{Body, LinearProblem, Load, SolveError, assemble};
+use statics::{LinearBody, LinearProblem, Load, SolveError, assemble};
 
 /// A factored stiffness over the unconstrained degrees of freedom, and a load.
 struct System {
@@ -24,7 +24,7 @@ fn system(
     let groups: Option<DilationGroups> =
         mean.then(|| fem::element_dilation(&block.mesh, &VolumeRule::STANDARD).unwrap());
     let material = [LinearElastic::new(20e3, poisson).unwrap()];
-    let body = Body {
+    let body = LinearBody {
         nodes: block.nodes(),
         volume: &block.volume,
         materials: &material,
@@ -155,7 +155,7 @@ fn a_membrane_of_1024_cells_is_solved_nearly_incompressible() {
 fn a_free_body_is_refused_however_small_what_moves_it() {
     let block = Cuboid::new(CellKind::Hex8, [0.04, 0.03, 0.02], [6, 5, 5]);
     let material = [LinearElastic::new(20e3, 0.3).unwrap()];
-    let body = Body {
+    let body = LinearBody {
         nodes: block.nodes(),
         volume: &block.volume,
         materials: &material,

@@ -8,7 +8,7 @@ use geometry::generate::box_mesh;
 use integration::block::{Block, soft};
 use material::LinearElastic;
 use shape::{DilationGroups, FixedDof, Point3, Vector3};
-use statics::{Body, ConstraintRow, Factored, LinearProblem, Load, SolveError, assemble};
+use statics::{ConstraintRow, Factored, LinearBody, LinearProblem, Load, SolveError, assemble};
 
 const KINDS: [CellKind; 4] = [CellKind::Tet4, CellKind::Tet10, CellKind::Hex8, CellKind::Hex20];
 
@@ -107,7 +107,7 @@ fn shared(block: &Block) -> DilationGroups {
 fn nearly_incompressible<T>(block: &Block, poisson: f64, solve: impl FnOnce(&LinearProblem) -> T) -> T {
     let groups = shared(block);
     solved(block, poisson, |problem| {
-        solve(&LinearProblem { body: Body { dilation: Some(&groups), ..problem.body }, ..*problem })
+        solve(&LinearProblem { body: LinearBody { dilation: Some(&groups), ..problem.body }, ..*problem })
     })
 }
 

@@ -7,13 +7,13 @@ use material::LinearElastic;
 use shape::DilationGroups;
 use shape::{FixedDof, Vector3};
 use statics::{
-    Body, LinearProblem, Load, Solution, Weak, WeakSupport, assemble, body_stress, multiplier_rows,
+    LinearBody, LinearProblem, Load, Solution, Weak, WeakSupport, assemble, body_stress, multiplier_rows,
 };
 
 /// Rounding of a few hundred unknowns at condition numbers of some hundred.
 const ROUNDING: f64 = 1e-12;
 
-fn check(block: &Block, body: &Body, solution: &Solution) {
+fn check(block: &Block, body: &LinearBody, solution: &Solution) {
     assert!(
         block.error(&solution.u, affine) < ROUNDING,
         "displacement {:e}",
@@ -159,7 +159,8 @@ fn by_nitsche_beside_an_eliminated_side() {
     let factored = assemble(&problem).unwrap().factor().unwrap();
     let solution = factored.solve(1.0).unwrap();
     check(&block, &body, &solution);
-    let (side, stress) = (block.surface(&["x-min"]), material[0].stress(&gradient()));
+    let side = block.surface(&["x-min"]);
+    let stress = material[0].stress(&gradient());
     let mut exact = vec![Vector3::zeros(); body.nodes.len()];
     for (q, n) in side.normals().iter().enumerate() {
         let (nodes, values) = side.rows().row(q);
@@ -224,7 +225,7 @@ fn with_every_dilation_projection() {
         let element = fem::element_dilation(&block.mesh, &VolumeRule::STANDARD).unwrap();
         let nodal = (kind == CellKind::Tet4).then(|| DilationGroups::nodal(&block.volume).unwrap());
         for groups in std::iter::once(&element).chain(&nodal) {
-            let body = Body { dilation: Some(groups), ..block.body(&material) };
+            let body = LinearBody { dilation: Some(groups), ..block.body(&material) };
             let fixed = block.fix(&SIDES, affine);
             let problem = LinearProblem { body, loads: &[], fixed: &fixed, constraints: &[], weak: &[] };
             let solution = assemble(&problem).unwrap().factor().unwrap().solve(1.0).unwrap();

@@ -8,7 +8,8 @@ use proptest::prelude::*;
 use shape::{DilationGroups, GradRows, Rows, Unity, VolumeRows};
 use shape::{FixedDof, Point3, Vector3};
 use statics::{
-    Body, ConstraintRow, LinearProblem, Load, RigidMode, Solution, SolveError, Weak, WeakSupport, assemble,
+    ConstraintRow, LinearBody, LinearProblem, Load, RigidMode, Solution, SolveError, Weak, WeakSupport,
+    assemble,
 };
 
 fn block() -> Block {
@@ -16,7 +17,7 @@ fn block() -> Block {
 }
 
 fn attempt(
-    body: Body,
+    body: LinearBody,
     loads: &[Load],
     fixed: &[FixedDof],
     constraints: &[ConstraintRow],
@@ -110,7 +111,8 @@ fn two_pieces() -> (Vec<Point3>, VolumeRows) {
 fn each_piece_is_checked() {
     let (nodes, volume) = two_pieces();
     let material = [soft()];
-    let body = Body { nodes: &nodes, volume: &volume, materials: &material, region: &[], dilation: None };
+    let body =
+        LinearBody { nodes: &nodes, volume: &volume, materials: &material, region: &[], dilation: None };
     let hold = |nodes: std::ops::Range<u32>| -> Vec<FixedDof> {
         nodes.flat_map(|node| (0..3).map(move |axis| FixedDof { node, axis, value: 0.0 })).collect()
     };
@@ -140,7 +142,8 @@ fn nodes_at_one_place_are_refused_and_not_divided_by() {
     let (nodes, volume) = two_pieces();
     let material = [soft()];
     let same = vec![nodes[0]; 8];
-    let body = Body { nodes: &same, volume: &volume, materials: &material, region: &[], dilation: None };
+    let body =
+        LinearBody { nodes: &same, volume: &volume, materials: &material, region: &[], dilation: None };
     let fixed: Vec<_> = (0..24).map(|k| FixedDof { node: k / 3, axis: (k % 3) as u8, value: 0.0 }).collect();
     let turns = ["rotation about x", "rotation about y", "rotation about z"];
     assert_eq!(free_modes(attempt(body, &[], &fixed, &[], &[])), turns);
@@ -272,21 +275,21 @@ fn bad_input_is_named() {
     let region = vec![1; block.volume.weights().len()];
     let wrong = |body| attempt(body, &[], &fixed, &[], &[]).err();
     let no_material = SolveError::NoMaterial { point: 0, region: 1, materials: 1 };
-    assert_eq!(wrong(Body { region: &region, ..body }), Some(no_material));
-    assert!(matches!(wrong(Body { region: &region[1..], ..body }), Some(SolveError::Length { .. })));
+    assert_eq!(wrong(LinearBody { region: &region, ..body }), Some(no_material));
+    assert!(matches!(wrong(LinearBody { region: &region[1..], ..body }), Some(SolveError::Length { .. })));
     assert!(matches!(
-        wrong(Body { materials: &[], ..body }),
+        wrong(LinearBody { materials: &[], ..body }),
         Some(SolveError::NoMaterial { materials: 0, .. })
     ));
-    assert!(matches!(wrong(Body { nodes: &body.nodes[1..], ..body }), Some(SolveError::Length { .. })));
+    assert!(matches!(wrong(LinearBody { nodes: &body.nodes[1..], ..body }), Some(SolveError::Length { .. })));
     let mut nodes = body.nodes.to_vec();
     nodes[5].z = f64::NAN;
     assert_eq!(
-        wrong(Body { nodes: &nodes, ..body }),
+        wrong(LinearBody { nodes: &nodes, ..body }),
         Some(SolveError::NotFinite { what: "position of node", index: 5 })
     );
     let other = DilationGroups::new(1, vec![0, 1], vec![0], vec![1.0]).unwrap();
-    assert!(matches!(wrong(Body { dilation: Some(&other), ..body }), Some(SolveError::Length { .. })));
+    assert!(matches!(wrong(LinearBody { dilation: Some(&other), ..body }), Some(SolveError::Length { .. })));
     let factored = assemble(&LinearProblem { body, loads: &[], fixed: &fixed, constraints: &[], weak: &[] });
     assert!(matches!(factored.unwrap().factor().unwrap().solve(f64::NAN), Err(SolveError::NotFinite { .. })));
 }
@@ -297,8 +300,13 @@ fn a_group_without_volume_is_refused() {
     let material = [soft()];
     // The shares of each point sum to one, but the volume of the second group is negative.
     let groups = DilationGroups::new(2, vec![0, 2, 4], vec![0, 1, 0, 1], vec![1.5, 1.5, -0.5, -0.5]).unwrap();
-    let body =
-        Body { nodes: &nodes, volume: &volume, materials: &material, region: &[], dilation: Some(&groups) };
+    let body = LinearBody {
+        nodes: &nodes,
+        volume: &volume,
+        materials: &material,
+        region: &[],
+        dilation: Some(&groups),
+    };
     let result = attempt(body, &[], &[], &[], &[]);
     assert!(
         matches!(result, Err(SolveError::GroupVolume { group: 1, volume }) if volume < 0.0),
@@ -323,7 +331,8 @@ fn a_node_that_no_point_sees_is_named() {
         GradRows::new(block.volume.points().to_vec(), wider.unwrap(), block.volume.grads().to_vec()).unwrap();
     let volume = VolumeRows::new(at, block.volume.weights().to_vec()).unwrap();
     let material = [soft()];
-    let body = Body { nodes: &nodes, volume: &volume, materials: &material, region: &[], dilation: None };
+    let body =
+        LinearBody { nodes: &nodes, volume: &volume, materials: &material, region: &[], dilation: None };
     let mut fixed = block.fix(&["x-min"], |_| Vector3::zeros());
     assert_eq!(attempt(body, &[], &fixed, &[], &[]).err(), Some(SolveError::OrphanNode { node: 27 }));
     fixed.extend((0..3).map(|axis| FixedDof { node: 27, axis, value: 0.1 }));

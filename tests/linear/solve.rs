@@ -202,7 +202,8 @@ fn a_second_load_needs_no_second_factor() {
     let surface = block.surface(&["z-max"]);
     let fixed = block.fix(&["z-min"], |x| Vector3::new(0.0, 0.0, 0.02 * x.x));
     let push = |p: f64| [Load::Pressure { surface: &surface, values: vec![p; surface.weights().len()] }];
-    let (one, two) = (push(100.0), push(-300.0));
+    let one = push(100.0);
+    let two = push(-300.0);
     let problem = |loads| LinearProblem { body, loads, fixed: &fixed, constraints: &[], weak: &[] };
     let factored = assemble(&problem(&one)).unwrap().factor().unwrap();
     let reused = factored.solve_loads(&two).unwrap();

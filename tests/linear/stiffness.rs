@@ -9,9 +9,9 @@ use nalgebra::DMatrix;
 use proptest::prelude::*;
 use shape::DilationGroups;
 use shape::{FixedDof, Matrix3, Vector3};
-use statics::{Body, LinearProblem, Load, Weak, WeakSupport, assemble, strain_energy};
+use statics::{LinearBody, LinearProblem, Load, Weak, WeakSupport, assemble, strain_energy};
 
-fn matrix(body: &Body) -> Stiffness {
+fn matrix(body: &LinearBody) -> Stiffness {
     let nodes = body.nodes.len() as u32;
     let fixed: Vec<_> =
         (0..nodes).flat_map(|node| (0..3).map(move |axis| FixedDof { node, axis, value: 0.0 })).collect();
@@ -34,7 +34,7 @@ fn dense(k: &Stiffness) -> DMatrix<f64> {
 }
 
 /// Computes `B^T C B` with 6-vectors of strain, independently of the assembly.
-fn voigt(body: &Body) -> DMatrix<f64> {
+fn voigt(body: &LinearBody) -> DMatrix<f64> {
     let n = body.nodes.len();
     let mut k = DMatrix::zeros(3 * n, 3 * n);
     for q in 0..body.volume.weights().len() {
@@ -69,8 +69,9 @@ fn equals_the_textbook_matrix_with_two_regions() {
         let block = Block::new(kind, [2, 2, 1]);
         let materials = [soft(), LinearElastic::new(3e6, 0.45).unwrap()];
         let region: Vec<u16> = block.volume.points().iter().map(|x| u16::from(x.y > 0.015)).collect();
-        let body = Body { region: &region, ..block.body(&materials) };
-        let (ours, theirs) = (dense(&matrix(&body)), voigt(&body));
+        let body = LinearBody { region: &region, ..block.body(&materials) };
+        let ours = dense(&matrix(&body));
+        let theirs = voigt(&body);
         assert!((&ours - &theirs).norm() < 1e-13 * theirs.norm(), "{}", kind.name());
     }
 }
@@ -87,8 +88,9 @@ fn assembly_is_the_weak_form_with_every_projection() {
             _ => None,
         };
         for dilation in [None, Some(&element), nodal.as_ref()] {
-            let body = Body { region: &region, dilation, ..block.body(&materials) };
-            let (fast, plain) = (dense(&matrix(&body)), statics::plain::stiffness(&body));
+            let body = LinearBody { region: &region, dilation, ..block.body(&materials) };
+            let fast = dense(&matrix(&body));
+            let plain = statics::plain::stiffness(&body);
             assert!((&fast - &plain).norm() < 1e-14 * plain.norm(), "{}", kind.name());
         }
     }
@@ -101,12 +103,12 @@ fn groups_of_single_points_change_nothing() {
     let materials = [soft(), LinearElastic::new(3e6, 0.45).unwrap()];
     let points = block.volume.weights().len();
     let region: Vec<u16> = (0..points).map(|q| (q % 2) as u16).collect();
-    let body = Body { region: &region, ..block.body(&materials) };
+    let body = LinearBody { region: &region, ..block.body(&materials) };
     let alone =
         DilationGroups::new(points, (0..=points).collect(), (0..points as u32).collect(), vec![1.0; points])
             .unwrap();
     let plain = dense(&matrix(&body));
-    let projected = dense(&matrix(&Body { dilation: Some(&alone), ..body }));
+    let projected = dense(&matrix(&LinearBody { dilation: Some(&alone), ..body }));
     assert!((&plain - &projected).norm() < 1e-13 * plain.norm());
 }
 
@@ -119,7 +121,7 @@ fn six_rigid_modes_and_no_more() {
         let material = [soft()];
         let element = fem::element_dilation(&block.mesh, &VolumeRule::STANDARD).unwrap();
         for dilation in [None, Some(&element)] {
-            let k = dense(&matrix(&Body { dilation, ..block.body(&material) }));
+            let k = dense(&matrix(&LinearBody { dilation, ..block.body(&material) }));
             let mut e: Vec<f64> = k.symmetric_eigenvalues().iter().copied().collect();
             e.sort_by(f64::total_cmp);
             let top = e[e.len() - 1];
@@ -136,7 +138,7 @@ fn energy_is_half_u_k_u() {
     let region: Vec<u16> = block.volume.points().iter().map(|x| u16::from(x.x > 0.02)).collect();
     let nodal = DilationGroups::nodal(&block.volume).unwrap();
     for dilation in [None, Some(&nodal)] {
-        let body = Body { region: &region, dilation, ..block.body(&materials) };
+        let body = LinearBody { region: &region, dilation, ..block.body(&materials) };
         let u: Vec<Vector3> = body
             .nodes
             .iter()
@@ -154,7 +156,7 @@ fn same_bits_with_one_and_two_threads() {
     let block = Block::new(CellKind::Tet4, [7, 6, 5]);
     let material = [LinearElastic::new(20e3, 0.49).unwrap()];
     let nodal = DilationGroups::nodal(&block.volume).unwrap();
-    let body = Body { dilation: Some(&nodal), ..block.body(&material) };
+    let body = LinearBody { dilation: Some(&nodal), ..block.body(&material) };
     let flux = block.flux(&["z-min"]);
     let surface = block.surface(&["z-max"]);
     let run = |threads| {

@@ -34,7 +34,8 @@ fn force_and_closure_agree() {
             } else {
                 ContactLaw::frictionless(1e7).unwrap()
             };
-            let (radius, down) = (0.03, -Vector3::z());
+            let radius = 0.03;
+            let down = -Vector3::z();
             let at = Point3::new(0.022, 0.014, SIZE.z + radius);
             let sphere =
                 Tool::new(ToolShape::Sphere(Sphere { radius }), at, Matrix3::identity(), down, touch)
@@ -81,7 +82,8 @@ fn first_contact_in_one_step() {
         let surface = fem::surface_rows(&model.mesh, &model.mesh.boundary(), &SurfaceRule::STANDARD).unwrap();
         let contact = ContactSurface::new(&surface);
         let touch = ContactLaw::coulomb(5e8, 0.15, 1e8).unwrap();
-        let (radius, off) = (0.012, 2e-3);
+        let radius = 0.012;
+        let off = 2e-3;
         let ball = |z: f64, along: Vector3| {
             Tool::new(
                 ToolShape::Sphere(Sphere { radius }),

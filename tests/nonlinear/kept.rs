@@ -28,7 +28,8 @@ fn kept_factors_lead_to_the_same_end() {
             let newton = NewtonParams { keeps, chords: false, ..steps(4).newton };
             press_by(&model, &law, rough, &format!("{method:?}"), &StaticParams { newton, ..steps(4) }).0
         };
-        let (anew, kept) = (path(f64::INFINITY), path(0.0));
+        let anew = path(f64::INFINITY);
+        let kept = path(0.0);
         assert_eq!(anew.steps.len(), kept.steps.len());
         for (a, b) in anew.steps.iter().zip(&kept.steps) {
             assert_eq!(

@@ -6,7 +6,7 @@ use geometry::{CellKind, Facet, Mesh};
 use material::LinearElastic;
 use shape::{FixedDof, Matrix3, Point3, Vector3};
 use shape::{FluxRows, SurfaceRows, VolumeRows};
-use statics::Body;
+use statics::LinearBody;
 
 /// Facet groups of a box.
 pub const SIDES: [&str; 6] = ["x-min", "x-max", "y-min", "y-max", "z-min", "z-max"];
@@ -30,8 +30,8 @@ impl Block {
     }
 
     /// Returns a body with these laws, without projection.
-    pub fn body<'a>(&'a self, materials: &'a [LinearElastic]) -> Body<'a> {
-        Body { nodes: self.mesh.points(), volume: &self.volume, materials, region: &[], dilation: None }
+    pub fn body<'a>(&'a self, materials: &'a [LinearElastic]) -> LinearBody<'a> {
+        LinearBody { nodes: self.mesh.points(), volume: &self.volume, materials, region: &[], dilation: None }
     }
 
     /// Returns the facets of some sides.

@@ -7,7 +7,7 @@ use material::Law;
 use shape::VolumeRows;
 use shape::{FixedDof, Point3, Vector3};
 use statics::{
-    Dilation, Inertia, Mass, NewtonParams, Ramp, Ramps, Solid, StaticProblem, TimeParams, TimeProblem,
+    Inertia, Mass, NewtonParams, Ramp, Ramps, Solid, SolidDilation, StaticProblem, TimeParams, TimeProblem,
 };
 
 /// A box with its tables.
@@ -65,7 +65,7 @@ impl Cuboid {
 
     /// Returns a problem with these laws, without loads and tools.
     pub fn body<'a>(&'a self, laws: &'a [Law], fixed: &'a [FixedDof]) -> StaticProblem<'a> {
-        let solid = Solid { volume: &self.volume, laws, region: &[], dilation: Dilation::Standard };
+        let solid = Solid { volume: &self.volume, laws, region: &[], dilation: SolidDilation::Standard };
         StaticProblem {
             nodes: self.nodes(),
             solid,

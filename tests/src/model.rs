@@ -6,7 +6,7 @@ use geometry::{CellKind, Facet, Mesh};
 use material::Law;
 use shape::{DilationGroups, Rows, VolumeRows};
 use shape::{FixedDof, Point3, Vector3};
-use statics::{Dilation, NewtonParams, Solid, StaticParams, StaticPath, StaticProblem, solve_static};
+use statics::{NewtonParams, Solid, SolidDilation, StaticParams, StaticPath, StaticProblem, solve_static};
 
 /// Treatment of the volume change.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -65,11 +65,11 @@ impl Model {
     }
 
     /// Returns the projection in the form of a solid.
-    pub fn dilation(&self) -> Dilation<'_> {
+    pub fn dilation(&self) -> SolidDilation<'_> {
         match (&self.groups, &self.pressure) {
-            (Some(groups), _) => Dilation::Groups(groups),
-            (_, Some(rows)) => Dilation::Mixed(rows),
-            _ => Dilation::Standard,
+            (Some(groups), _) => SolidDilation::Groups(groups),
+            (_, Some(rows)) => SolidDilation::Mixed(rows),
+            _ => SolidDilation::Standard,
         }
     }
 

@@ -31,7 +31,8 @@ pub fn kink(shape: &ToolShape, p: &Vector3) -> f64 {
         }
         ToolShape::Sphere(Sphere { .. }) => p.norm(),
         ToolShape::Cylinder(Cylinder { radius, half_length }) => {
-            let (side, flat) = (rho - radius, p.z.abs() - half_length);
+            let side = rho - radius;
+            let flat = p.z.abs() - half_length;
             let along = if side > flat { rho } else { p.z };
             let inside = side.max(flat) < 0.0;
             least(&[if inside { (side - flat) / 2.0 } else { side.min(flat) }, along])

@@ -167,7 +167,7 @@ mod tests {
 
     #[test]
     fn every_linked_file_is_kept_and_nothing_else() {
-        let root = crate::root();
+        let root = crate::cargo::root();
         let kept = std::fs::read_dir(root.join(FOLDER)).unwrap();
         let kept: BTreeSet<String> =
             kept.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();

@@ -36,7 +36,7 @@ pub(crate) fn instructions(root: &Path, accept: bool) -> Result<u8> {
     eprintln!("xtask: building the kernels; a minute after tissuebench is built");
     let build =
         ["build", "--release", "--locked", "--package", "tissuebench-integration", "--example", "kernels"];
-    let code = crate::cargo(&build, &[])?;
+    let code = crate::cargo::cargo(&build, &[])?;
     if code != 0 {
         return Ok(code);
     }

@@ -2,6 +2,7 @@
 //!
 //! Exit codes: those of `tissuebench` (0 all held, 1 a check failed, 2 bad usage, 3 could not run).
 
+mod cargo;
 mod gallery;
 mod instructions;
 mod mutants;
@@ -9,11 +10,13 @@ mod nightly;
 mod python;
 mod skips;
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::{Command, ExitCode};
 
 use anyhow::{Context, Result};
 use clap::{Parser, Subcommand};
+
+use crate::cargo::{cargo, cargo_command, code_of, root, tissuebench};
 
 #[derive(Parser)]
 #[command(name = "cargo xtask", about = "Tasks of the tissuebench workspace")]
@@ -249,20 +252,6 @@ fn verify(full: bool, args: &[String]) -> Result<u8> {
     tissuebench("verify", &args)
 }
 
-/// Runs the release binary, and builds it first if needed.
-fn tissuebench(command: &str, args: &[String]) -> Result<u8> {
-    eprintln!(
-        "xtask: building tissuebench (4 to 8 minutes on two cores the first time), then: tissuebench {command}"
-    );
-    let build = ["build", "--release", "--locked", "--package", "tissuebench-harness"];
-    let code = cargo(&build, &[])?;
-    if code != 0 {
-        return Ok(code);
-    }
-    let run = ["run", "--release", "--locked", "--quiet", "--package", "tissuebench-harness", "--", command];
-    cargo(&run, args)
-}
-
 /// Writes the pages that the program generates about itself, then docs/book.
 fn book() -> Result<u8> {
     let pages = ["test", "--locked", "--package", "tissuebench-harness", "--test", "docs", "reference"];
@@ -280,24 +269,4 @@ fn book() -> Result<u8> {
             Ok(0)
         }
     }
-}
-
-fn cargo(args: &[&str], more: &[String]) -> Result<u8> {
-    let status = cargo_command(args, more).status();
-    Ok(code_of(status.with_context(|| format!("could not start cargo {}", args.join(" ")))?))
-}
-
-fn cargo_command(args: &[&str], more: &[String]) -> Command {
-    let mut command = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
-    command.args(args).args(more).current_dir(root());
-    command.env("RUSTDOCFLAGS", "-D warnings").env("CARGO_INCREMENTAL", "0");
-    command
-}
-
-fn code_of(status: std::process::ExitStatus) -> u8 {
-    status.code().map_or(3, |code| code as u8)
-}
-
-fn root() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("xtask lies in the workspace").to_path_buf()
 }

@@ -7,6 +7,8 @@ use std::process::Command;
 
 use anyhow::{Context, Result};
 
+use crate::cargo::{cargo, code_of};
+use crate::mutants::mutants;
 use crate::skips::skipped;
 
 /// Seconds in a minute.
@@ -17,10 +19,8 @@ const MINUTE: u32 = 60;
 pub(crate) fn nightly(root: &Path, minutes: u32) -> Result<u8> {
     let checks: [(&str, &dyn Fn() -> Result<u8>); 5] = [
         ("deny", &|| deny(root)),
-        ("package", &|| {
-            crate::cargo(&["package", "--workspace", "--allow-dirty", "--locked", "--quiet"], &[])
-        }),
-        ("mutants", &|| crate::mutants::mutants(root, &[])),
+        ("package", &|| cargo(&["package", "--workspace", "--allow-dirty", "--locked", "--quiet"], &[])),
+        ("mutants", &|| mutants(root, &[])),
         ("survive", &survive),
         ("fuzz", &|| fuzz(root, minutes)),
     ];
@@ -40,7 +40,7 @@ pub(crate) fn nightly(root: &Path, minutes: u32) -> Result<u8> {
 /// result may be lost, repeated or changed.
 fn survive() -> Result<u8> {
     let test = ["test", "--release", "--locked", "--package", "tissuebench-harness", "--test", "survive"];
-    crate::cargo(&[&test[..], &["--", "--ignored", "--nocapture"]].concat(), &[])
+    cargo(&[&test[..], &["--", "--ignored", "--nocapture"]].concat(), &[])
 }
 
 /// Checks licences, advisories, sources and versions of all dependencies.
@@ -52,7 +52,7 @@ fn deny(root: &Path) -> Result<u8> {
             "cargo-deny is not installed, so the dependencies are not checked",
         );
     }
-    crate::cargo(&["deny", "--locked", "check"], &[])
+    cargo(&["deny", "--locked", "check"], &[])
 }
 
 /// Runs every fuzz target for some minutes, starting from its corpus; new inputs stay in target/fuzz.
@@ -84,7 +84,7 @@ fn fuzz(root: &Path, minutes: u32) -> Result<u8> {
         ]);
         command.arg(target).args([new, known]);
         command.args(["--", "-dict=fuzz/words.dict", "-max_len=16000", &time]).current_dir(root);
-        worst = worst.max(crate::code_of(command.status().context("could not start rustup")?));
+        worst = worst.max(code_of(command.status().context("could not start rustup")?));
     }
     Ok(worst)
 }

@@ -6,6 +6,9 @@ use std::process::Command;
 
 use anyhow::{Context, Result, ensure};
 
+use crate::cargo::{cargo, code_of};
+use crate::skips::skipped;
+
 /// Modules that the test must be able to import; nothing is downloaded.
 const NEEDED: [&str; 3] = ["maturin", "numpy", "pytest"];
 
@@ -23,10 +26,10 @@ pub(crate) fn python(root: &Path) -> Result<u8> {
             python.display(),
             missing.join(", ")
         );
-        return crate::skips::skipped(root, "maturin", &why);
+        return skipped(root, "maturin", &why);
     }
     let manifest = ["--manifest-path", "python/Cargo.toml"];
-    let code = crate::cargo(&[&["fmt", "--check"], &manifest[..]].concat(), &[])?;
+    let code = cargo(&[&["fmt", "--check"], &manifest[..]].concat(), &[])?;
     if code != 0 {
         return Ok(code);
     }
@@ -38,13 +41,13 @@ pub(crate) fn python(root: &Path) -> Result<u8> {
     }
     let mut build = Command::new(&python);
     build.args(["-m", "maturin", "build", "--release", "--locked"]).args(manifest).arg("--out").arg(&wheels);
-    let code = crate::code_of(build.current_dir(root).status()?);
+    let code = code_of(build.current_dir(root).status()?);
     if code != 0 {
         return Ok(code);
     }
     // The output of the command is compared with that of the module.
     let build = ["build", "--release", "--locked", "--package", "tissuebench-harness"];
-    let code = crate::cargo(&build, &[])?;
+    let code = cargo(&build, &[])?;
     if code != 0 {
         return Ok(code);
     }
@@ -54,7 +57,7 @@ pub(crate) fn python(root: &Path) -> Result<u8> {
     let status = Command::new(&fresh).args(install).arg(wheel).status()?;
     ensure!(status.success(), "the wheel can't be installed");
     let tests = Command::new(&fresh).args(["-m", "pytest", "-q", "python/tests"]).current_dir(root).status();
-    Ok(crate::code_of(tests.context("could not start pytest")?))
+    Ok(code_of(tests.context("could not start pytest")?))
 }
 
 /// Creates a virtual environment without network access that finds the packages of the creating interpreter;
@@ -81,7 +84,7 @@ mod tests {
 
     /// Returns the project's packages with their dependencies, including those of tests.
     fn ours(lock: &str) -> BTreeMap<String, Vec<String>> {
-        let text = std::fs::read_to_string(crate::root().join(lock)).unwrap();
+        let text = std::fs::read_to_string(crate::cargo::root().join(lock)).unwrap();
         let read: toml::Value = toml::from_str(&text).unwrap();
         let name = |package: &toml::Value| package["name"].as_str().unwrap().to_string();
         let of = |package: &toml::Value| -> Vec<String> {
@@ -112,8 +115,9 @@ mod tests {
                 assert!(workspace[package].contains(one), "{package} no longer needs {one}");
             }
         }
-        let solvers = std::fs::read_dir(crate::root().join("solvers")).unwrap().map(|e| e.unwrap().path());
-        let rest = ["cases", "harness", "reports"].map(|folder| crate::root().join(folder));
+        let solvers =
+            std::fs::read_dir(crate::cargo::root().join("solvers")).unwrap().map(|e| e.unwrap().path());
+        let rest = ["cases", "harness", "reports"].map(|folder| crate::cargo::root().join(folder));
         for (package, depends) in solvers.chain(rest).map(|folder| needed(&folder)) {
             for one in depends.iter().filter(|one| !module.contains_key(&format!("tissuebench-{one}"))) {
                 assert!(

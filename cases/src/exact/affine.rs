@@ -14,7 +14,11 @@
 //! Must hold   every consistent method returns the field to rounding, at any Poisson's ratio.
 //! ```
 
-use super::{Dimension, Elastic, Entry, Exact, Matrix3, Parameter, Point3, SolutionEntry, Vector3, numbers};
+use catalogue::{Dimension, Entry, Parameter};
+
+use super::elastic::Elastic;
+use super::solution::{Exact, SolutionEntry, numbers};
+use super::vectors::{Matrix3, Point3, Vector3};
 
 /// `u = H x + t` with constant stress.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -17,9 +17,12 @@
 //!             twice the static p0 L / M and back, with a period of 4 L / c.
 //! ```
 
-use super::{
-    Dimension, Elastic, Entry, Exact, ExactError, Matrix3, Parameter, Point3, SolutionEntry, Vector3, numbers,
-};
+use catalogue::{Dimension, Entry, Parameter};
+
+use super::elastic::Elastic;
+use super::error::ExactError;
+use super::solution::{Exact, SolutionEntry, numbers};
+use super::vectors::{Matrix3, Point3, Vector3};
 
 /// Longitudinal waves in a bar without lateral motion, from its end at `x = L`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -92,7 +95,8 @@ impl BarWave {
     /// `sum_n (-1)^n (f(t - (2 n L + s) / c) + sign f(t - (2 (n + 1) L - s) / c))`, with `f` the chosen
     /// function of the pull.
     fn waves(&self, of: Of, x: f64, sign: f64) -> f64 {
-        let (c, from_end) = (self.speed(), self.length - x);
+        let c = self.speed();
+        let from_end = self.length - x;
         let passages = (0.5 * self.time * c / self.length).ceil() as usize;
         let wave = |n: usize| {
             let far = 2.0 * n as f64 * self.length;
@@ -133,11 +137,7 @@ pub(super) const ENTRY: SolutionEntry = Entry {
     meaning: "waves in a bar under a traction on its end x = L",
     source: "d'Alembert; Graff, Wave Motion in Elastic Solids (1975), ch. 2",
     parameters: &[
-        Parameter::required(
-            "pull",
-            Dimension::Pressure,
-            "final traction along x on the end",
-        ),
+        Parameter::required("pull", Dimension::Pressure, "final traction along x on the end"),
         Parameter::required("length", Dimension::Length, "length along x, from 0"),
         Parameter::required("density", Dimension::Density, "mass per volume"),
         Parameter::default("over", Dimension::Time, 0.0, "time over which the traction grows"),

@@ -21,9 +21,12 @@
 //!             singular corner.
 //! ```
 
-use super::{
-    Dimension, Elastic, Entry, Exact, ExactError, Matrix3, Parameter, Point3, SolutionEntry, Vector3, numbers,
-};
+use catalogue::{Dimension, Entry, Parameter};
+
+use super::elastic::Elastic;
+use super::error::ExactError;
+use super::solution::{Exact, SolutionEntry, numbers};
+use super::vectors::{Matrix3, Point3, Vector3};
 
 /// Timoshenko's cantilever, bending in the x-y plane, plane strain in z.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -66,7 +69,10 @@ impl CantileverPlaneStrain {
 
 impl Exact for CantileverPlaneStrain {
     fn displacement(&self, p: &Point3) -> Vector3 {
-        let (x, y, l, quarter) = (p.x, p.y, self.length, 0.25 * self.depth * self.depth);
+        let x = p.x;
+        let y = p.y;
+        let l = self.length;
+        let quarter = 0.25 * self.depth * self.depth;
         let (scale, nu) = self.plane_strain();
         let ux = -y * ((6.0 * l - 3.0 * x) * x + (2.0 + nu) * (y * y - quarter));
         let uy = 3.0 * nu * y * y * (l - x) + (4.0 + 5.0 * nu) * quarter * x + (3.0 * l - x) * x * x;
@@ -74,7 +80,10 @@ impl Exact for CantileverPlaneStrain {
     }
 
     fn gradient(&self, p: &Point3) -> Matrix3 {
-        let (x, y, l, quarter) = (p.x, p.y, self.length, 0.25 * self.depth * self.depth);
+        let x = p.x;
+        let y = p.y;
+        let l = self.length;
+        let quarter = 0.25 * self.depth * self.depth;
         let (scale, nu) = self.plane_strain();
         let mut h = Matrix3::zeros();
         h[(0, 0)] = -6.0 * y * (l - x);

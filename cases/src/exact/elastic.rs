@@ -1,6 +1,7 @@
 //! Isotropic linear elasticity, written out once for the exact solutions.
 
-use super::{ExactError, Matrix3};
+use super::error::ExactError;
+use super::vectors::Matrix3;
 
 /// Young's modulus and Poisson's ratio of an isotropic material.
 #[derive(Clone, Copy, Debug, PartialEq)]

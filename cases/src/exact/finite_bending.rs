@@ -16,10 +16,12 @@
 //! Must hold   displacements converge; the fibre of stretch 1 is not the middle fibre.
 //! ```
 
-use super::{
-    Dimension, Entry, Exact, ExactError, Hyperelastic, Matrix3, Parameter, Point3, SolutionEntry, Vector3,
-    numbers,
-};
+use catalogue::{Dimension, Entry, Parameter};
+
+use super::error::ExactError;
+use super::hyperelastic::Hyperelastic;
+use super::solution::{Exact, SolutionEntry, numbers};
+use super::vectors::{Matrix3, Point3, Vector3};
 
 /// Intervals across the thickness: the error of fourth-order Runge-Kutta is below 1e-10 of the radius.
 const INTERVALS: usize = 100;
@@ -72,7 +74,9 @@ impl FiniteBending {
         let step = self.thickness / INTERVALS as f64;
         let at = (x / self.thickness + 0.5) * INTERVALS as f64;
         let k = (at.max(0.0) as usize).min(INTERVALS - 1);
-        let ((a, da), (b, db), t) = (self.radius[k], self.radius[k + 1], at - k as f64);
+        let (a, da) = self.radius[k];
+        let (b, db) = self.radius[k + 1];
+        let t = at - k as f64;
         let s = 1.0 - t;
         let value =
             s * s * ((1.0 + 2.0 * t) * a + t * step * da) + t * t * ((1.0 + 2.0 * s) * b - s * step * db);
@@ -82,7 +86,8 @@ impl FiniteBending {
 
     /// Stretches along the radius, the circumference and z, and the unit vectors of the first two.
     fn state(&self, x: &Point3) -> ([f64; 3], Vector3, Vector3) {
-        let ((r, slope), (sin, cos)) = (self.fibre(x.x), (self.curvature * x.y).sin_cos());
+        let (r, slope) = self.fibre(x.x);
+        let (sin, cos) = (self.curvature * x.y).sin_cos();
         ([slope, self.curvature * r, 1.0], Vector3::new(cos, sin, 0.0), Vector3::new(-sin, cos, 0.0))
     }
 }
@@ -90,7 +95,8 @@ impl FiniteBending {
 impl Exact for FiniteBending {
     /// Displacement, m; `X` has to lie within the thickness.
     fn displacement(&self, x: &Point3) -> Vector3 {
-        let (r, angle) = (self.radius(x.x), self.curvature * x.y);
+        let r = self.radius(x.x);
+        let angle = self.curvature * x.y;
         Vector3::new(r * angle.cos() - self.radius(0.0) - x.x, r * angle.sin() - x.y, 0.0)
     }
 

@@ -17,10 +17,12 @@
 
 use std::f64::consts::PI;
 
-use super::{
-    Contact, Dimension, Elastic, Entry, Exact, ExactError, Matrix3, Parameter, Point3, Range, SolutionEntry,
-    Vector3, numbers,
-};
+use catalogue::{Dimension, Entry, Parameter, Range};
+
+use super::elastic::Elastic;
+use super::error::ExactError;
+use super::solution::{Contact, Exact, SolutionEntry, numbers};
+use super::vectors::{Matrix3, Point3, Vector3};
 
 /// A rigid sphere at depth `d` in the half space `z <= 0`, touching first at the origin.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -86,7 +88,9 @@ impl Hertz {
 /// ```
 impl Exact for Hertz {
     fn displacement(&self, x: &Point3) -> Vector3 {
-        let (nu, distance, s) = (self.elastic.poisson(), x.coords.norm(), -x.z);
+        let nu = self.elastic.poisson();
+        let distance = x.coords.norm();
+        let s = -x.z;
         let scale = self.scale() / distance;
         let radial = s / distance.powi(2) - (1.0 - 2.0 * nu) / (distance + s);
         scale * Vector3::new(radial * x.x, radial * x.y, -2.0 * (1.0 - nu) - (s / distance).powi(2))

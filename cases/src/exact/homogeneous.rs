@@ -17,9 +17,11 @@
 //!             times the undeformed area.
 //! ```
 
-use super::{
-    Dimension, Entry, Exact, Hyperelastic, Matrix3, Parameter, Point3, Problem, Range, SolutionEntry, Vector3,
-};
+use catalogue::{Dimension, Entry, Parameter, Problem, Range};
+
+use super::hyperelastic::Hyperelastic;
+use super::solution::{Exact, SolutionEntry};
+use super::vectors::{Matrix3, Point3, Vector3};
 
 /// A state with one deformation gradient everywhere.
 #[derive(Clone, Copy, Debug, PartialEq)]

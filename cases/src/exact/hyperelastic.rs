@@ -9,7 +9,8 @@
 //! Source: Ogden, Non-linear Elastic Deformations (1984), ch. 4.3. Solvers work with tensors, and this file
 //! works with three stretches only, so a solver's material is never judged by itself.
 
-use super::{Elastic, Matrix3, Vector3};
+use super::elastic::Elastic;
+use super::vectors::{Matrix3, Vector3};
 
 /// A stored energy `W(l_1, l_2, l_3)`, Pa, with the usual constants of the law.
 #[derive(Clone, Debug, PartialEq)]

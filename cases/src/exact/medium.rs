@@ -1,7 +1,9 @@
 //! The material of an exact solution.
 
-use super::{Elastic, Hyperelastic};
 use catalogue::Problem;
+
+use super::elastic::Elastic;
+use super::hyperelastic::Hyperelastic;
 
 /// A material in the form used by the exact solutions.
 #[derive(Clone, Debug, PartialEq)]

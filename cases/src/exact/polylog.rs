@@ -100,7 +100,8 @@ mod tests {
     fn closed_sums_equal_the_series_on_both_sides_of_the_switch() {
         for s in [0.01, 0.3, 1.39, 1.41, 3.0, 9.0] {
             for t in [-3.1, -2.0, -0.5, 0.0, 1e-9, 0.7, 3.0, PI] {
-                let (two, three) = (alternating_2(s, t), alternating_3(s, t));
+                let two = alternating_2(s, t);
+                let three = alternating_3(s, t);
                 assert!((two - brute(2, s, t)).norm() < 3e-15, "L2 at {s} {t}: {two}");
                 assert!((three - brute(3, s, t)).norm() < 3e-15, "L3 at {s} {t}: {three}");
             }

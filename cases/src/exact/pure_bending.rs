@@ -14,7 +14,11 @@
 //!             stress is E k y / 3 for any nu, so the pressure error is well defined.
 //! ```
 
-use super::{Dimension, Elastic, Entry, Exact, Matrix3, Parameter, Point3, SolutionEntry, Vector3};
+use catalogue::{Dimension, Entry, Parameter};
+
+use super::elastic::Elastic;
+use super::solution::{Exact, SolutionEntry};
+use super::vectors::{Matrix3, Point3, Vector3};
 
 /// Bending about the z axis with constant curvature.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -15,7 +15,11 @@
 //!             with lambda near nu = 0.5.
 //! ```
 
-use super::{Dimension, Elastic, Entry, Exact, Matrix3, Parameter, Point3, SolutionEntry, Vector3};
+use catalogue::{Dimension, Entry, Parameter};
+
+use super::elastic::Elastic;
+use super::solution::{Exact, SolutionEntry};
+use super::vectors::{Matrix3, Point3, Vector3};
 
 /// `u_i = x . C_i x / 2` with the constant body force that balances it.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -22,9 +22,12 @@
 //!             move outwards.
 //! ```
 
-use super::{
-    Dimension, Elastic, Entry, Exact, ExactError, Matrix3, Parameter, Point3, SolutionEntry, Vector3, numbers,
-};
+use catalogue::{Dimension, Entry, Parameter};
+
+use super::elastic::Elastic;
+use super::error::ExactError;
+use super::solution::{Exact, SolutionEntry, numbers};
+use super::vectors::{Matrix3, Point3, Vector3};
 
 /// Homogeneous uniaxial stress along z in a linear material whose shear modulus relaxes by one term.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -69,7 +72,8 @@ impl RelaxingCompression {
 
     /// Strain `e` and compressive stress `-sigma_zz` (Pa).
     fn state(&self) -> (f64, f64) {
-        let (bulk, mu) = (3.0 * self.elastic.bulk(), self.elastic.mu());
+        let bulk = 3.0 * self.elastic.bulk();
+        let mu = self.elastic.mu();
         let relaxed = mu * (1.0 - self.share);
         let tau = self.tau * (bulk + mu) / (bulk + relaxed);
         let long = 3.0 * bulk * relaxed / (bulk + relaxed);
@@ -77,7 +81,8 @@ impl RelaxingCompression {
         if self.over == 0.0 {
             return (self.strain, self.strain * (long + falls * (-self.time / tau).exp()));
         }
-        let (rate, led) = (self.strain / self.over, self.time.min(self.over));
+        let rate = self.strain / self.over;
+        let led = self.time.min(self.over);
         let fading = (-(self.time - led) / tau).exp() - (-self.time / tau).exp();
         (rate * led, rate * (long * led + falls * tau * fading))
     }

@@ -12,7 +12,11 @@
 //!             six such modes.
 //! ```
 
-use super::{Dimension, Elastic, Entry, Exact, Matrix3, Parameter, Point3, SolutionEntry, Vector3, numbers};
+use catalogue::{Dimension, Entry, Parameter};
+
+use super::elastic::Elastic;
+use super::solution::{Exact, SolutionEntry, numbers};
+use super::vectors::{Matrix3, Point3, Vector3};
 
 /// `u = t + w x x`: a shift and an infinitesimal rotation about the origin.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -22,10 +22,12 @@
 
 use std::f64::consts::PI;
 
-use super::{
-    Dimension, Elastic, Entry, Exact, ExactError, Matrix3, Parameter, Point3, SolutionEntry, Vector3,
-    Vibrations, numbers,
-};
+use catalogue::{Dimension, Entry, Parameter};
+
+use super::elastic::Elastic;
+use super::error::ExactError;
+use super::solution::{Exact, SolutionEntry, Vibrations, numbers};
+use super::vectors::{Matrix3, Point3, Vector3};
 
 /// The lowest mode. As a field it is fixed at its largest amplitude until [`Exact::at`] sets a time.
 #[derive(Clone, Copy, Debug, PartialEq)]

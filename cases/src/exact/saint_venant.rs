@@ -33,10 +33,13 @@
 
 use std::f64::consts::PI;
 
+use catalogue::{Dimension, Entry, Parameter};
+
+use super::elastic::Elastic;
+use super::error::ExactError;
 use super::polylog::{Complex, alternating_2, alternating_3};
-use super::{
-    Dimension, Elastic, Entry, Exact, ExactError, Matrix3, Parameter, Point3, SolutionEntry, Vector3, numbers,
-};
+use super::solution::{Exact, SolutionEntry, numbers};
+use super::vectors::{Matrix3, Point3, Vector3};
 
 /// Smallest depth to width ratio: the number of images grows as `6 width / depth`, so that 1/50 needs about
 /// 300.
@@ -97,7 +100,8 @@ impl SaintVenantFlexure {
 
     /// Warping `chi`, m^3.
     fn warping(&self, y: f64, z: f64) -> f64 {
-        let ([a, b], nu) = (self.half, self.elastic.poisson());
+        let [a, b] = self.half;
+        let nu = self.elastic.poisson();
         let (above, below) = self.images(y, z, alternating_3);
         let series = (above - below).re;
         y * ((1.0 + nu) * a * a - nu * b * b / 3.0 - (2.0 + nu) * y * y / 6.0 + 0.5 * nu * z * z)
@@ -106,10 +110,12 @@ impl SaintVenantFlexure {
 
     /// `(d chi/dy, d chi/dz)`, m^2.
     fn warping_slope(&self, y: f64, z: f64) -> (f64, f64) {
-        let ([a, b], nu) = (self.half, self.elastic.poisson());
+        let [a, b] = self.half;
+        let nu = self.elastic.poisson();
         let factor = 4.0 * nu * (b / PI).powi(2);
         let (above, below) = self.images(y, z, alternating_2);
-        let (even, odd) = ((above + below).re, (above - below).im);
+        let even = (above + below).re;
+        let odd = (above - below).im;
         let along_y = (1.0 + nu) * a * a - nu * b * b / 3.0 - 0.5 * (2.0 + nu) * y * y + 0.5 * nu * z * z;
         (along_y - factor * even, nu * y * z + factor * odd)
     }

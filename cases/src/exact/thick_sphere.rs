@@ -16,9 +16,12 @@
 //!             any nu, so locking shows at once in the pressure. Defined for r > 0.
 //! ```
 
-use super::{
-    Dimension, Elastic, Entry, Exact, ExactError, Matrix3, Parameter, Point3, SolutionEntry, Vector3, numbers,
-};
+use catalogue::{Dimension, Entry, Parameter};
+
+use super::elastic::Elastic;
+use super::error::ExactError;
+use super::solution::{Exact, SolutionEntry, numbers};
+use super::vectors::{Matrix3, Point3, Vector3};
 
 /// Lame's sphere centred on the origin.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -25,10 +25,13 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
+use catalogue::{Dimension, Entry, Parameter};
+
+use super::elastic::Elastic;
+use super::error::ExactError;
 use super::polylog::{Complex, alternating_2, alternating_3};
-use super::{
-    Dimension, Elastic, Entry, Exact, ExactError, Matrix3, Parameter, Point3, SolutionEntry, Vector3, numbers,
-};
+use super::solution::{Exact, SolutionEntry, numbers};
+use super::vectors::{Matrix3, Point3, Vector3};
 
 /// Smallest depth to width ratio: the number of images grows as `12 width / depth`, so that 1/50 needs about
 /// 600.

@@ -15,7 +15,11 @@
 //!             area.
 //! ```
 
-use super::{Dimension, Elastic, Entry, Exact, Matrix3, Parameter, Point3, SolutionEntry, Vector3};
+use catalogue::{Dimension, Entry, Parameter};
+
+use super::elastic::Elastic;
+use super::solution::{Exact, SolutionEntry};
+use super::vectors::{Matrix3, Point3, Vector3};
 
 /// Homogeneous uniaxial stress along z.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -15,7 +15,7 @@
 //! Must hold   longer than Euler and Bernoulli's by 7.9 D^2 / (12 L^2) to first order, 0.66 % at L = 10 D.
 //! ```
 
-use super::Elastic;
+use super::elastic::Elastic;
 
 /// A clamped beam of square section.
 #[derive(Clone, Copy, Debug, PartialEq)]

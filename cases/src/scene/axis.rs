@@ -140,7 +140,9 @@ fn fill(template: &Value, x: f64) -> Result<Value, Problem> {
 }
 
 fn fill_text(text: &str, x: f64) -> Result<Value, Problem> {
-    let (mut out, mut rest, mut number) = (String::new(), text, None);
+    let mut out = String::new();
+    let mut rest = text;
+    let mut number = None;
     while let Some((before, after)) = rest.split_once('{') {
         let (expression, behind) =
             after.split_once('}').ok_or_else(|| Problem::new("a '{' is never closed").found(text))?;

@@ -1,8 +1,8 @@
 //! The body of a scene: its shape, and the names of its surfaces.
 
 use catalogue::{Problem, suggest};
-use geometry::files::is_surface;
 use geometry::generate::surfaces;
+use mesh_files::is_surface;
 use schemars::JsonSchema;
 use serde::Deserialize;
 

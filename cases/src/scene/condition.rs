@@ -222,7 +222,8 @@ pub(crate) fn demands(
 ) {
     let vibrates = procedure.kind() == ProcedureKind::Modes;
     let follows = |support: &Support| support.motion.iter().flatten().any(|m| matches!(m, Prescribed::Exact));
-    let (lacking, add) = ("needs an exact solution", "add [reference] exact = \"...\"");
+    let lacking = "needs an exact solution";
+    let add = "add [reference] exact = \"...\"";
     for (i, support) in supports.iter().enumerate() {
         let key = format!("support[{i}].move");
         report.require(has_exact || !follows(support), &key, lacking, add);

@@ -110,9 +110,12 @@ pub(crate) fn check(check: &Check, scene: &Scene, report: &Report) {
     known_methods(&check.methods, scene, "method", report);
     let kind = scene.procedure.kind();
     let reference = scene.reference.as_ref();
-    let (compared, solved) = (reference.is_some(), reference.is_some_and(Reference::is_solved));
-    let (stepped, moves) = (!kind.has_no_steps(), scene.procedure.ramp().is_some());
-    let (vibrates, touched) = (kind == ProcedureKind::Modes, !scene.tools.is_empty());
+    let compared = reference.is_some();
+    let solved = reference.is_some_and(Reference::is_solved);
+    let stepped = !kind.has_no_steps();
+    let moves = scene.procedure.ramp().is_some();
+    let vibrates = kind == ProcedureKind::Modes;
+    let touched = !scene.tools.is_empty();
     let probed = !scene.output.probes.is_empty();
     let (holds, needs) = match check.address.metric.needs {
         Needs::Run | Needs::Seeds => return,

@@ -160,7 +160,8 @@ impl Material {
     }
     /// Reports contradictions with the procedure.
     pub(crate) fn demands(&self, procedure: &Procedure, report: &Report) {
-        let (kind, name) = (procedure.kind(), self.name());
+        let kind = procedure.kind();
+        let name = self.name();
         if matches!(kind, ProcedureKind::Linear | ProcedureKind::Modes) && !self.law.is_small_strain() {
             let problem = Problem::new("is a law of large strain, but the procedure is linear").found(name);
             let help = "add [procedure] kind = \"static\" and steps = 10, or take law = \"linear\"";

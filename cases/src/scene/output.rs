@@ -27,6 +27,9 @@ pub(crate) struct OutputKeys {
     /// Secondary reference: a method of this scene that every run is also compared with at the targets. For a
     /// published method whose own error is part of a published difference
     beside: Option<String>,
+    /// Whether studies draw the deformed body with each method
+    #[serde(default)]
+    pictures: bool,
     /// Repetition of the loading after the first solution, as in a simulator, with each frame timed
     repeated: Option<RepeatedKeys>,
 }
@@ -126,6 +129,8 @@ pub struct Output {
     pub transfers: Vec<Transfer>,
     /// Id of the secondary reference: a method that every run is also compared with at the targets.
     pub beside: Option<String>,
+    /// Whether studies draw the deformed body.
+    pub pictures: bool,
     /// Repetition of the loading in frames.
     pub repeated: Option<Repeated>,
 }
@@ -170,6 +175,7 @@ impl OutputKeys {
                 Some(TransfersKeys::Several(several)) => report.each("transfer", several, TransferKeys::read),
             },
             beside: self.beside,
+            pictures: self.pictures,
             repeated: self.repeated.map(|keys| keys.read(&report.at("repeated"))),
         }
     }
@@ -220,6 +226,7 @@ impl Output {
                 ("means", !self.means.is_empty()),
                 ("transfer", !self.transfers.is_empty()),
                 ("beside", self.beside.is_some()),
+                ("pictures", self.pictures),
                 ("repeated", self.repeated.is_some() && kind == ProcedureKind::Prepare),
             ] {
                 report.require(!given, key, problem, help);

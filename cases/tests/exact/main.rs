@@ -111,7 +111,8 @@ proptest! {
     ) {
         for sample in &SAMPLES {
             let exact = build(sample, poisson);
-            let (name, x) = (sample.0, place(&sample.2, s));
+            let name = sample.0;
+            let x = place(&sample.2, s);
             let elastic = Elastic::new(YOUNG, poisson).unwrap();
             let gradient = exact.gradient(&x);
             let size = gradient.norm();
@@ -307,7 +308,9 @@ fn a_turned_bar_has_free_sides_and_its_torque() {
 
 #[test]
 fn thick_sphere_carries_both_pressures() {
-    let (inner, outer, pressures) = (0.02, 0.05, [3e3, 1e3]);
+    let inner = 0.02;
+    let outer = 0.05;
+    let pressures = [3e3, 1e3];
     for poisson in [0.0, 0.3, 0.4999] {
         let exact = ThickSphere::new(Elastic::new(2e4, poisson).unwrap(), [inner, outer], pressures).unwrap();
         let n = Vector3::new(0.48, -0.6, 0.64);

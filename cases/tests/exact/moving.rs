@@ -42,7 +42,9 @@ fn waves_of_a_bar_obey_newton() {
 #[test]
 fn a_bar_pulled_at_once_swings_to_twice_its_static_length() {
     let bar = BarWave::new(Elastic::new(20e3, 0.0).unwrap(), 100.0, [0.1, 1000.0], 0.0).unwrap();
-    let (end, passage, still) = (Point3::new(0.1, 0.0, 0.0), 0.1 / bar.speed(), 100.0 * 0.1 / 20e3);
+    let end = Point3::new(0.1, 0.0, 0.0);
+    let passage = 0.1 / bar.speed();
+    let still = 100.0 * 0.1 / 20e3;
     for (passages, part) in [(0.0, 0.0), (0.5, 0.5), (2.0, 2.0), (3.0, 1.0), (4.0, 0.0), (6.5, 1.5)] {
         let u = bar.at(passages * passage).unwrap().displacement(&end).x;
         assert!((u - part * still).abs() < 1e-12 * still, "{passages}: {u}");

@@ -200,7 +200,8 @@ fn a_static_scene_runs_with_everything_it_knows() {
         still().replace("steps = 10", "steps = 5\ntolerance = 1e-6\niterations = 12\naugmentations = 2");
     let newton = Newton { tolerance: 1e-6, iterations: 12, augmentations: 2 };
     let procedure = parse(&steps, "s.toml").expect("sound").procedure;
-    let (limit_within, on_stall) = (None, OnStall::Stop);
+    let limit_within = None;
+    let on_stall = OnStall::Stop;
     assert_eq!(procedure, Procedure::Static(Static { steps: 5, newton, limit_within, on_stall }));
 }
 

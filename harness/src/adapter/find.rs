@@ -13,7 +13,7 @@ use disk::Kind;
 use super::FOLDERS;
 use super::builtin::{Files, SHIPPED};
 use super::manifest::Manifest;
-use crate::Failure;
+use crate::error::Failure;
 
 /// Name of a folder of adapters next to a scene.
 const BESIDE: &str = "adapters";

@@ -16,7 +16,7 @@ const LONGEST_NAME: usize = 64;
 const ALL_DIGITS: u32 = 15;
 
 /// An adapter as described in its file.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Manifest {
     /// Name of the adapter in scenes, and of its folder.
@@ -49,7 +49,7 @@ pub(crate) struct Manifest {
 }
 
 /// Mechanism that passes the number of threads to a solver.
-#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Threads {
     /// Environment variable that receives the number.
@@ -57,7 +57,7 @@ pub(crate) struct Threads {
 }
 
 /// Requirements of an adapter.
-#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Install {
     /// Python packages, installed in a virtual environment of the adapter.

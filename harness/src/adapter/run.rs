@@ -10,6 +10,7 @@ use geometry::Vector3;
 
 use super::answer::{Answer, displacement};
 use super::find::Found;
+use super::manifest::Manifest;
 use super::work::{Folder, data_folder};
 use crate::error::{Foreign, ForeignStatus};
 use crate::process::{Call, End, Limits, call, said_within};
@@ -71,7 +72,8 @@ fn read(question: &Question, call: Call) -> Result<Answered, Foreign> {
             return Err(Foreign::new(ForeignStatus::TimedOut, reason));
         }
         End::OutOfMemory => {
-            let (had, limit) = (call.memory >> 20, question.limits.memory >> 20);
+            let had = call.memory >> 20;
+            let limit = question.limits.memory >> 20;
             return Err(failed(format!("out of memory: ended with {had} MB of {limit} (memory_limit)")));
         }
     };
@@ -158,18 +160,21 @@ fn python(name: &str) -> PathBuf {
     own.filter(|path| path.exists()).unwrap_or_else(|| "python3".into())
 }
 
-/// Returns the value stored for `key`, or computes and stores it. Such values do not change while the program
-/// runs.
-fn once<T: Clone>(known: &Mutex<BTreeMap<String, T>>, key: &str, find: impl FnOnce() -> T) -> T {
+/// Values by manifest.
+type Known<T> = Mutex<BTreeMap<Manifest, T>>;
+
+/// Returns the value stored for a manifest, or computes and stores it. Such values do not change while the
+/// program runs.
+fn once<T: Clone>(known: &Known<T>, manifest: &Manifest, find: impl FnOnce() -> T) -> T {
     let mut known = known.lock().unwrap_or_else(PoisonError::into_inner);
-    known.entry(key.to_string()).or_insert_with(find).clone()
+    known.entry(manifest.clone()).or_insert_with(find).clone()
 }
 
 /// Checks that the requirements of an adapter are installed; the error says how to install them.
 pub(crate) fn ready(adapter: &Found) -> Result<(), String> {
-    static KNOWN: Mutex<BTreeMap<String, Result<(), String>>> = Mutex::new(BTreeMap::new());
+    static KNOWN: Known<Result<(), String>> = Mutex::new(BTreeMap::new());
     let manifest = &adapter.manifest;
-    once(&KNOWN, &format!("{manifest:?}"), || {
+    once(&KNOWN, manifest, || {
         let say = if manifest.install.say.is_empty() {
             String::new()
         } else {
@@ -218,8 +223,8 @@ fn has_packages(python: &Path, packages: &[String]) -> bool {
 
 /// Returns the version of an adapter's solver in one line.
 pub(crate) fn version(adapter: &Found) -> Option<String> {
-    static KNOWN: Mutex<BTreeMap<String, Option<String>>> = Mutex::new(BTreeMap::new());
-    once(&KNOWN, &format!("{:?}", adapter.manifest), || {
+    static KNOWN: Known<Option<String>> = Mutex::new(BTreeMap::new());
+    once(&KNOWN, &adapter.manifest, || {
         let here = Path::new("");
         let folder = adapter.folder.as_ref().and_then(|folder| folder.canonicalize().ok());
         let word = |word: &String| fill(adapter, word, folder.as_deref().unwrap_or(here), here, here);

@@ -4,7 +4,7 @@ use records::read_run;
 use reports::{ClaimVerdict, own_claims, read_claims};
 
 use crate::cli::args::ClaimsArgs;
-use crate::cli::unreported;
+use crate::cli::errors::unreported;
 
 /// Prints the verdict of the results on each claim and returns the exit code.
 pub(super) fn claims(args: &ClaimsArgs) -> u8 {

@@ -1,8 +1,10 @@
 //! `tissuebench export`: writes the problem of one method as files that any solver can read.
 
 use crate::cli::args::{ExportArgs, SceneArgs};
-use crate::cli::{affordable_methods, fail, open};
-use crate::run::{Group, Repeats};
+use crate::cli::errors::fail;
+use crate::cli::scenes::{affordable_methods, open};
+use crate::measure::Repeats;
+use crate::run::Group;
 
 /// Writes the folder and returns the exit code.
 pub(super) fn export(args: &ExportArgs) -> u8 {

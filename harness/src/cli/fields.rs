@@ -6,9 +6,11 @@ use std::path::Path;
 use records::{RecordError, write_text};
 
 use crate::cli::args::FieldsArgs;
-use crate::cli::{affordable_methods, open, unreported};
+use crate::cli::errors::unreported;
+use crate::cli::scenes::{affordable_methods, open};
+use crate::measure::Repeats;
 use crate::outcome::States;
-use crate::run::{Group, Repeats, RunOptions};
+use crate::run::{Group, RunOptions};
 
 /// Name of the folder of fields next to the results of a scene.
 pub(super) const FOLDER: &str = "volumes";

@@ -3,13 +3,12 @@
 use std::path::PathBuf;
 
 use clap::{Args, Subcommand};
-use reports::ReportError;
 use reports::commits::{Point, Step, Trend, add, trends};
-use reports::svg_over_commits;
+use reports::{ReportError, svg_over_commits};
 
 use super::args::Format;
 use super::colour::{self, BAD, DOUBTFUL, GOOD};
-use super::unreported;
+use super::errors::unreported;
 
 /// Actions on a history.
 #[derive(Subcommand)]

@@ -1,7 +1,8 @@
 //! `tissuebench merge`: joins the parts of a study.
 
+use crate::cli::errors::{fail, refuse};
+use crate::cli::results::take;
 use crate::cli::verify::write;
-use crate::cli::{fail, refuse, take};
 use crate::study::folder;
 use crate::study::merge::{self, MergeArgs, Unmerged};
 

@@ -1,8 +1,10 @@
 //! `tissuebench plan`: prints the stages of a scene's methods without running them.
 
 use crate::cli::args::SceneArgs;
-use crate::cli::{affordable_methods, open, text};
-use crate::run::{Group, Repeats};
+use crate::cli::scenes::{affordable_methods, open};
+use crate::cli::text;
+use crate::measure::Repeats;
+use crate::run::Group;
 
 /// Prints the plan of each method and returns the exit code.
 pub(super) fn plan(args: &SceneArgs, force: bool) -> u8 {

@@ -2,9 +2,11 @@
 
 use std::path::PathBuf;
 
-use crate::Failure;
 use crate::cli::args::ReferenceArgs;
-use crate::cli::{fail, open, text};
+use crate::cli::errors::fail;
+use crate::cli::scenes::open;
+use crate::cli::text;
+use crate::error::Failure;
 use crate::run::stored_reference::Stored;
 use crate::study::make_reference::make;
 use crate::study::{folder, note_inputs};
@@ -17,7 +19,7 @@ pub(super) fn reference(args: &ReferenceArgs) -> Result<(), u8> {
     args.from.iter().chain(&args.alongside).chain([&args.points]).for_each(|file| disk::input(file));
     folder::ready_file(&args.out).map_err(|problem| fail(&Failure::Input(problem)))?;
     let text = scene.text().to_string();
-    let mesh = geometry::files::read(&args.points, args.unit.metres)
+    let mesh = mesh_files::read(&args.points, args.unit.metres)
         .map_err(|bad| fail(&Failure::Input(format!("{}: {bad}", args.points.display()))))?;
     let read = |path: &PathBuf| -> Result<Stored, u8> {
         let of_file = |problem| fail(&Failure::Input(format!("{}: {problem}", path.display())));

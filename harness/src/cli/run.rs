@@ -8,12 +8,16 @@ use cases::scene::{self, Scene};
 use records::{Machine, RunSet, Status};
 use reports::Seconds;
 
-use crate::Failure;
 use crate::cli::args::{Format, RunArgs};
+use crate::cli::errors::unreported;
 use crate::cli::json::RunObject;
-use crate::cli::{affordable_methods, fields, interrupt, open, take, text, unreported, write_results};
+use crate::cli::results::{take, write_results};
+use crate::cli::scenes::{affordable_methods, open};
+use crate::cli::{fields, interrupt, text};
+use crate::error::Failure;
+use crate::measure::Repeats;
 use crate::outcome::{Outcome, Unfinished, provenance};
-use crate::run::{Group, Repeats, RunOptions, case_name};
+use crate::run::{Group, RunOptions, case_name};
 use crate::study::folder::{self, Folder};
 use crate::study::{self, check, failed, stalled};
 
@@ -150,7 +154,8 @@ impl Made {
             "reference stalled: {failure} (every method is compared up to the last step of the reference)"
         );
         let reason = format!("reference stalled: {failure}");
-        let (case, method) = (self.case.clone(), "reference".into());
+        let case = self.case.clone();
+        let method = "reference".into();
         let status = failure.status().into();
         self.set.failures.push(records::Failure {
             case,

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
 
-use cases::scene::{LinearSolver, Newton, OnStall, Procedure, Static};
+use cases::scene::{Dilation, LinearSolver, Newton, OnStall, Procedure, Static};
 use catalogue::{Value, Values};
 use clap::Args;
 use geometry::{CellKind, Mesh, Point3, Vector3};
@@ -14,10 +14,10 @@ use material::{LAWS, Law, LinearElastic};
 use serde_json::json;
 use shape::FixedDof;
 
-use crate::Failure;
 use crate::adapter::{RESULT, npy};
-use crate::discretise::{Dilation, Discretisation};
-use crate::outcome::Meters;
+use crate::discretise::Discretisation;
+use crate::error::Failure;
+use crate::outcome::timing::Meters;
 use crate::prepare::prepare;
 use crate::procedure::external::problem::{MaterialText, ProcedureText, SCHEMA, TEXT, Text};
 use crate::procedure::{Problem, Wanted, plan};
@@ -62,7 +62,8 @@ fn answer(folder: &Path, to: &Path) -> Result<serde_json::Value, String> {
     }
     let start = Instant::now();
     let mesh = Arc::new(mesh(folder, &text)?);
-    let (fixed, forces) = (fixed(folder)?, vectors(folder, "force.npy")?);
+    let fixed = fixed(folder)?;
+    let forces = vectors(folder, "force.npy")?;
     let setup = setup(&text)?;
     // The calling program measures how far the answer can be trusted.
     let mut meters = Meters { digits: Some(f64::INFINITY), ..Meters::default() };

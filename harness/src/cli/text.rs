@@ -6,7 +6,6 @@ use records::{Check, Reference, Status};
 use reports::Seconds;
 
 use crate::cli::colour;
-
 use crate::outcome::timing::PHASES;
 use crate::outcome::{Outcome, Plan};
 use crate::run::stored_reference::Stored;
@@ -213,7 +212,8 @@ pub(super) fn aligned(rows: &[Vec<String>]) -> String {
 pub fn warnings(rows: &[records::Warning]) -> String {
     let mut found: Vec<(String, Vec<&str>)> = Vec::new();
     for warning in rows {
-        let (text, method) = (line(warning), warning.method.as_str());
+        let text = line(warning);
+        let method = warning.method.as_str();
         match found.iter_mut().find(|(known, _)| *known == text) {
             Some((_, methods)) if methods.contains(&method) => {}
             Some((_, methods)) => methods.push(method),
@@ -251,4 +251,9 @@ pub fn digits(value: f64) -> String {
         v if v < 100.0 => format!("{value:.3}"),
         _ => format!("{value:.1}"),
     }
+}
+
+/// Prints a named value.
+pub(super) fn row(name: &str, value: &str) {
+    println!("  {name:<10}  {value}");
 }

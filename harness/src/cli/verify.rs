@@ -7,33 +7,19 @@ use catalogue::warning;
 use records::Status;
 
 use crate::cli::ci::{self, CiArgs};
-use crate::cli::{
-    affordable, colour, fail, holds_key, interrupt, refuse, take, text, unreported, write_results,
-};
+use crate::cli::errors::{fail, refuse, unreported};
+use crate::cli::results::{take, write_results};
+use crate::cli::scenes::{affordable, holds_key};
+use crate::cli::{colour, interrupt, text};
 use crate::study::folder::{self, Folder};
-use crate::study::{self, Event, Events, Finished, Plan, VerifyArgs};
+use crate::study::{self, Event, Events, FinishedStudy, StudyPlan, VerifyArgs};
 
 /// Runs the study, writes its results and the report, and returns the exit code.
 pub(super) fn verify(args: &VerifyArgs, ci: &CiArgs) -> u8 {
     let path = args.path();
-    let study = match scene::load_study(&path) {
-        Ok(study) => study,
-        Err(errors) => {
-            if args.study.is_none() && !path.exists() {
-                eprintln!(
-                    "tissuebench: run from the project's folder, or name a study: tissuebench verify STUDY.toml"
-                );
-            }
-            if holds_key(&path, "body") {
-                eprintln!("{0}: is a scene, not a study: tissuebench run {0} runs it", path.display());
-                return 2;
-            }
-            return refuse(&errors);
-        }
-    };
-    let mut plan = match Plan::new(study) {
+    let mut plan = match planned(args, &path) {
         Ok(plan) => plan,
-        Err(errors) => return refuse(&errors),
+        Err(code) => return code,
     };
     if let Some(times) = args.times.as_deref().filter(|times| !study::has_stored(times)) {
         let times = times.display();
@@ -99,12 +85,29 @@ pub(super) fn verify(args: &VerifyArgs, ci: &CiArgs) -> u8 {
         |()| code,
     );
     let code = ended(events, ci, &finished, code);
-    folder.close(|| study::clean(args));
+    folder.close(|| study::clean(&args.out));
     code
 }
 
+/// Reads the study and its scenes. An error is printed, and its exit code returned.
+fn planned(args: &VerifyArgs, path: &Path) -> Result<StudyPlan, u8> {
+    let study = scene::load_study(path).map_err(|errors| {
+        if args.study.is_none() && !path.exists() {
+            eprintln!(
+                "tissuebench: run from the project's folder, or name a study: tissuebench verify STUDY.toml"
+            );
+        }
+        if holds_key(path, "body") {
+            eprintln!("{0}: is a scene, not a study: tissuebench run {0} runs it", path.display());
+            return 2;
+        }
+        refuse(&errors)
+    })?;
+    StudyPlan::new(study).map_err(|errors| refuse(&errors))
+}
+
 /// Sends the last event. Returns the exit code, which is 5 if the study succeeded but events were lost.
-fn ended(events: Option<Events>, ci: &CiArgs, finished: &Finished, code: u8) -> u8 {
+fn ended(events: Option<Events>, ci: &CiArgs, finished: &FinishedStudy, code: u8) -> u8 {
     let Some(events) = events else { return code };
     let [passed, failed, known, not_run] = counts(finished);
     events.send(&Event::End { passed, failed, known, not_run, code });
@@ -115,7 +118,7 @@ fn ended(events: Option<Events>, ci: &CiArgs, finished: &Finished, code: u8) -> 
 }
 
 /// Returns the numbers of checks that passed, failed, are known not to pass, and did not run.
-fn counts(finished: &Finished) -> [usize; 4] {
+fn counts(finished: &FinishedStudy) -> [usize; 4] {
     let count = |status| finished.set.checks.iter().filter(|c| c.status == status).count();
     [Status::Pass, Status::Fail, Status::KnownFailure, Status::NotRun].map(count)
 }
@@ -123,7 +126,7 @@ fn counts(finished: &Finished) -> [usize; 4] {
 /// Claims the folder of results, or joins the processes that already work in it.
 fn enter(args: &VerifyArgs, path: &Path) -> Result<Folder, u8> {
     if !args.join {
-        return take(path, &args.out).inspect(|_| study::clean(args));
+        return take(path, &args.out).inspect(|_| study::clean(&args.out));
     }
     let joined = folder::join(path, &args.out, || study::sweep(args));
     let begun = joined.and_then(|folder| folder.begin(path).map(|()| folder));
@@ -132,7 +135,7 @@ fn enter(args: &VerifyArgs, path: &Path) -> Result<Folder, u8> {
 
 /// Writes the results and the report, prints the verdicts, and returns the exit code. With `quiet` only
 /// checks that did not pass are printed.
-pub(super) fn write(finished: &Finished, folder: &Folder, args: &VerifyArgs) -> u8 {
+pub(super) fn write(finished: &FinishedStudy, folder: &Folder, args: &VerifyArgs) -> u8 {
     let VerifyArgs { out, history, quiet, .. } = args;
     let set = &finished.set;
     // If several processes work on a study, one of them writes the results of all.

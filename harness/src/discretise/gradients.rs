@@ -8,8 +8,7 @@ use cases::scene::ErrorKind;
 use geometry::Point3;
 use shape::{GradRows, position_alone};
 
-use crate::Failure;
-use crate::error::Key;
+use crate::error::{Failure, Key};
 
 /// Largest relative error accepted in the gradient of a linear field. No later step of a run detects this
 /// error, and relevant errors lie above the limit. Valid clouds have errors of 1e-14 to 1e-9, or up to 2e-7

@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use cases::scene::ConstraintRows;
+use cases::scene::{ConstraintRows, Dilation};
 use catalogue::metric::Metric;
 use fem::{Elements, VolumeRule};
 use geometry::shapes::Shape;
@@ -13,25 +13,10 @@ use shape::{DilationGroups, RowSource, Rows, SourceError, VolumeRows};
 pub(crate) mod gradients;
 pub(crate) mod place;
 
-use crate::Failure;
 use crate::adapter::Outside;
+use crate::error::Failure;
 use crate::error::Key;
 use crate::outcome::{Counters, Plan, StageName};
-
-/// Groups of quadrature points that share a dilation.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Dilation {
-    /// Each point has its own dilation: the plain displacement method.
-    Standard,
-    /// One dilation per element or integration cell.
-    Element,
-    /// One dilation per node and material, weighted by the shape values.
-    Nodal,
-    /// As `Nodal`, but each point counts only for the four nodes with the largest shape values.
-    Near,
-    /// A separate pressure field in each material, linear between the corners.
-    Mixed,
-}
 
 /// Method of enforcing essential conditions.
 #[derive(Clone, Debug, PartialEq)]
@@ -219,9 +204,9 @@ impl Discretisation {
         if plan.runs(StageName::Projection) {
             match self.dilation {
                 Dilation::Standard => {}
-                Dilation::Element => groups = Some(source.cell_dilation()?.ok_or_else(no_cells)?),
-                Dilation::Nodal => groups = Some(by_material(DilationGroups::nodal(&rows)?)?),
-                Dilation::Near => groups = Some(by_material(DilationGroups::near(&rows)?)?),
+                Dilation::ElementMean => groups = Some(source.cell_dilation()?.ok_or_else(no_cells)?),
+                Dilation::NodalMean => groups = Some(by_material(DilationGroups::nodal(&rows)?)?),
+                Dilation::NodalNear => groups = Some(by_material(DilationGroups::near(&rows)?)?),
                 Dilation::Mixed => pressure = Some(source.pressure(alike)?.ok_or_else(no_pressure)?),
             }
         }

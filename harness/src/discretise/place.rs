@@ -3,8 +3,7 @@
 use cases::scene::{Comparison, Region, Relation};
 use geometry::{Facet, Mesh, Point3, Vector3};
 
-use crate::Failure;
-use crate::error::Key;
+use crate::error::{Failure, Key};
 
 pub use cases::scene::Place;
 

@@ -4,11 +4,11 @@
 use catalogue::warning;
 use geometry::{Point3, Vector3};
 
-use super::Solved;
-use crate::Failure;
+use super::solved::Solved;
 use crate::discretise::place::{self, Patch};
+use crate::error::Failure;
 use crate::outcome::Warning;
-use crate::scenario::setup::{Applied, Load, ScalarField};
+use crate::scenario::setup::{Applied, Load, ScalarField, SurfaceLoad};
 
 /// Rotation of a face (degrees) and relative change of its area above which a pressure on the deformed
 /// surface is a different load.
@@ -31,7 +31,7 @@ struct Dead {
 pub(super) fn warnings(run: &Solved) -> Result<Vec<Warning>, Failure> {
     let mut found = Vec::new();
     for load in run.setup.loads.iter().filter(|_| run.setup.exact.is_none()) {
-        let Applied::Pressure(pressure) = &load.applied else { continue };
+        let Applied::Surface(SurfaceLoad::Pressure(pressure)) = &load.applied else { continue };
         let Dead { turn, stretch, change } = dead(run, load, pressure)?;
         if turn > TURN || stretch.abs() > STRETCH {
             let message = format!(

@@ -2,9 +2,11 @@
 
 use std::time::Instant;
 
-use super::{Field, Request, Solved};
-use crate::Failure;
-use crate::outcome::{Meters, Plan, StageName};
+use super::request::Request;
+use super::solved::{Field, Solved};
+use crate::error::Failure;
+use crate::outcome::timing::Meters;
+use crate::outcome::{Plan, StageName};
 
 /// Displacement (m) at the targets; without targets, at the method's own nodes. If the plan has no transfer,
 /// nodal parameters are displacements and nothing is evaluated.

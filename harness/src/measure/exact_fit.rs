@@ -8,15 +8,16 @@ use std::collections::{HashMap, HashSet};
 use std::iter::repeat_n;
 
 use cases::exact::Exact;
-use cases::scene::Procedure;
+use cases::scene::{Place, Procedure};
 use fem::SurfaceRule;
 use geometry::{Facet, Mesh, Point3, Vector3};
 use shape::SurfaceRows;
 
-use super::Solved;
-use crate::Failure;
-use crate::discretise::place::{self, Patch, Place};
-use crate::scenario::setup::{Applied, Setup};
+use super::solved::Solved;
+use crate::discretise::place;
+use crate::discretise::place::Patch;
+use crate::error::Failure;
+use crate::scenario::setup::{Applied, Setup, SurfaceLoad};
 
 /// Surface on which a scene and its exact solution differ most.
 pub(super) struct Misfit {
@@ -114,7 +115,8 @@ fn misfit(
     let scale = each.iter().flat_map(|s| mean(s).into_iter().take(2)).fold(largest, f64::max);
     let worst = each.iter().max_by(|a, b| mean(a)[2].total_cmp(&mean(b)[2]))?;
     let [scene, exact, off] = mean(worst);
-    let (surface, turn) = (worst.name.clone(), worst.turn);
+    let surface = worst.name.clone();
+    let turn = worst.turn;
     (scale > 0.0).then(|| Misfit { relative: off / scale, turn, surface, what, sizes: [scene, exact] })
 }
 
@@ -153,7 +155,9 @@ impl OnSurface {
         let (displacement, traction) = (Sums::default(), Sums::default());
         let mut sums = OnSurface { name, area, turn, displacement, traction, all: [0.0; 2] };
         for (q, &w) in surface.weights().iter().enumerate() {
-            let (facet, x, n) = (&of_point[q], &surface.points()[q], &surface.normals()[q]);
+            let facet = &of_point[q];
+            let x = &surface.points()[q];
+            let n = &surface.normals()[q];
             let (u, t) = (exact.displacement(x), exact.traction(x, n));
             sums.all[0] += w * u.norm_squared();
             sums.all[1] += w * t.norm_squared();
@@ -213,8 +217,8 @@ fn applied(
     let mut sum = Vector3::zeros();
     for (load, _) in setup.loads.iter().zip(loaded).filter(|(_, covered)| covered.whole.contains(facet)) {
         sum += match &load.applied {
-            Applied::Traction(field) => field(x, n)?,
-            Applied::Pressure(field) => -n * field(x)?,
+            Applied::Surface(SurfaceLoad::Traction(field)) => field(x, n)?,
+            Applied::Surface(SurfaceLoad::Pressure(field)) => -n * field(x)?,
             Applied::Body(_) => Vector3::zeros(),
         };
     }

@@ -3,9 +3,9 @@
 use catalogue::metric;
 use geometry::Vector3;
 
-use super::Solved;
-use crate::Failure;
+use super::solved::Solved;
 use crate::discretise::place;
+use crate::error::Failure;
 use crate::outcome::{FaceMean, Outcome, SupportForce, push};
 
 /// Adds support forces (N) and mean displacements (m) to the outcome, its metrics and its steps.

@@ -1,13 +1,13 @@
 //! Bodies with fewer than three cells (four linear tetrahedra) across a section that bends or is compressed.
 
+use cases::scene::Dilation;
 use catalogue::{metric, warning};
 use geometry::{CellKind, Facet, Matrix3, Point3, Vector3};
 use shape::position;
 
-use super::Solved;
-use crate::Failure;
-use crate::discretise::Dilation;
+use super::solved::Solved;
 use crate::discretise::place::{self, Patch};
+use crate::error::Failure;
 use crate::outcome::{Metric, Warning};
 
 /// Number of cells across below which the warning is given.

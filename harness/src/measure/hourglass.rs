@@ -12,8 +12,8 @@ use geometry::{Matrix3, Point3, Vector3, quality};
 use material::{Law, Material as _};
 use shape::GradRows;
 
-use super::Solved;
-use crate::Failure;
+use super::solved::Solved;
+use crate::error::Failure;
 use crate::outcome::Warning;
 use crate::scenario::setup::Setup;
 
@@ -31,7 +31,8 @@ pub(super) fn warning(run: &Solved, energy: Option<f64>, largest: f64) -> Result
     if method.interpolates || !method.inner.vertices || setup.exact.is_some() {
         return Ok(None);
     }
-    let (own, small) = (&prepared.volume, setup.is_linear() || setup.laws.iter().all(Law::is_small_strain));
+    let own = &prepared.volume;
+    let small = setup.is_linear() || setup.laws.iter().all(Law::is_small_strain);
     let averaged = shear(setup, own.rows.at(), own.rows.weights(), &own.region, &solution.u, small);
     let volume: f64 = own.rows.weights().iter().sum();
     let modulus = setup.materials.iter().map(|m| m.mu()).fold(0.0, f64::max);
@@ -39,7 +40,8 @@ pub(super) fn warning(run: &Solved, energy: Option<f64>, largest: f64) -> Result
         return Ok(None);
     }
     let mesh = method.mesh();
-    let (mut all, volumes) = (0.0, quality::volumes(mesh));
+    let mut all = 0.0;
+    let volumes = quality::volumes(mesh);
     for (chunk, volumes) in volumes.chunks(CHUNK).enumerate() {
         let cells = || chunk * CHUNK..chunk * CHUNK + volumes.len();
         let centre = |cell: usize| {

@@ -3,7 +3,7 @@
 use geometry::{Matrix3, Point3, Vector3};
 use material::Material as _;
 
-use super::Solved;
+use super::solved::Solved;
 
 /// Principal strain above which a small-strain law is not valid. Engineering and true strain then differ by a
 /// twentieth of the strain.
@@ -44,7 +44,8 @@ pub(super) fn largest(run: &Solved) -> Option<[Largest; 2]> {
     for (q, h) in rows.at().displacement_gradients(&solution.u).iter().enumerate().filter(|(q, _)| small(*q))
     {
         met = true;
-        let (at, weight) = (&rows.points()[q], rows.weights()[q]);
+        let at = &rows.points()[q];
+        let weight = rows.weights()[q];
         turn.add(rotation(h), TURNED, at, weight);
         let tensor = (h + h.transpose()) * 0.5;
         // No principal strain exceeds the norm, which costs a tenth of the eigenvalues. Few points need

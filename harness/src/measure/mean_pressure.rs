@@ -3,8 +3,7 @@
 //! projected methods never use.
 
 use material::{Law, Material as _, volume_change};
-use shape::DilationGroups;
-use shape::Matrix3;
+use shape::{DilationGroups, Matrix3};
 
 use crate::discretise::Volume;
 

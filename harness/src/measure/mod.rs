@@ -1,5 +1,6 @@
 //! Comparisons and properties of a finished run: errors, maxima, energies, counts, probes.
 
+mod comparison;
 mod dead_pressure;
 mod displacement;
 mod exact_fit;
@@ -17,6 +18,7 @@ mod picture;
 mod probe_history;
 mod probes;
 mod request;
+mod solved;
 mod states;
 mod step_history;
 mod stress;
@@ -26,17 +28,16 @@ mod warnings;
 
 use cases::exact::Exact;
 use catalogue::metric;
-use geometry::{Matrix3, Point3, Vector3};
+use geometry::{Matrix3, Vector3};
 use material::{Law, Material as _};
-use statics::Body;
+use statics::LinearBody;
 
-use crate::Failure;
-use crate::discretise::{Discretisation, Essential};
+use crate::discretise::Essential;
+use crate::error::Failure;
 use crate::outcome::{Metric, push};
 use crate::prepare::Prepared;
-use crate::procedure::Solution;
-use crate::scenario::setup::Setup;
-use norms::{difference, exact_at, norms, relative};
+use comparison::{against, push_difference};
+use norms::{difference, norms, relative};
 
 pub(crate) use displacement::displacement;
 pub(crate) use face_results::places;
@@ -47,27 +48,13 @@ pub(crate) use probe_history::metrics as probe_history;
 pub(crate) use probes::{check_probes, probe_errors, probes};
 pub(crate) use request::Request;
 pub use request::{OwnError, Reference, Repeats};
+pub(crate) use solved::{Field, Solved};
 pub(crate) use states::states;
 pub(crate) use step_history::report as report_steps;
 pub(crate) use stress::Recovered;
 pub(crate) use surface::surface;
 pub(crate) use transfer::transfers;
 pub(crate) use warnings::warnings;
-
-/// Solved run, from which all metrics are computed.
-#[derive(Clone, Copy)]
-pub(crate) struct Solved<'a> {
-    pub(crate) method: &'a Discretisation,
-    pub(crate) setup: &'a Setup,
-    pub(crate) prepared: &'a Prepared,
-    pub(crate) solution: &'a Solution,
-}
-
-/// Displacement (m) at the points where runs are compared, and the number of points outside the body.
-pub(crate) struct Field {
-    pub(crate) values: Vec<Vector3>,
-    pub(crate) outside: usize,
-}
 
 /// Adds errors, maxima, energies and counts to the metrics.
 pub(crate) fn measure(
@@ -78,7 +65,7 @@ pub(crate) fn measure(
     request: &Request,
 ) -> Result<(), Failure> {
     let Solved { method, setup, prepared, solution } = *run;
-    let body = Body {
+    let body = LinearBody {
         nodes: method.nodes(),
         volume: &prepared.volume.rows,
         materials: &setup.materials,
@@ -197,36 +184,10 @@ fn errors_at_targets(metrics: &mut Vec<Metric>, run: &Solved, field: &[Vector3],
     }
 }
 
-/// Points where displacements are compared, m: the scene's targets, or the method's own nodes.
-fn compared<'a>(run: &Solved<'a>, request: &Request<'a>) -> &'a [Point3] {
-    if request.targets.is_empty() { run.method.nodes() } else { request.targets }
-}
-
-/// Displacement (m) of the exact solution or the reference at these points; `None` if there is neither.
-fn against(run: &Solved, request: &Request) -> Option<Vec<Vector3>> {
-    match (&run.setup.exact, request.reference) {
-        (Some(exact), _) => Some(exact_at(exact.as_ref(), compared(run, request))),
-        (None, reference) => reference.map(|reference| reference.targets.clone()),
-    }
-}
-
 /// Adds properties of the method's tables: integrated volume, neighbours, conditioning, fallbacks.
 pub(crate) fn of_tables(metrics: &mut Vec<Metric>, prepared: &Prepared) {
     push(metrics, &metric::VOLUME, prepared.volume.rows.weights().iter().sum());
     for (entry, value) in &prepared.volume.diagnostics {
         push(metrics, *entry, *value);
-    }
-}
-
-/// Adds the RMS of a difference along each axis and of its magnitude.
-fn push_difference(
-    metrics: &mut Vec<Metric>,
-    of: &'static metric::Metric,
-    field: &[Vector3],
-    against: &[Vector3],
-) {
-    let d = difference(field, against);
-    for (part, value) in of.parts().into_iter().zip(d.rms.into_iter().chain([d.rms_magnitude])) {
-        push(metrics, part, value);
     }
 }

@@ -5,9 +5,9 @@ use catalogue::{metric, warning};
 use geometry::{Point3, Vector3};
 use shape::VolumeRows;
 
-use super::Solved;
 use super::hourglass::shear;
-use crate::Failure;
+use super::solved::Solved;
+use crate::error::Failure;
 use crate::outcome::{Metric, Warning, push};
 use crate::procedure::Vibration;
 
@@ -97,7 +97,8 @@ pub(crate) fn report(run: &Solved, vibration: &Vibration) -> Result<Modes, Failu
 /// displacement in a cloud whose lumped mass moves. Modes beyond the reported `count` are examined until one
 /// is sound.
 fn without_energy(run: &Solved, modes: &statics::Modes, count: usize) -> Result<Option<Warning>, Failure> {
-    let (density, own) = (run.setup.density()?, &run.prepared.volume);
+    let density = run.setup.density()?;
+    let own = &run.prepared.volume;
     let (fine, fine_region) = run.prepared.fine_volume()?;
     let hidden = |shape: &[Vector3]| {
         let of = |rows: &VolumeRows, region: &[u16]| {

@@ -4,7 +4,7 @@ use cases::exact::Exact;
 use material::{Law, LinearElastic, Material as _};
 use shape::{Matrix3, Point3, Vector3, VolumeRows};
 
-use super::Solved;
+use super::solved::Solved;
 use super::stress::{Recovered, own_stress};
 
 /// Relative errors over the body. If the exact value of a norm vanishes (the pressure of a traceless stress,
@@ -163,7 +163,8 @@ pub struct Relative {
 pub fn relative(a: &[Vector3], reference: &[Vector3]) -> Option<Relative> {
     // A field's difference from zero is its own size.
     let size = |field: &[Vector3]| difference(field, &vec![Vector3::zeros(); field.len()]);
-    let (apart, own) = (difference(a, reference), size(reference));
+    let apart = difference(a, reference);
+    let own = size(reference);
     (own.max > 0.0).then(|| Relative {
         rms: apart.rms_magnitude / own.rms_magnitude,
         max: apart.max / own.max,

@@ -3,8 +3,9 @@
 use catalogue::metric;
 use geometry::Vector3;
 
-use super::{Request, Solved};
-use crate::Failure;
+use super::request::Request;
+use super::solved::Solved;
+use crate::error::Failure;
 use crate::outcome::{LoadStep, Metric, Plan, StageName};
 
 /// Largest displacement (m) over time at the points where runs are compared, and its time (s); empty for a

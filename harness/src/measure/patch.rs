@@ -12,7 +12,7 @@
 use geometry::{Facet, Vector3};
 use shape::VolumeRows;
 
-use super::Solved;
+use super::solved::Solved;
 
 /// Steps of conjugate gradients. On blocks of 216 nodes, cubes and plates, ten steps give 0.8 to 1 of the
 /// error.

@@ -4,7 +4,7 @@ use catalogue::warning;
 use geometry::Point3;
 use shape::length;
 
-use super::Solved;
+use super::solved::Solved;
 use crate::outcome::{LoadStep, Warning};
 
 /// Fraction of the tools' closure above which a penetration is too deep.
@@ -17,7 +17,8 @@ const GOOD: f64 = 0.01;
 /// another tool. A tool whose penetration exceeds the closure is a floor, onto which loads press the body:
 /// its penetration is compared with the body's narrowest extent.
 pub(super) fn warnings(run: &Solved) -> Vec<Warning> {
-    let (points, tools) = (run.prepared.contact_points(), &run.setup.tools);
+    let points = run.prepared.contact_points();
+    let tools = &run.setup.tools;
     let Some(history) = run.solution.history.as_ref().filter(|_| !points.is_empty()) else {
         return Vec::new();
     };

@@ -4,9 +4,10 @@
 use geometry::{Mesh, Point3, Vector3};
 use records::{Section, SectionCell, SurfaceField, ToolHull};
 
+use super::mean_pressure;
+use super::solved::Solved;
 use super::states::at_mesh;
-use super::{Solved, mean_pressure};
-use crate::Failure;
+use crate::error::Failure;
 use crate::outcome::{Identity, LoadStep};
 use crate::scenario::PlacedTool;
 
@@ -76,7 +77,8 @@ fn hull(set: &PlacedTool, closure: f64, mesh: &Mesh) -> ToolHull {
 /// the quadrature is not per cell.
 fn section(tool: &PlacedTool, run: &Solved, of_mesh: &[Vector3]) -> Option<Section> {
     let Solved { method, setup, prepared, solution } = *run;
-    let (mesh, weights) = (method.mesh(), prepared.volume.rows.weights());
+    let mesh = method.mesh();
+    let weights = prepared.volume.rows.weights();
     let starts = prepared.source.cell_points()?;
     let right = tool.tool.along();
     let extent = extent(mesh);

@@ -5,11 +5,10 @@ use catalogue::metric;
 use geometry::{Mesh, Point3, Vector3};
 use shape::{length, position};
 
-use super::Solved;
+use super::solved::Solved;
 use super::stress::Recovered;
-use crate::Failure;
 use crate::discretise::place;
-use crate::error::Key;
+use crate::error::{Failure, Key};
 use crate::outcome::{Metric, Probe, push};
 
 /// Refuses points (m) that are farther from the mesh than the longest edge of the nearest cell. Closer points

@@ -4,7 +4,7 @@ use cases::scene::Repeated;
 use geometry::{Point3, Vector3};
 use interp::Scheme;
 
-use crate::Failure;
+use crate::error::Failure;
 use crate::outcome::{LoadStep, Metric, SchemeSettings, Warning, Watch};
 
 /// Repeats of a run for its timings. A run is made at least once, and repeated until `seconds` are spent or

@@ -3,10 +3,10 @@
 use geometry::{Mesh, Point3, Search, Vector3};
 use shape::{Matrix3, PointRows};
 
-use super::Solved;
+use super::solved::Solved;
 use super::stress::own_stress;
-use crate::Failure;
 use crate::discretise::Volume;
+use crate::error::Failure;
 use crate::outcome::{LoadStep, State, States, Tensors, ToolSkin};
 use crate::scenario::PlacedTool;
 

@@ -3,8 +3,9 @@
 
 use catalogue::metric;
 
-use super::{Request, Solved};
-use crate::Failure;
+use super::request::Request;
+use super::solved::Solved;
+use crate::error::Failure;
 use crate::outcome::{LoadStep, Metric, push};
 use crate::procedure::StepHistory;
 

@@ -1,12 +1,17 @@
 //! Data of a run for the three-dimensional view: the surface of the elements at some of the run's states.
 
 use geometry::{Facet, Mesh, Point3, Search, Vector3};
-use records::{Body, BodyState, Faces, Inside, InsideState, Skin, pack};
+use records::{BodyState, Faces, Inside, InsideState, RecordedBody, Skin, pack};
 use shape::PointRows;
 
+use super::comparison::against;
+use super::comparison::compared;
+use super::request::Request;
+use super::solved::{Field, Solved};
+use super::states;
 use super::states::{Recorded, at_mesh, recorded};
-use super::{Field, Recovered, Request, Solved, against, compared, states};
-use crate::Failure;
+use super::stress::Recovered;
+use crate::error::Failure;
 use crate::outcome::{State, ToolSkin, von_mises};
 
 /// Number of states kept of a run, enough to show a motion. A body of 1000 surface nodes takes 20 kB for
@@ -18,7 +23,7 @@ const CELLS: usize = 30_000;
 const NEAREST: usize = 4;
 
 /// Surface, tools and states of a run; `field` is the displacement at the points where runs are compared.
-pub(crate) fn surface(run: &Solved, field: &Field, request: &Request) -> Result<Body, Failure> {
+pub(crate) fn surface(run: &Solved, field: &Field, request: &Request) -> Result<RecordedBody, Failure> {
     let all = states(run, KEPT)?;
     let mesh = &all.mesh;
     let mut facets = mesh.boundary();
@@ -36,7 +41,7 @@ pub(crate) fn surface(run: &Solved, field: &Field, request: &Request) -> Result<
     let values: Vec<Option<Values>> = all.states.iter().zip(&recorded).map(values).collect();
     let states: Vec<(&State, Option<&Values>)> =
         all.states.iter().zip(values.iter().map(Option::as_ref)).collect();
-    Ok(Body {
+    Ok(RecordedBody {
         points: vectors(points.skin().map(|n| mesh.points()[n].coords)),
         faces: faces.collect(),
         off: off(run, field, request, points.skin().map(|n| &mesh.points()[n]))?,

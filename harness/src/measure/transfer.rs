@@ -7,9 +7,11 @@ use catalogue::{metric, warning};
 use geometry::{Point3, Vector3};
 use shape::{RowBlocks, Rows};
 
+use super::comparison::push_difference;
 use super::norms::difference;
-use super::{Request, Solved, push_difference};
-use crate::Failure;
+use super::request::Request;
+use super::solved::Solved;
+use crate::error::Failure;
 use crate::outcome::timing::Timings;
 use crate::outcome::{Counters, Metric, SchemeSettings, Transfer, Warning, push};
 

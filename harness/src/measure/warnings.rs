@@ -8,10 +8,12 @@ use shape::{length, position};
 use super::exact_fit::Misfit;
 use super::patch::patch_error;
 use super::penetration::{self, narrowest};
-use super::{Recovered, Solved, dead_pressure, exact_fit, few_cells, hourglass, large_strain};
-use crate::Failure;
+use super::solved::Solved;
+use super::stress::Recovered;
+use super::{dead_pressure, exact_fit, few_cells, hourglass, large_strain};
 use crate::adapter;
 use crate::discretise::{Essential, place};
+use crate::error::Failure;
 use crate::outcome::{LoadStep, Metric, Probe, Warning};
 
 /// Smallest stress jump that is reported, relative to the norm of the stress. In cases with an exact solution

@@ -5,7 +5,7 @@ use std::ops::AddAssign;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::StageName;
+use super::plan::StageName;
 
 /// Counters of one pass over a run. Repeats for timings perform the same operations and are not added.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, JsonSchema)]

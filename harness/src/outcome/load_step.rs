@@ -4,7 +4,7 @@ use catalogue::metric;
 use contact::{Tool, ToolState};
 use geometry::Vector3;
 
-use super::Metric;
+use super::metrics::Metric;
 
 /// Fewest points that have to carry a tool's force. Three points define a plane.
 const FEWEST: f64 = 3.0;

@@ -4,6 +4,7 @@ mod counters;
 mod face_results;
 mod latency;
 mod load_step;
+mod metrics;
 mod plan;
 pub mod provenance;
 mod rows;
@@ -13,21 +14,22 @@ mod warning;
 mod watch;
 
 use catalogue::Values;
-use catalogue::metric::{self, Address};
+use catalogue::metric;
 use geometry::{Matrix3, Point3, Vector3};
 use records::{Record, Reference, SurfaceField};
 
-use crate::Failure;
+use crate::error::Failure;
 pub use counters::Counters;
 pub use face_results::{FaceMean, SupportForce};
 pub(crate) use latency::FOR_P99;
 pub use latency::Latency;
 pub use load_step::{LoadStep, ToolStep};
+pub use metrics::Metric;
+pub(crate) use metrics::push;
 pub use plan::{Plan, Stage, StageName};
 pub(crate) use rows::run_id;
 pub use states::States;
 pub(crate) use states::{State, Tensors, ToolSkin, von_mises};
-pub(crate) use timing::Meters;
 use timing::Timed;
 pub use warning::Warning;
 pub use watch::{Stopped, Watch};
@@ -76,36 +78,6 @@ pub struct Size {
     pub dofs: u64,
     /// Mean node spacing, m.
     pub spacing: f64,
-}
-
-/// Metric of a run. Only metrics of the catalogue can be recorded.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Metric {
-    /// Entry of the catalogue, component, and number of the tool, support or face.
-    pub of: Address,
-    /// Value in SI units.
-    pub value: f64,
-}
-
-impl Metric {
-    pub(crate) fn new(of: impl Into<Address>, value: f64) -> Metric {
-        Metric { of: of.into(), value }
-    }
-
-    /// Name in checks and on a terminal.
-    pub fn name(&self) -> String {
-        self.of.to_string()
-    }
-
-    /// SI unit; `1` for a dimensionless number.
-    pub fn unit(&self) -> &'static str {
-        self.of.metric.unit()
-    }
-}
-
-/// Adds a metric to a list.
-pub(crate) fn push(metrics: &mut Vec<Metric>, of: impl Into<Address>, value: f64) {
-    metrics.push(Metric::new(of, value));
 }
 
 /// Displacement and stress at a probe.

@@ -4,8 +4,10 @@
 use catalogue::metric;
 use records::{Family, PlanEntry, Record};
 
+use super::load_step::LoadStep;
+use super::metrics::{Metric, push};
 use super::timing::{Summary, Timed};
-use super::{LoadStep, Metric, Outcome, SchemeSettings, Transfer, push};
+use super::{Outcome, SchemeSettings, Transfer};
 
 impl Outcome {
     /// Rows of the run in the long table.

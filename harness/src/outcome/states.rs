@@ -1,7 +1,7 @@
 //! The body at the recorded states, for visualisation programs: a `.pvd` series of `.vtu` files.
 
-use geometry::files::{Values, solution_vtu, surface_vtu};
 use geometry::{Mesh, Point3, Vector3};
+use mesh_files::{Values, solution_vtu, surface_vtu};
 use shape::Matrix3;
 
 /// Body and tools at the recorded states of a run.
@@ -100,7 +100,8 @@ impl States {
         for (k, state) in self.states.iter().enumerate() {
             let bodies = if self.tools.is_empty() { &["body"][..] } else { &["body", "tools"] };
             for (number, what) in bodies.iter().enumerate() {
-                let (time, file) = (state.time, part(name, what, k));
+                let time = state.time;
+                let file = part(name, what, k);
                 text += &format!(
                     "<DataSet timestep=\"{time:?}\" group=\"\" part=\"{number}\" name=\"{what}\" file=\"{file}\"/>\n"
                 );

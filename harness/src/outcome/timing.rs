@@ -5,7 +5,7 @@ use std::time::Instant;
 use cpu_time::ProcessTime;
 use reports::{Seconds, Took};
 
-use super::Counters;
+use super::counters::Counters;
 
 /// The phases of every run, in order.
 pub const PHASES: [&str; 6] = ["refine", "prepare", "assemble", "factor", "solve", "transfer"];

@@ -3,7 +3,7 @@
 use std::panic::resume_unwind;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use super::LoadStep;
+use super::load_step::LoadStep;
 
 /// Observer that is called with every step: a converged step of Newton's method, or a recorded state of
 /// explicit dynamics. It may end the run at a step.

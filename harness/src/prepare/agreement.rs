@@ -6,10 +6,9 @@ use std::collections::HashMap;
 use geometry::{Mesh, Vector3};
 use shape::position;
 
-use super::at;
-use crate::Failure;
+use super::values::at;
 use crate::discretise::place;
-use crate::error::Key;
+use crate::error::{Failure, Key};
 use crate::scenario::setup::Support;
 
 /// Largest difference of prescribed values that counts as rounding, relative to the largest value or the

@@ -8,8 +8,7 @@ use geometry::{Facet, Mesh, Point3, Vector3};
 use shape::{PointRows, RowSource, SurfaceRows, length, position_alone};
 
 use super::sharp;
-use crate::Failure;
-use crate::error::Key;
+use crate::error::{Failure, Key};
 use crate::scenario::PlacedTool;
 
 /// Largest distance from a location on a facet to the nearest contact point, over the tool's half breadth.
@@ -46,8 +45,10 @@ impl Touch {
         let passed =
             facets.iter().copied().filter(|&facet| tools.iter().any(|t| passes(mesh, facet, &t.tool)));
         let passed: Vec<Facet> = passed.collect();
-        let (outline, triangles) = (source.outline(&passed)?, triangles(mesh, &passed));
-        let (mut parts, mut added) = (vec![1; facets.len()], 0usize);
+        let outline = source.outline(&passed)?;
+        let triangles = triangles(mesh, &passed);
+        let mut parts = vec![1; facets.len()];
+        let mut added = 0usize;
         let mut sharp = vec![false; facets.len()];
         for (index, set) in tools.iter().enumerate() {
             outside(&surface, index, &set.tool)?;

@@ -5,21 +5,16 @@ use geometry::{Facet, Vector3, quadrature};
 use shape::{FixedDof, RowSource, SurfaceRows};
 use statics::Load;
 
+use super::Prepared;
 use super::region_check::loaded;
-use super::{Prepared, not_finite};
-use crate::Failure;
+use super::values::{Values, not_finite};
 use crate::discretise::Discretisation;
 use crate::discretise::place::CutTriangle;
-use crate::scenario::setup::{self, Applied};
+use crate::error::Failure;
+use crate::scenario::setup::{self, Applied, SurfaceLoad};
 
 /// Points per clipped triangle: a rule of degree 4, exact for a quadratic traction on the triangle.
 const CUT_POINTS: usize = 6;
-
-/// Values of one load at its points: traction or pressure, Pa.
-pub(super) enum Values {
-    Traction(Vec<Vector3>),
-    Pressure(Vec<f64>),
-}
 
 impl Prepared {
     /// Returns the loads for the solver.
@@ -41,22 +36,34 @@ impl Prepared {
 
     /// Evaluates a load at its points.
     pub(super) fn load(&mut self, method: &Discretisation, load: &setup::Load) -> Result<(), Failure> {
-        if let Applied::Body(field) = &load.applied {
-            let values = self.volume.rows.points().iter().map(field).collect::<Result<_, _>>();
-            self.body_force.push(values.map_err(not_finite(&load.key, "body"))?);
-            return Ok(());
+        match &load.applied {
+            Applied::Surface(field) => self.load_on_surface(method, load, field),
+            Applied::Body(field) => {
+                let values = self.volume.rows.points().iter().map(field).collect::<Result<_, _>>();
+                self.body_force.push(values.map_err(not_finite(&load.key, "body"))?);
+                Ok(())
+            }
         }
+    }
+
+    fn load_on_surface(
+        &mut self,
+        method: &Discretisation,
+        load: &setup::Load,
+        field: &SurfaceLoad,
+    ) -> Result<(), Failure> {
+        let at_points = |surface| at_points(&load.key, field, surface);
         let patch = loaded(load, method.mesh())?;
         if !patch.whole.is_empty() {
             let table = match (load.varies, self.is_smoothed_by_centres()?) {
-                (false, _) => at_points(load, self.source.surface(&patch.whole)?)?,
-                (true, false) => at_points(load, self.source.field_surface(&patch.whole)?)?,
-                (true, true) => self.by_means(load, &patch.whole)?,
+                (false, _) => at_points(self.source.surface(&patch.whole)?)?,
+                (true, false) => at_points(self.source.field_surface(&patch.whole)?)?,
+                (true, true) => self.by_means(&patch.whole, at_points)?,
             };
             self.surfaces.push(table);
         }
         if !patch.cut.is_empty() {
-            self.surfaces.push(at_points(load, cut_surface(&*self.source, &patch.cut)?)?);
+            self.surfaces.push(at_points(cut_surface(&*self.source, &patch.cut)?)?);
         }
         Ok(())
     }
@@ -69,16 +76,21 @@ impl Prepared {
     /// Returns the mean of a load over each facet, at the facet's centre. The integration constraint requires
     /// the load at the point that smooths the gradients. The value at the centre alone gives 6.5 % too much
     /// of a Saint-Venant traction on 4 x 4 faces.
-    fn by_means(&self, load: &setup::Load, facets: &[Facet]) -> Result<(SurfaceRows, Values), Failure> {
+    fn by_means(
+        &self,
+        facets: &[Facet],
+        at_points: impl Fn(SurfaceRows) -> Result<(SurfaceRows, Values), Failure>,
+    ) -> Result<(SurfaceRows, Values), Failure> {
         let surface = self.source.surface(facets)?;
         let fine = fem::surface_rows(self.source.mesh(), facets, &SurfaceRule::FINE)?;
-        let (each, weights) = (fine.weights().len() / facets.len(), fine.weights().to_vec());
+        let each = fine.weights().len() / facets.len();
+        let weights = fine.weights().to_vec();
         let mean = |facet: usize, value: &dyn Fn(usize) -> Vector3| -> Vector3 {
             let points = each * facet..each * (facet + 1);
             let area: f64 = weights[points.clone()].iter().sum();
             points.map(|q| value(q) * weights[q]).sum::<Vector3>() / area
         };
-        let values = match at_points(load, fine)?.1 {
+        let values = match at_points(fine)?.1 {
             Values::Traction(t) => {
                 Values::Traction((0..facets.len()).map(|facet| mean(facet, &|q| t[q])).collect())
             }
@@ -91,19 +103,18 @@ impl Prepared {
     }
 }
 
-/// Evaluates the load at every point of a surface.
-fn at_points(load: &setup::Load, surface: SurfaceRows) -> Result<(SurfaceRows, Values), Failure> {
+/// Evaluates the load of a key at every point of a surface.
+fn at_points(key: &str, field: &SurfaceLoad, surface: SurfaceRows) -> Result<(SurfaceRows, Values), Failure> {
     let at = surface.points().iter().zip(surface.normals());
-    let values = match &load.applied {
-        Applied::Traction(field) => {
+    let values = match field {
+        SurfaceLoad::Traction(field) => {
             let values = at.map(|(x, n)| field(x, n)).collect::<Result<_, _>>();
-            Values::Traction(values.map_err(not_finite(&load.key, "traction"))?)
+            Values::Traction(values.map_err(not_finite(key, "traction"))?)
         }
-        Applied::Pressure(field) => {
+        SurfaceLoad::Pressure(field) => {
             let values = at.map(|(x, _)| field(x)).collect::<Result<_, _>>();
-            Values::Pressure(values.map_err(not_finite(&load.key, "pressure"))?)
+            Values::Pressure(values.map_err(not_finite(key, "pressure"))?)
         }
-        Applied::Body(_) => unreachable!("the method has no surface"),
     };
     Ok((surface, values))
 }

@@ -1,12 +1,13 @@
 //! Mean displacements over parts of the surface.
 
+use cases::scene::Place;
 use geometry::Mesh;
 use shape::SurfaceRows;
 
 use super::Prepared;
 use super::loads::cut_surface;
-use crate::Failure;
-use crate::discretise::place::{self, Place};
+use crate::discretise::place;
+use crate::error::Failure;
 
 /// Returns the scene key of a surface for means.
 fn key(index: usize) -> String {

@@ -1,6 +1,7 @@
 //! The prepare phase: all tables for assembly, for one method on one body under one setup.
 
 mod agreement;
+mod conditions;
 mod contact_tables;
 mod loads;
 mod means;
@@ -9,31 +10,31 @@ pub(crate) mod region_check;
 mod sharp;
 mod support_forces;
 mod support_gap;
+mod values;
 
 use std::collections::HashMap;
 
-use cases::scene::ConstraintRows;
+use cases::scene::{ConstraintRows, Place};
 use contact::ContactSurface;
 use fem::SurfaceRule;
 use geometry::{FaceKind, Facet, Mesh, Point3, Vector3};
-use shape::FixedDof;
-use shape::{FluxRows, GradRows, PointRows, RowSource, Rows, SurfaceRows, TraceRows, Unity, VolumeRows};
+use shape::{
+    FixedDof, FluxRows, GradRows, PointRows, RowSource, Rows, SurfaceRows, TraceRows, Unity, VolumeRows,
+};
 use statics::{
-    Assembled, Body, ConstraintRow, Factored, LinearProblem, Load, PenaltySurface, SolveError, Weak,
+    Assembled, ConstraintRow, Factored, LinearBody, LinearProblem, Load, PenaltySurface, SolveError, Weak,
     WeakSupport, multiplier_rows,
 };
 
-use crate::Failure;
-use crate::discretise::gradients;
-use crate::discretise::place::{self, Place, tolerance};
-use crate::discretise::{Discretisation, Essential, Volume};
-use crate::error::Key;
+use crate::discretise::place::tolerance;
+use crate::discretise::{Discretisation, Essential, Volume, gradients, place};
+use crate::error::{Failure, Key};
 use crate::outcome::{Counters, Plan, StageName};
 use crate::scenario::setup::{Setup, Support};
+use conditions::Held;
 use contact_tables::Touch;
-use loads::Values;
 use nodal_patch::{mean_rows, nodal_patches, on_facets};
-use support_forces::Held;
+use values::{Values, at, not_finite};
 
 pub use means::check_means;
 pub use support_forces::ConditionForces;
@@ -187,7 +188,7 @@ impl Prepared {
         loads: &'a [Load<'a>],
         weak: &'a [WeakSupport<'a>],
     ) -> LinearProblem<'a> {
-        let body = Body {
+        let body = LinearBody {
             nodes,
             volume: &self.volume.rows,
             materials: &setup.materials,
@@ -461,18 +462,6 @@ impl Prepared {
         let at = GradRows::new(points, table, grads)?;
         let weights = inside.iter().map(|&q| rows.weights()[q] / self.spacing).collect();
         Ok(Some(FluxRows::new(at, weights, vec![Vector3::z(); inside.len()])?))
-    }
-}
-
-fn at(support: &Support, points: &[Point3]) -> Result<Vec<Vector3>, Failure> {
-    points.iter().map(&support.value).collect::<Result<_, _>>().map_err(not_finite(&support.key, "move"))
-}
-
-/// Returns the error for a value of `below` at `key` that is not finite somewhere.
-fn not_finite(key: &str, below: &'static str) -> impl Fn(String) -> Failure {
-    let key = Key::Scene(format!("{key}.{below}"));
-    move |problem| {
-        Failure::input(key.clone(), problem, "the value has to be finite at every point of the region")
     }
 }
 

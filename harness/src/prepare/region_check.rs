@@ -2,11 +2,12 @@
 
 use std::collections::HashSet;
 
+use cases::scene::Place;
 use geometry::{Mesh, Point3, quadrature};
 
-use crate::Failure;
-use crate::discretise::place::{self, Patch, Place, tolerance};
-use crate::discretise::{Discretisation, Essential};
+use crate::discretise::place::{Patch, tolerance};
+use crate::discretise::{Discretisation, Essential, place};
+use crate::error::Failure;
 use crate::scenario::setup::{Applied, Load, Setup, Support};
 
 /// Fails, as a run would, on the first support or load whose place is empty or names a surface that the mesh

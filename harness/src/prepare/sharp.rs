@@ -83,7 +83,8 @@ pub(super) fn mark(
         ends.dedup();
         for end in ends {
             let owners: Vec<usize> = owners.iter().copied().filter(|k| around[&end].contains(k)).collect();
-            let (from, along) = (at(corner), at(end) - at(corner));
+            let from = at(corner);
+            let along = at(end) - at(corner);
             let places = PLACES.map(|part| from + along * part);
             if places.iter().any(|x| first(x, Some(along.normalize()), &owners)) {
                 owners.iter().for_each(|&k| sharp[k] = true);
@@ -111,7 +112,8 @@ fn beside(corners: &[u32], corner: u32) -> [u32; 2] {
 /// Returns the closure (m) at which a tool meets the fixed point `x` of a body of size `size` (m); `None` if
 /// the tool passes by.
 fn way(tool: &Tool, x: &Point3, size: f64) -> Option<f64> {
-    let (mut closure, farthest) = (0.0, tool.gap(0.0, x) + 2.0 * size);
+    let mut closure = 0.0;
+    let farthest = tool.gap(0.0, x) + 2.0 * size;
     for _ in 0..STEPS {
         let gap = tool.gap(closure, x);
         if gap <= REACHED * size {

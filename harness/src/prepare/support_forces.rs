@@ -1,4 +1,4 @@
-//! The essential conditions of each support, and the force of each support on the body.
+//! The force of each support on the body.
 
 use std::ops::Range;
 
@@ -6,22 +6,7 @@ use geometry::Vector3;
 use shape::FixedDof;
 
 use super::Prepared;
-
-/// Counts of nodal conditions, constraint rows and weakly constrained surfaces.
-#[derive(Clone, Copy, Default)]
-pub(super) struct Conditions {
-    fixed: usize,
-    rows: usize,
-    weak: usize,
-}
-
-/// The conditions of one support.
-pub(super) struct Held {
-    axes: [bool; 3],
-    /// Counts before the support and after it.
-    from: Conditions,
-    to: Conditions,
-}
+use super::conditions::{Conditions, Held};
 
 /// Forces (N) on the body at a solution, by kind of condition.
 pub struct ConditionForces<'a> {

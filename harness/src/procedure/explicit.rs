@@ -14,10 +14,12 @@ use lanes::LanePath;
 use shape::Matrix3;
 use statics::nodal_forces;
 
-use super::{Problem, Solution, Stages, StepHistory};
-use crate::Failure;
-use crate::error::Key;
-use crate::outcome::{Counters, LoadStep, Meters, Metric, ToolStep, Watch, push};
+use super::problem::Problem;
+use super::solution::{Solution, StepHistory};
+use super::stages::Stages;
+use crate::error::{Failure, Key};
+use crate::outcome::timing::Meters;
+use crate::outcome::{Counters, LoadStep, Metric, ToolStep, Watch};
 use crate::prepare::{ConditionForces, Prepared};
 use crate::scenario::setup::Setup;
 
@@ -82,13 +84,7 @@ fn motion(problem: &Problem, asked: &Explicit, counters: &mut Counters) -> Resul
     let Problem { setup, prepared, watch, .. } = *problem;
     let (volume, rows) = (&prepared.volume, &prepared.volume.rows);
     let mass = lumped_mass(rows, &setup.density()?, &volume.region, Lumping::for_table(rows))?;
-    let body = ExplicitBody {
-        volume: rows,
-        laws: &setup.laws,
-        region: &volume.region,
-        groups: volume.groups.as_ref(),
-    };
-    let mut force = InternalForce::new(body, LanePath::best())?;
+    let mut force = InternalForce::new(body(setup, prepared), LanePath::best())?;
     let kernel = force.info();
     counters.mass_nodes += mass.len() as u64;
 
@@ -123,9 +119,7 @@ fn motion(problem: &Problem, asked: &Explicit, counters: &mut Counters) -> Resul
     let first =
         critical_step_touching(&mut force, &mass, &zeros, |k| !constrained.contains(&k), springs, LANCZOS)?;
     let interval = asked.ramp.duration / asked.ramp.steps as f64;
-    let longest = asked.step.unwrap_or(asked.safety * first.dt);
-    let dt = divided(interval, longest).0;
-    affordable(asked, dt, first.dt)?;
+    let dt = first_step(asked, interval, first.dt)?;
     let params =
         DynamicsParams { dt, damping: asked.ramp.damping, critical: LANCZOS, recheck: 0, known: Some(first) };
     let motion =
@@ -154,30 +148,34 @@ fn motion(problem: &Problem, asked: &Explicit, counters: &mut Counters) -> Resul
             failure
         }
     };
-    let States { steps, fields, critical, drift } = states;
-    let last = steps.last().cloned().unwrap_or_else(|| LoadStep::at_start(setup.tools.len()));
     let tool_mass = if moving.iter().any(|t| matches!(t.drive, Drive::Force(_))) { tool_mass } else { 0.0 };
-    let mut metrics = Vec::new();
-    push(&mut metrics, &metric::TIME_STEPS, made as f64);
-    push(&mut metrics, &metric::TIME_REACHED, last.load * asked.ramp.duration);
-    push(&mut metrics, &metric::CRITICAL_STEP, critical);
-    push(&mut metrics, &metric::MASS, mass.iter().sum());
-    push(&mut metrics, &metric::TOOL_MASS, tool_mass);
-    push(&mut metrics, &metric::ENERGY_DRIFT, drift);
+    let u = states.fields.last().cloned();
     Ok(Solution {
         dofs: 3 * mass.len() - loading.led.len(),
-        u: fields.last().cloned().unwrap_or_else(|| vec![Vector3::zeros(); mass.len()]),
-        history: Some(StepHistory { steps, fields, last, metrics, failure: failure.map(Failure::from) }),
+        u: u.unwrap_or_else(|| vec![Vector3::zeros(); mass.len()]),
+        history: Some(states.history(problem, asked, made, [mass.iter().sum(), tool_mass], failure)),
         forces: Some(kernel),
         ..Solution::default()
     })
 }
 
-/// Refuses a run with more than [`MOST_STEPS`] time steps before the first step.
-fn affordable(asked: &Explicit, dt: f64, critical: f64) -> Result<(), Failure> {
+/// The body for the kernels of internal forces.
+pub(super) fn body<'a>(setup: &'a Setup, prepared: &'a Prepared) -> ExplicitBody<'a> {
+    let volume = &prepared.volume;
+    ExplicitBody {
+        volume: &volume.rows,
+        laws: &setup.laws,
+        region: &volume.region,
+        groups: volume.groups.as_ref(),
+    }
+}
+
+/// Length of the first time step, s. A run with more than [`MOST_STEPS`] time steps is refused.
+fn first_step(asked: &Explicit, interval: f64, critical: f64) -> Result<f64, Failure> {
+    let (dt, _) = divided(interval, asked.step.unwrap_or(asked.safety * critical));
     let count = asked.ramp.duration / dt;
     if count <= MOST_STEPS {
-        return Ok(());
+        return Ok(dt);
     }
     let problem = format!(
         "needs {count:.2e} time steps of {dt:.2e} s; at most {MOST_STEPS:.0e} are supported, and the critical step is \
@@ -236,6 +234,31 @@ struct States {
     drift: f64,
 }
 
+impl States {
+    /// Returns the history of a run with `made` steps and the masses of the body and of a tool (kg).
+    fn history(
+        self,
+        problem: &Problem,
+        asked: &Explicit,
+        made: u64,
+        [mass, tool_mass]: [f64; 2],
+        failure: Option<ExplicitError>,
+    ) -> StepHistory {
+        let States { steps, fields, critical, drift } = self;
+        let last = steps.last().cloned();
+        let last = last.unwrap_or_else(|| LoadStep::at_start(problem.setup.tools.len()));
+        let metrics = vec![
+            Metric::new(&metric::TIME_STEPS, made as f64),
+            Metric::new(&metric::TIME_REACHED, last.load * asked.ramp.duration),
+            Metric::new(&metric::CRITICAL_STEP, critical),
+            Metric::new(&metric::MASS, mass),
+            Metric::new(&metric::TOOL_MASS, tool_mass),
+            Metric::new(&metric::ENERGY_DRIFT, drift),
+        ];
+        StepHistory { steps, fields, last, metrics, failure: failure.map(Failure::from) }
+    }
+}
+
 struct Run<'a, 'b> {
     motion: Dynamics<'a, 'b>,
     asked: &'b Explicit,
@@ -263,7 +286,8 @@ impl Run<'_, '_> {
             let (balance, u) = seen.expect("every step is recorded");
             if state > 0 {
                 if let Some(tools) = self.motion.tools() {
-                    let (step, time) = (self.motion.steps() - 1, state as f64 * interval);
+                    let step = self.motion.steps() - 1;
+                    let time = state as f64 * interval;
                     tools.check_overlap(step, time, &u)?;
                     if state == self.asked.ramp.steps {
                         tools.check_end(step, time, &u)?;

@@ -8,10 +8,13 @@ use statics::{
     Inertia, Mass, Ramp, Ramps, TimeError, TimeParams, TimePath, TimeProblem, TimeStep, solve_in_time,
 };
 
-use super::statics::{SMALLEST, newton_params, solves, with_static_problem};
-use super::{Problem, Solution, Stages, StepHistory, newton_reason};
-use crate::Failure;
-use crate::outcome::{Counters, LoadStep, Meters, Metric, ToolStep, push};
+use super::problem::Problem;
+use super::solution::{Solution, StepHistory};
+use super::stages::Stages;
+use super::statics::{SMALLEST, newton_params, newton_reason, solves, with_static_problem};
+use crate::error::Failure;
+use crate::outcome::timing::Meters;
+use crate::outcome::{Counters, LoadStep, Metric, ToolStep, push};
 use crate::prepare::ConditionForces;
 use crate::scenario::setup::Setup;
 
@@ -162,7 +165,8 @@ fn drift(steps: &[TimeStep]) -> f64 {
         let terms = [energy.kinetic, energy.internal, energy.external, energy.damped];
         terms.iter().fold(0.0f64, |largest, term| largest.max(term.abs()))
     };
-    let (mut drift, mut scale) = (0.0f64, ROUNDING * steps.iter().map(largest).fold(0.0, f64::max));
+    let mut drift = 0.0f64;
+    let mut scale = ROUNDING * steps.iter().map(largest).fold(0.0, f64::max);
     for step in steps {
         let energy = &step.energy;
         scale = scale.max(largest(step));

@@ -4,10 +4,12 @@ use cases::scene::LinearSolver;
 use statics::assemble;
 
 use super::linear_solver::{serves, solved};
-use super::{Problem, Solution, Stages};
-use crate::Failure;
+use super::problem::Problem;
+use super::solution::Solution;
+use super::stages::Stages;
 use crate::discretise::Discretisation;
-use crate::outcome::Meters;
+use crate::error::Failure;
+use crate::outcome::timing::Meters;
 use crate::prepare::ConditionForces;
 use crate::scenario::setup::Setup;
 

@@ -1,14 +1,13 @@
 //! Choice of the solver of a linear procedure: factorisation, or iterations with multigrid.
 
-use cases::scene::LinearSolver;
+use cases::scene::{Dilation, LinearSolver};
 use geometry::Point3;
 use statics::{Assembled, Factored, SolveError};
 
-use super::Problem;
-use crate::Failure;
-use crate::discretise::{Dilation, Discretisation, Essential};
-use crate::error::Key;
-use crate::outcome::Meters;
+use super::problem::Problem;
+use crate::discretise::{Discretisation, Essential};
+use crate::error::{Failure, Key};
+use crate::outcome::timing::Meters;
 use crate::prepare::Prepared;
 use crate::scenario::setup::Setup;
 
@@ -83,14 +82,16 @@ pub(super) fn serves(method: &Discretisation, setup: &Setup, asked: LinearSolver
         _ => None,
     };
     let stiffest = setup.materials.iter().map(|m| m.lambda() / m.mu()).fold(0.0, f64::max);
-    let shared = matches!(method.dilation, Dilation::Element | Dilation::Nodal) && method.interpolates;
+    let shared =
+        matches!(method.dilation, Dilation::ElementMean | Dilation::NodalMean) && method.interpolates;
     let quadratic = method.order == 2;
     let (iterated, power) = match shared && stiffest >= PRESSURES {
         true => (Serves::Pressures, if quadratic { QUADRATIC } else { LINEAR }),
         false => (Serves::Multigrid, 0.5),
     };
     let needed = UNKNOWNS * (stiffest / COMPRESSIBLE).powf(power).max(1.0);
-    let (unknowns, compact) = (3 * method.nodes().len(), compactness(method.nodes()));
+    let unknowns = 3 * method.nodes().len();
+    let compact = compactness(method.nodes());
     let of_cube = unknowns as f64 * compact;
     match (asked, direct) {
         (LinearSolver::Direct, _) => (Serves::Factor, "requested".into()),

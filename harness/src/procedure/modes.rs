@@ -3,22 +3,14 @@
 use cases::scene;
 use explicit::{Lumping, lumped_mass};
 use geometry::Vector3;
-use statics::{ALL_MODES_LIMIT, Mass, Modes, lowest_modes};
+use statics::{ALL_MODES_LIMIT, Mass, lowest_modes};
 
-use super::{Problem, Solution, Stages};
-use crate::Failure;
-use crate::error::Key;
-use crate::outcome::Meters;
+use super::problem::Problem;
+use super::solution::{Solution, Vibration};
+use super::stages::Stages;
+use crate::error::{Failure, Key};
+use crate::outcome::timing::Meters;
 use crate::scenario::setup::Setup;
-
-/// Vibration modes and the mass of the body.
-pub(crate) struct Vibration {
-    pub(crate) modes: Modes,
-    /// Number of modes to report.
-    pub(crate) count: usize,
-    /// Mass of the body, kg.
-    pub(crate) mass: f64,
-}
 
 pub(super) fn stages(setup: &Setup) -> Stages {
     Stages {
@@ -53,7 +45,8 @@ pub(super) fn solve(problem: &Problem, count: usize, meters: &mut Meters) -> Res
 
 fn mass(problem: &Problem) -> Result<Mass, Failure> {
     let Problem { method, setup, prepared, .. } = *problem;
-    let (volume, density) = (&prepared.volume, setup.density()?);
+    let volume = &prepared.volume;
+    let density = setup.density()?;
     let lumped = || {
         let rows = &volume.rows;
         lumped_mass(rows, &density, &volume.region, Lumping::for_table(rows))

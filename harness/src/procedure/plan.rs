@@ -1,9 +1,11 @@
 //! The plan of a run: the stages that it needs, the stages that it skips, and why.
 
-use cases::scene::ConstraintRows;
+use cases::scene::{ConstraintRows, Dilation, Procedure};
 
-use super::{Solution, Stages};
-use crate::discretise::{Dilation, Discretisation, Essential};
+use super::solution::Solution;
+use super::stages::Stages;
+use super::{explicit, external, implicit_dynamic, linear, modes, statics};
+use crate::discretise::{Discretisation, Essential};
 use crate::outcome::{Counters, Plan, StageName};
 use crate::scenario::setup::Setup;
 
@@ -22,7 +24,7 @@ const NEARLY_INCOMPRESSIBLE: f64 = 0.45;
 /// Stages of a run, in order.
 pub(crate) fn plan(method: &Discretisation, setup: &Setup, wanted: Wanted) -> Plan {
     let mut plan = Plan::default();
-    let stages = Stages::of(method, setup);
+    let stages = stages_of(method, setup);
     let mut add = |stage, (runs, why): (bool, String)| plan.add(stage, runs, why);
     add(StageName::Refinement, refinement(method));
     add(StageName::Supports, supports(method));
@@ -77,6 +79,21 @@ pub(crate) fn conclude(plan: &mut Plan, solution: &Solution, counters: &Counters
     }
 }
 
+/// Stages that depend on the procedure.
+fn stages_of(method: &Discretisation, setup: &Setup) -> Stages {
+    if let Some(outside) = &method.outside {
+        return external::stages(outside);
+    }
+    match &setup.procedure {
+        Procedure::Prepare => Stages::prepare(),
+        Procedure::Linear { solver } => linear::stages(method, setup, *solver),
+        Procedure::Modes { .. } => modes::stages(setup),
+        Procedure::Static(asked) => statics::stages(method, setup, asked),
+        Procedure::Explicit(asked) => explicit::stages(asked),
+        Procedure::ImplicitDynamic(asked) => implicit_dynamic::stages(setup, asked),
+    }
+}
+
 fn refinement(method: &Discretisation) -> (bool, String) {
     match &method.refine {
         Some(refine) => {
@@ -102,9 +119,11 @@ fn projection(method: &Discretisation, setup: &Setup) -> (bool, String) {
             (false, format!("nu = {poisson} < {NEARLY_INCOMPRESSIBLE} does not lock"))
         }
         Dilation::Standard => (false, "none requested (dilation = \"standard\")".into()),
-        Dilation::Element => (true, "one dilation per cell".into()),
-        Dilation::Nodal => (true, "one dilation per node".into()),
-        Dilation::Near => (true, "one dilation per node, with each point shared among four nodes".into()),
+        Dilation::ElementMean => (true, "one dilation per cell".into()),
+        Dilation::NodalMean => (true, "one dilation per node".into()),
+        Dilation::NodalNear => {
+            (true, "one dilation per node, with each point shared among four nodes".into())
+        }
         Dilation::Mixed => (true, "a pressure field, linear between corners".into()),
     }
 }

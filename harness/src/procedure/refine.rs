@@ -5,11 +5,12 @@ use cases::scene::{ErrorKind, LinearSolver, Procedure};
 use efg::gradient_error;
 use geometry::{CloudError, Sizes, cloud_of_sizes};
 
-use super::{Problem, linear};
-use crate::Failure;
+use super::linear;
+use super::problem::Problem;
 use crate::discretise::Discretisation;
-use crate::error::Key;
-use crate::outcome::{Counters, Meters, Plan};
+use crate::error::{Failure, Key};
+use crate::outcome::timing::Meters;
+use crate::outcome::{Counters, Plan};
 use crate::prepare::prepare;
 use crate::scenario::setup::Setup;
 

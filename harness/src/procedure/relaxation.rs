@@ -1,9 +1,10 @@
 //! Dynamic relaxation beyond a limit point, from the last equilibrium to the remaining load steps.
 
+use cases::scene::Dilation;
 use catalogue::metric;
 use contact::{ContactHistory, Drive};
 use explicit::{
-    ExplicitBody, ExplicitError, InternalForce, KernelInfo, LanczosParams, Lumping, Pressing, PressingTool,
+    ExplicitError, InternalForce, KernelInfo, LanczosParams, Lumping, Pressing, PressingTool, RelaxationInfo,
     RelaxationParams, Rested, lumped_mass, relax_under,
 };
 use geometry::Vector3;
@@ -11,9 +12,9 @@ use lanes::LanePath;
 use shape::FixedDof;
 use statics::nodal_forces;
 
-use super::explicit::{led, smallest_j};
-use crate::Failure;
-use crate::discretise::{Dilation, Discretisation};
+use super::explicit::{body, led, smallest_j};
+use crate::discretise::Discretisation;
+use crate::error::Failure;
 use crate::outcome::{Counters, LoadStep, Metric, ToolStep};
 use crate::prepare::{ConditionForces, Prepared};
 use crate::scenario::setup::Setup;
@@ -83,22 +84,12 @@ pub(super) fn continue_from(
 ) -> Result<Relaxed, Failure> {
     let volume = &prepared.volume;
     let rows = &volume.rows;
-    let body = ExplicitBody {
-        volume: rows,
-        laws: &setup.laws,
-        region: &volume.region,
-        groups: volume.groups.as_ref(),
-    };
     let density = vec![DENSITY; setup.laws.len()];
     let mass = lumped_mass(rows, &density, &volume.region, Lumping::for_table(rows))?;
-    let mut force = InternalForce::new(body, LanePath::best())?;
+    let mut force = InternalForce::new(body(setup, prepared), LanePath::best())?;
     let loads = nodal_forces(rows, &prepared.loads())?;
     let constrained = led(prepared);
     let surface = prepared.contact();
-    let part_of = |drive: Drive, load: f64| match drive {
-        Drive::Closure(full) => Drive::Closure(full * load),
-        Drive::Force(full) => Drive::Force(full * load),
-    };
     let mut pressing = surface.as_ref().map(|surface| {
         let each = setup.tools.iter().zip(&from.closures).zip(from.history);
         let tools = each.map(|((set, &closure), history)| PressingTool {
@@ -117,10 +108,8 @@ pub(super) fn continue_from(
         if load <= from.load * (1.0 + 1e-12) {
             continue;
         }
-        let fixed: Vec<FixedDof> = constrained
-            .iter()
-            .map(|(&(node, axis), value)| FixedDof { node, axis, value: value * load })
-            .collect();
+        let at = |(&(node, axis), value): (&(u32, u8), &f64)| FixedDof { node, axis, value: value * load };
+        let fixed: Vec<FixedDof> = constrained.iter().map(at).collect();
         let mut external = |_: &[Vector3], f: &mut [Vector3]| {
             f.iter_mut().zip(&loads).for_each(|(f, full)| *f += full * load);
         };
@@ -144,13 +133,10 @@ pub(super) fn continue_from(
         };
         done.made += info.steps as u64;
         let states = pressing.as_ref().map_or(&[][..], Pressing::states);
+        let tools = states.iter().zip(&setup.tools).map(|(state, set)| ToolStep::of(state, &set.tool));
         done.steps.push(LoadStep {
             load,
-            tools: states
-                .iter()
-                .zip(&setup.tools)
-                .map(|(state, set)| ToolStep::of(state, &set.tool))
-                .collect(),
+            tools: tools.collect(),
             supports: prepared.support_forces(&ConditionForces { nodes: &reaction, rows: &[], weak: &[] }),
             means: Vec::new(),
             strain_energy: Some(force.energy(&u).map_err(ExplicitError::from)?),
@@ -158,11 +144,7 @@ pub(super) fn continue_from(
             iterations: 0,
             probes: Vec::new(),
             against: Vec::new(),
-            more: vec![
-                Metric::new(&metric::RELAXATION_STEPS, info.steps as f64),
-                Metric::new(&metric::RELAXATION_ERROR, info.error),
-                Metric::new(&metric::RELAXATION_RESIDUAL, info.residual),
-            ],
+            more: metrics(&info),
         });
         done.fields.push(u.clone());
     }
@@ -172,4 +154,19 @@ pub(super) fn continue_from(
         counters.contact_skips += pressing.counts().skipped;
     }
     Ok(done)
+}
+
+fn part_of(drive: Drive, load: f64) -> Drive {
+    match drive {
+        Drive::Closure(full) => Drive::Closure(full * load),
+        Drive::Force(full) => Drive::Force(full * load),
+    }
+}
+
+fn metrics(info: &RelaxationInfo) -> Vec<Metric> {
+    vec![
+        Metric::new(&metric::RELAXATION_STEPS, info.steps as f64),
+        Metric::new(&metric::RELAXATION_ERROR, info.error),
+        Metric::new(&metric::RELAXATION_RESIDUAL, info.residual),
+    ]
 }

@@ -2,11 +2,9 @@
 
 use explicit::KernelInfo;
 use geometry::Vector3;
-use statics::SolveInfo;
+use statics::{Modes, SolveInfo};
 
-use super::external::OfProgram;
-use super::modes::Vibration;
-use crate::Failure;
+use crate::error::Failure;
 use crate::outcome::{LoadStep, Metric};
 
 /// Result of a procedure. It has no nodal parameters if the procedure does not solve for a displacement.
@@ -78,4 +76,22 @@ impl Solution {
     pub(crate) fn is_whole(&self) -> bool {
         self.history.as_ref().is_none_or(|history| history.failure.is_none())
     }
+}
+
+/// Vibration modes and the mass of the body.
+pub(crate) struct Vibration {
+    pub(crate) modes: Modes,
+    /// Number of modes to report.
+    pub(crate) count: usize,
+    /// Mass of the body, kg.
+    pub(crate) mass: f64,
+}
+
+/// Properties of the external program that solved the problem.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct OfProgram {
+    /// Peak memory of all its processes together, bytes.
+    pub(crate) memory: u64,
+    /// Name and version, if the program reports them.
+    pub(crate) version: Option<String>,
 }

@@ -5,15 +5,20 @@ use std::time::Instant;
 use cases::scene::{Newton, OnStall, Static};
 use catalogue::metric;
 use contact::{ContactSurface, DrivenTool};
+use material::Material as _;
 use statics::{
-    Dilation, NewtonParams, Solid, StaticError, StaticParams, StaticPath, StaticProblem, Step, solve_static,
+    NewtonParams, Solid, SolidDilation, StaticError, StaticParams, StaticPath, StaticProblem, Step,
+    solve_static,
 };
 
+use super::problem::Problem;
 use super::relaxation::{self, Relaxed, Start};
-use super::{Problem, Solution, Stages, StepHistory, newton_reason};
-use crate::Failure;
+use super::solution::{Solution, StepHistory};
+use super::stages::Stages;
 use crate::discretise::Discretisation;
-use crate::outcome::{Counters, LoadStep, Meters, Metric, StageName, ToolStep, push};
+use crate::error::Failure;
+use crate::outcome::timing::Meters;
+use crate::outcome::{Counters, LoadStep, Metric, StageName, ToolStep, push};
 use crate::prepare::{ConditionForces, Prepared};
 use crate::scenario::setup::Setup;
 
@@ -75,7 +80,8 @@ fn path(problem: &Problem, asked: &Static, counters: &mut Counters) -> Result<(S
     let contact = prepared.contact();
     let (mut steps, mut fields, mut supports) = (Vec::new(), Vec::new(), Vec::new());
     let start = Instant::now();
-    let (mut limit, mut before) = (Limit::default(), LoadStep::at_start(setup.tools.len()));
+    let mut limit = Limit::default();
+    let mut before = LoadStep::at_start(setup.tools.len());
     let mut params = static_params(asked);
     if method.interpolates {
         // A cloud on which tools slide may reach another equilibrium by inexact steps, as the kidney between
@@ -109,7 +115,9 @@ fn path(problem: &Problem, asked: &Static, counters: &mut Counters) -> Result<(S
     let relaxes = plan.runs(StageName::Relaxation);
     let last = LoadStep { supports, ..last(&path, setup, relaxes)? };
     let residual = path.steps.last().and_then(|s| s.iterations.last()).map_or(0.0, |i| i.residual);
-    let (mut end, mut u, mut relaxed) = (last.clone(), path.u, None);
+    let mut end = last.clone();
+    let mut u = path.u;
+    let mut relaxed = None;
     if path.failure.is_some() && relaxes {
         let closures = last.tools.iter().map(|tool| tool.closure).collect();
         let from = Start { load: last.load, u: u.clone(), closures, history: path.history };
@@ -125,7 +133,8 @@ fn path(problem: &Problem, asked: &Static, counters: &mut Counters) -> Result<(S
         limit.step = Some(last);
     }
     let metrics = metrics(limit.step.as_ref(), iterations, path.cut_back, relaxed.as_ref());
-    let (forces, stalled) = (relaxed.as_ref().map(|relaxed| relaxed.forces), path.failure.map(Failure::from));
+    let forces = relaxed.as_ref().map(|relaxed| relaxed.forces);
+    let stalled = path.failure.map(Failure::from);
     let (failure, relaxed) = match relaxed.map(|relaxed| relaxed.failure) {
         None => (stalled, None),
         Some(None) => (None, stalled),
@@ -206,9 +215,9 @@ pub(crate) fn with_static_problem<T>(
 ) -> T {
     let volume = &prepared.volume;
     let dilation = match (&volume.groups, &volume.pressure) {
-        (_, Some(rows)) => Dilation::Mixed(rows),
-        (Some(groups), None) => Dilation::Groups(groups),
-        (None, None) => Dilation::Standard,
+        (_, Some(rows)) => SolidDilation::Mixed(rows),
+        (Some(groups), None) => SolidDilation::Groups(groups),
+        (None, None) => SolidDilation::Standard,
     };
     let tools: Vec<DrivenTool> =
         setup.tools.iter().map(|t| DrivenTool { tool: &t.tool, drive: t.drive }).collect();
@@ -241,5 +250,15 @@ fn reported(step: &Step, setup: &Setup) -> LoadStep {
         probes: Vec::new(),
         against: Vec::new(),
         more: Vec::new(),
+    }
+}
+
+/// Reason in the plan why Newton's method iterates.
+pub(super) fn newton_reason(setup: &Setup, steps: usize, kind: &str) -> String {
+    let steps = if steps == 1 { format!("1 {kind} step") } else { format!("{steps} {kind} steps") };
+    match (setup.laws.iter().all(|law| law.is_small_strain()), setup.tools.is_empty()) {
+        (true, true) => format!("{steps}; law and loads are linear, so one iteration per step would suffice"),
+        (false, true) => format!("{steps} with a law of large strain"),
+        (_, false) => format!("{steps} with contact"),
     }
 }

@@ -80,7 +80,8 @@ pub(super) fn wait(id: u32) {
 
 /// Returns the end of a process's output, whatever its length.
 pub(crate) fn last_words(mut from: impl Read) -> String {
-    let (mut kept, mut buffer) = (Vec::new(), [0; LAST_WORDS]);
+    let mut kept = Vec::new();
+    let mut buffer = [0; LAST_WORDS];
     while let Ok(read @ 1..) = from.read(&mut buffer) {
         kept.extend(&buffer[..read]);
         let old = kept.len().saturating_sub(LAST_WORDS);

@@ -7,8 +7,6 @@ pub(crate) mod leash;
 mod members;
 
 pub(crate) use call::{Call, End, Limits, call, said_within};
-pub(crate) use group::{Started, last_words};
-pub use leash::LeashArgs;
 
 /// Returns the peak memory of this process, bytes, since [`forget_most_memory`] or since its start; `None` if
 /// unknown.

@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-use super::Group;
-use crate::Failure;
+use super::group::Group;
+use crate::error::Failure;
 use crate::measure::check_probes;
 use crate::outcome::Counters;
 use crate::prepare::prepare;

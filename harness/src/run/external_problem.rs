@@ -7,11 +7,13 @@ use geometry::{Mesh, Point3, Vector3};
 use records::Family;
 use shape::{FixedDof, GradRows, PointRows, VolumeRows};
 
-use super::{Group, loaded, size};
-use crate::Failure;
+use super::group::Group;
+use super::{loaded, size};
 use crate::discretise::Discretisation;
+use crate::error::Failure;
 use crate::measure::{self, Request, check_probes};
-use crate::outcome::{Counters, Identity, Meters, Outcome, Plan, StageName, ToolStep};
+use crate::outcome::timing::Meters;
+use crate::outcome::{Counters, Identity, Outcome, Plan, StageName, ToolStep};
 use crate::prepare::{Prepared, prepare};
 use crate::procedure::external::{steps, taken};
 use crate::procedure::{Problem, Solution};
@@ -178,7 +180,8 @@ impl Posed {
 
     fn check(&self, found: &Found) -> Result<(), Failure> {
         let wrong = |problem: String| Err(Failure::Input(problem));
-        let (nodes, steps) = (self.nodes().len(), self.steps());
+        let nodes = self.nodes().len();
+        let steps = self.steps();
         match found.fields.len() {
             1 => {}
             given if given == steps => {}

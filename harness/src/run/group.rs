@@ -7,17 +7,19 @@ use std::sync::Arc;
 
 use cases::scene::{self, ErrorKind, Family, Reference, Scene, Size, Target};
 use catalogue::{metric, warning};
-use geometry::{Point3, files};
+use geometry::Point3;
 use interp::Scheme;
 
 use super::stored_reference::Stored;
 use super::symmetry::Mirror;
 use super::witness::own_error;
-use super::{Finished, run};
-use crate::Failure;
+use super::{FinishedRun, run};
 use crate::discretise::Discretisation;
+use crate::error::Failure;
 use crate::measure::{self, OwnError, Repeats, Request};
-use crate::outcome::{Counters, Outcome, Plan, SchemeSettings, Size as Sizes, Unfinished, Warning, Watch};
+use crate::outcome::{
+    Counters, Metric, Outcome, Plan, SchemeSettings, Size as Sizes, Unfinished, Warning, Watch,
+};
 use crate::prepare::region_check;
 use crate::procedure::{Wanted, plan};
 use crate::scenario::{Scenario, point, rule, warnings};
@@ -165,14 +167,42 @@ impl<'a> Group<'a> {
     /// Estimates the own error of the reference, which was solved with this method.
     fn know_reference(&mut self, method: &scene::Method) {
         let Some(reference) = &self.reference else { return };
-        let (own, counters) = match &self.reference_stalled {
-            Some(_) => {
-                (OwnError { unknown: "it ended early".into(), ..OwnError::default() }, Counters::default())
-            }
-            None => own_error(self, method, reference),
+        let mut counters = Counters::default();
+        let own = match &self.reference_stalled {
+            Some(_) => OwnError { unknown: "it ended early".into(), ..OwnError::default() },
+            None => own_error(method, reference, |witness, most| self.witness(witness, most, &mut counters)),
         };
         self.reference_counters += counters;
         self.reference.iter_mut().for_each(|reference| reference.own = own.clone());
+    }
+
+    /// Solves a witness of the reference, which must have fewer nodes than `most`. Returns its number of
+    /// nodes and its metrics.
+    fn witness(
+        &self,
+        method: scene::Method,
+        most: Option<usize>,
+        counters: &mut Counters,
+    ) -> Result<(usize, Vec<Metric>), Failure> {
+        let id = method.id.clone();
+        let failed = |failure: Failure| {
+            Failure::Run(format!("{id} on a coarser mesh gives no number to compare: {failure}"))
+        };
+        let scenario = self.scenario(method, 0);
+        let discretisation = scenario.discretise().map_err(failed)?;
+        let nodes = discretisation.nodes().len();
+        if let Some(most) = most.filter(|most| nodes >= *most) {
+            return Err(Failure::Run(format!("no mesh of {id} coarser than its {most} nodes can be made")));
+        }
+        let setup = scenario.setup().map_err(failed)?;
+        let plan = plan(&discretisation, &setup, Wanted { targets: true, schemes: false });
+        let solved = run(scenario.identity(), plan, &discretisation, &setup, &self.request())
+            .map_err(|failure| failed(scenario.locate(failure)))?;
+        *counters += solved.outcome.counters;
+        match solved.outcome.stalled {
+            Some(failure) => Err(failed(scenario.locate(failure))),
+            None => Ok((nodes, solved.outcome.metrics)),
+        }
     }
 
     /// Runs a method that others are compared with. If `resized`, its size is set by `reference.size`. The
@@ -198,7 +228,7 @@ impl<'a> Group<'a> {
     }
 
     /// Solves a method once, without repeats and without a comparison.
-    fn solved(&self, scenario: &Scenario, discretisation: &Discretisation) -> Result<Finished, Failure> {
+    fn solved(&self, scenario: &Scenario, discretisation: &Discretisation) -> Result<FinishedRun, Failure> {
         let setup = scenario.setup()?;
         let plan = plan(discretisation, &setup, Wanted { targets: !self.targets.is_empty(), schemes: false });
         let request = Request { watch: self.watch.as_deref(), ..Request::alone(&self.probes, &self.targets) };
@@ -365,7 +395,8 @@ const ROUNDING: f64 = 1e-9;
 /// Warning that the run has more nodes than its reference, whose error may then dominate.
 fn coarser(reference: &records::Reference, outcome: &Outcome) -> Option<Warning> {
     let error = outcome.metric(metric::RELATIVE_RMS.name).filter(|error| *error > ROUNDING)?;
-    let (own, known) = (outcome.size.nodes, reference.nodes);
+    let own = outcome.size.nodes;
+    let known = reference.nodes;
     (known > 0 && own > known).then(|| {
         let message = format!(
             "with {own} nodes the run is finer than its reference, {}: the difference of {:.1} % may be the error of \
@@ -396,10 +427,10 @@ fn targets(scene: &Scene, probes: &[Point3]) -> Result<Vec<Point3>, Failure> {
             Target::ReferenceNodes => {}
             Target::Probes => return Ok(probes.to_vec()),
             Target::File(file) => {
-                let mesh = files::read(&file.path, file.unit).map_err(|bad| {
+                let mesh = mesh_files::read(&file.path, file.unit).map_err(|bad| {
                     let (key, problem) =
                         (transfer_key(scene, index, "to.file"), format!("can't be read: {bad}"));
-                    Failure::of_scene(scene, ErrorKind::Invalid, &key, &problem, files::READ)
+                    Failure::of_scene(scene, ErrorKind::Invalid, &key, &problem, mesh_files::READ)
                 })?;
                 return Ok(mesh.points().to_vec());
             }

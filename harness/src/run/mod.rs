@@ -16,15 +16,15 @@ use cases::scene::Procedure;
 use geometry::{Point3, Vector3};
 use records::{Record, SurfaceField};
 
-use crate::Failure;
 use crate::discretise::Discretisation;
+use crate::error::Failure;
 use crate::measure::{
     self, Field, OwnError, Recovered, Reference, Request, check_probes, displacement, measure, of_tables,
     over_time, picture, places, probe_errors, probe_history, probes, report_modes, report_steps, states,
     surface, transfers, warnings,
 };
-use crate::outcome::timing::{Timed, Timings};
-use crate::outcome::{Counters, Identity, Meters, Outcome, Plan, Size, StageName};
+use crate::outcome::timing::{Meters, Timed, Timings};
+use crate::outcome::{Counters, Identity, Outcome, Plan, Size, StageName};
 use crate::prepare::{Prepared, check_means, prepare};
 use crate::procedure::{self, Problem, Solution, conclude, refined};
 use crate::process;
@@ -39,7 +39,7 @@ pub use memory::Baseline as MemoryBaseline;
 pub use stored_reference::Stored;
 
 /// Finished run with its nodal parameters.
-pub(crate) struct Finished {
+pub(crate) struct FinishedRun {
     /// Identity, metrics and times.
     pub(crate) outcome: Outcome,
     prepared: Prepared,
@@ -58,7 +58,7 @@ pub(crate) fn run(
     method: &Discretisation,
     setup: &Setup,
     request: &Request,
-) -> Result<Finished, Failure> {
+) -> Result<FinishedRun, Failure> {
     check_probes(method.mesh(), request.probes)?;
     check_means(method.mesh(), &setup.means)?;
     rayon::scope(|_| on_pool(identity, plan, method, setup, request))
@@ -70,7 +70,7 @@ fn on_pool(
     method: &Discretisation,
     setup: &Setup,
     request: &Request,
-) -> Result<Finished, Failure> {
+) -> Result<FinishedRun, Failure> {
     let baseline = Baseline::new();
     process::forget_most_memory();
     let mut meters = Meters::default();
@@ -93,7 +93,7 @@ fn on_pool(
         loaded(&mut outcome, &run, request, meters)?;
     }
     readable(&outcome)?;
-    Ok(Finished { outcome, prepared, u: solution.u })
+    Ok(FinishedRun { outcome, prepared, u: solution.u })
 }
 
 /// Refuses a run whose records contain an invalid number. Only this run fails, not the study whose tables
@@ -295,15 +295,16 @@ fn size(method: &Discretisation, prepared: &Prepared, dofs: usize) -> Size {
 
 /// Converts a finished run to a reference, which keeps the tables and can evaluate the displacement anywhere
 /// later.
-pub(crate) fn reference(finished: Finished, targets: &[Point3]) -> Result<Reference, Failure> {
-    let Finished { outcome, prepared, u } = finished;
+pub(crate) fn reference(finished: FinishedRun, targets: &[Point3]) -> Result<Reference, Failure> {
+    let FinishedRun { outcome, prepared, u } = finished;
     let at = move |points: &[Point3]| -> Result<Vec<Vector3>, Failure> {
         Ok(prepared.source.at_points(points)?.0.rows().apply(&u))
     };
     let points = if targets.is_empty() { Vec::new() } else { at(targets)? };
     let nodes = outcome.size.nodes as usize;
     let Outcome { identity, steps, stalled, warnings, .. } = outcome;
-    let (method, finished) = (identity.method, stalled.is_none());
+    let method = identity.method;
+    let finished = stalled.is_none();
     let own = OwnError::default();
     Ok(Reference { method, nodes, targets: points, steps, finished, warnings, own, at: Some(Box::new(at)) })
 }

@@ -10,8 +10,8 @@ use geometry::{Point3, Vector3};
 use shape::{Rows, Unity};
 use statics::{Factored, Frames, Load, NewtonParams, StaticParams, assemble, nodal_forces};
 
-use crate::Failure;
 use crate::discretise::Discretisation;
+use crate::error::Failure;
 use crate::measure::Solved;
 use crate::outcome::{FOR_P99, Latency, Metric, push};
 use crate::prepare::Prepared;
@@ -20,7 +20,8 @@ use crate::procedure::{solves, static_params, with_static_problem};
 /// Fraction of the loading in a frame. It rises from `2 / cycle` to 1 in half a cycle and falls again. It
 /// never reaches zero, because a force-controlled tool would then have no force.
 fn part(frame: usize, cycle: usize) -> f64 {
-    let (half, at) = (cycle / 2, frame % cycle);
+    let half = cycle / 2;
+    let at = frame % cycle;
     let step = if at < half { at + 1 } else { cycle - at };
     step as f64 / half as f64
 }

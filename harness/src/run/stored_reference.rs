@@ -12,7 +12,7 @@ use records::{Family, Record};
 use serde::{Deserialize, Serialize};
 
 use super::symmetry::Mirror;
-use crate::Failure;
+use crate::error::Failure;
 use crate::measure::{OwnError, Reference, norms};
 use crate::outcome::{LoadStep, ToolStep, provenance, push, run_id};
 

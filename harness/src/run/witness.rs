@@ -14,61 +14,35 @@ use catalogue::Dimension;
 use catalogue::metric::{self, Kind, Needs};
 use geometry::CellKind;
 
-use super::{Group, run};
-use crate::Failure;
+use crate::error::Failure;
 use crate::measure::{OwnError, Reference};
-use crate::outcome::{Counters, Metric};
-use crate::procedure::{Wanted, plan};
+use crate::outcome::Metric;
 
 /// Ratio of the nodes of a mesh to those of a mesh of twice the spacing.
 const COARSER: usize = 8;
 
-/// Estimates the own error of a group's reference, which was solved with `method`. Also returns the counters
-/// of the solutions that the estimate needs.
-pub(super) fn own_error(group: &Group, method: &Method, reference: &Reference) -> (OwnError, Counters) {
+/// Estimates the own error of a reference, which was solved with `method`. `solve` solves a witness, which
+/// may have to have fewer nodes than a limit, and returns its number of nodes and its metrics.
+pub(super) fn own_error(
+    method: &Method,
+    reference: &Reference,
+    mut solve: impl FnMut(Method, Option<usize>) -> Result<(usize, Vec<Metric>), Failure>,
+) -> OwnError {
     let mut own = OwnError::default();
-    let mut counters = Counters::default();
     let witnesses = witnesses(method, reference.nodes);
     let compared = witnesses.map_err(Failure::Run).and_then(|witnesses| {
         witnesses.into_iter().try_for_each(|witness| {
-            let (nodes, band) = distances(group, witness.clone(), reference.nodes, &mut counters)?;
-            own.by.push(format!("{} with {nodes} nodes", witness.id));
-            band.into_iter().for_each(|metric| own.add(metric));
+            let id = witness.id.clone();
+            let most = is_first_order(&witness.family).then_some(reference.nodes);
+            let (nodes, metrics) = solve(witness, most)?;
+            own.by.push(format!("{id} with {nodes} nodes"));
+            metrics.into_iter().filter(is_error).for_each(|metric| own.add(metric));
             Ok(())
         })
     });
-    if let Err(failure) = compared {
-        own = OwnError { unknown: failure.to_string(), ..OwnError::default() };
-    }
-    (own, counters)
-}
-
-/// Number of nodes of a witness, and its relative errors against the reference.
-fn distances(
-    group: &Group,
-    witness: Method,
-    most: usize,
-    counters: &mut Counters,
-) -> Result<(usize, Vec<Metric>), Failure> {
-    let id = witness.id.clone();
-    let failed = |failure: Failure| {
-        Failure::Run(format!("{id} on a coarser mesh gives no number to compare: {failure}"))
-    };
-    let first_order = is_first_order(&witness.family);
-    let scenario = group.scenario(witness, 0);
-    let discretisation = scenario.discretise().map_err(failed)?;
-    let nodes = discretisation.nodes().len();
-    if nodes >= most && first_order {
-        return Err(Failure::Run(format!("no mesh of {id} coarser than its {most} nodes can be made")));
-    }
-    let setup = scenario.setup().map_err(failed)?;
-    let plan = plan(&discretisation, &setup, Wanted { targets: true, schemes: false });
-    let solved = run(scenario.identity(), plan, &discretisation, &setup, &group.request())
-        .map_err(|failure| failed(scenario.locate(failure)))?;
-    *counters += solved.outcome.counters;
-    match solved.outcome.stalled {
-        Some(failure) => Err(failed(scenario.locate(failure))),
-        None => Ok((nodes, solved.outcome.metrics.into_iter().filter(is_error).collect())),
+    match compared {
+        Ok(()) => own,
+        Err(failure) => OwnError { unknown: failure.to_string(), ..OwnError::default() },
     }
 }
 
@@ -92,7 +66,8 @@ fn witnesses(reference: &Method, nodes: usize) -> Result<Vec<Method>, String> {
     });
     let of_second = |element: Element, size: Size| {
         let fem = Fem { element, dilation: Dilation::Standard, reduced: false, size, jitter: None };
-        let (id, family) = (element.name().to_string(), Family::Fem(fem));
+        let id = element.name().to_string();
+        let family = Family::Fem(fem);
         Method { series: id.clone(), id, family, mass: reference.mass }
     };
     if let Size::File(file) = &size {

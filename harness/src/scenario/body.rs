@@ -9,45 +9,15 @@ use geometry::generate::{
 };
 use geometry::quality::InvertedElement;
 use geometry::shapes::{Ball, Cuboid, Cylinder, HalfKidney, Kidney, Shape, SphereShell};
-use geometry::{CellKind, Mesh, Point3, files, pieces, quality};
+use geometry::{CellKind, Mesh, Point3};
 
 use super::expected::{self, narrowest};
 use super::file_body::{self, Fill};
-use super::same_body;
-use crate::Failure;
-use crate::error::Key;
+use super::mesh_file::read;
+use crate::error::{Failure, Key};
 
 /// Most nodes of a mesh; a larger number in a scene for one machine is taken for a typing error.
 pub(super) const MOST_NODES: usize = 3_000_000;
-
-/// Meshes the body in cells of one kind and checks them for inversion.
-///
-/// # Errors
-/// Returns an error if the size or jitter does not apply to the body, if the mesh has too many nodes or
-/// inverted cells, or if a mesh file is of another body.
-pub fn mesh(body: &Body, kind: CellKind, size: &Size, jitter: Option<Jitter>) -> Result<Mesh, Failure> {
-    sound(body, unchecked(body, kind, size, jitter)?, size, jitter)
-}
-
-/// Returns a mesh of the body with the names of its surfaces: that of its file, or one of few cells.
-///
-/// # Errors
-/// Returns an error if the file cannot be read, or if the body is too thin for few cells.
-pub(crate) fn coarse(body: &Body) -> Result<Mesh, Failure> {
-    match body {
-        Body::File(file) if !files::is_surface(&file.path) => read(file, Key::Scene("body.path".into())),
-        _ => mesh(body, CellKind::Tet4, &Size::Level(1), None),
-    }
-}
-
-/// Checks a mesh for inversion, and that a mesh file is of the body.
-fn sound(body: &Body, mesh: Mesh, size: &Size, jitter: Option<Jitter>) -> Result<Mesh, Failure> {
-    quality::check(&mesh).map_err(|bad| inverted(bad, size, jitter))?;
-    if let Size::File(file) = size {
-        same_body::check(body, file, &mesh)?;
-    }
-    Ok(mesh)
-}
 
 /// Returns the body in closed form; `None` for the octant of a shell and for a file, whose shape comes from
 /// [`file_body::load`].
@@ -63,6 +33,10 @@ pub fn shape(body: &Body) -> Option<Arc<dyn Shape + Send + Sync>> {
     }
 }
 
+/// Meshes the body in cells of one kind, without a check for inversion.
+///
+/// # Errors
+/// Returns an error if the size or jitter does not apply to the body or if the mesh has too many nodes.
 pub(super) fn unchecked(
     body: &Body,
     kind: CellKind,
@@ -80,18 +54,7 @@ pub(super) fn unchecked(
         }
         let mesh = match *body {
             Body::Box { min, max } => {
-                let extent: [f64; 3] = std::array::from_fn(|a| max[a] - min[a]);
-                let h = extent.iter().copied().fold(f64::MAX, f64::min) / n as f64;
-                let cells = extent.map(|e| (e / h).round().max(1.0) as usize);
-                if let Some(most) = cells.into_iter().max().filter(|most| *most > MOST_NODES) {
-                    let problem = format!(
-                        "is {:.3e} times as long as it is narrow: it would take {most} nearly cubic cells along its length",
-                        extent.iter().copied().fold(0.0, f64::max)
-                            / extent.iter().copied().fold(f64::MAX, f64::min)
-                    );
-                    let help = "check the units of its extents; for flat cells, give the method size = { cells = [...] }";
-                    return Err(Failure::input(Key::Scene("body".into()), problem, help));
-                }
+                let cells = nearly_cubic(min, max, n)?;
                 few_enough(expected::of_family(body, kind, n as f64))?;
                 cuboid(kind, min, max, cells, [1.0; 3], jitter)
             }
@@ -151,8 +114,23 @@ pub(super) fn unchecked(
     }
 }
 
+/// Numbers of nearly cubic cells along the edges of a box, `n` along the shortest.
+fn nearly_cubic(min: [f64; 3], max: [f64; 3], n: usize) -> Result<[usize; 3], Failure> {
+    let extent: [f64; 3] = std::array::from_fn(|a| max[a] - min[a]);
+    let shortest = extent.iter().copied().fold(f64::MAX, f64::min);
+    let h = shortest / n as f64;
+    let cells = extent.map(|e| (e / h).round().max(1.0) as usize);
+    let Some(most) = cells.into_iter().max().filter(|most| *most > MOST_NODES) else { return Ok(cells) };
+    let problem = format!(
+        "is {:.3e} times as long as it is narrow: it would take {most} nearly cubic cells along its length",
+        extent.iter().copied().fold(0.0, f64::max) / shortest
+    );
+    let help = "check the units of its extents; for flat cells, give the method size = { cells = [...] }";
+    Err(Failure::input(Key::Scene("body".into()), problem, help))
+}
+
 /// The mesh file of a method, whose pieces are joined if the scene requests it of the body.
-fn joined(body: &Body, file: &MeshFile) -> MeshFile {
+pub(super) fn joined(body: &Body, file: &MeshFile) -> MeshFile {
     let join = matches!(body, Body::File(of_body) if of_body.join);
     MeshFile { join, ..file.clone() }
 }
@@ -208,10 +186,10 @@ fn cuboid(
 }
 
 /// Returns the error for an inverted cell, at the key of its cause: the file, the jitter or the size.
-fn inverted(bad: InvertedElement, size: &Size, jitter: Option<Jitter>) -> Failure {
+pub(super) fn inverted(bad: InvertedElement, size: &Size, jitter: Option<Jitter>) -> Failure {
     let (key, help) = match (size, jitter) {
         (Size::File(file), _) => {
-            let problem = format!("gives a mesh in which {}", files::inverted(&file.path, &bad));
+            let problem = format!("gives a mesh in which {}", mesh_files::inverted(&file.path, &bad));
             let help = "the nodes of a cell have to follow the order of the format";
             return Failure::input(Key::Size("file"), problem, help);
         }
@@ -261,55 +239,6 @@ fn nearest_count(family: impl Fn(usize) -> Result<Mesh, Failure>, wanted: usize)
         best = next;
     }
     Ok(best)
-}
-
-/// Reads a mesh file and joins its pieces if the scene requests it.
-pub(super) fn read(file: &MeshFile, key: Key) -> Result<Mesh, Failure> {
-    let mesh = files::read(&file.path, file.unit)
-        .map_err(|bad| Failure::input(key, format!("can't be read: {bad}"), files::READ))?;
-    let pieces = if file.join { pieces::count(&mesh) } else { 1 };
-    if pieces == 1 {
-        return Ok(mesh);
-    }
-    pieces::join(&mesh).map(|(mesh, _)| mesh).ok_or_else(|| {
-        let problem =
-            format!("joins nothing: the {pieces} pieces of {} have no coincident faces", file.path.display());
-        let help = "leave it out, or mesh the parts with matching faces at their interfaces";
-        Failure::input(Key::Scene("body.join".into()), problem, help)
-    })
-}
-
-/// Meshes the body in cells of one kind, or takes the cells of a file as they are.
-///
-/// # Errors
-/// As for [`mesh`], or if cells of several kinds are not of a file or not of one order.
-pub(super) fn mesh_of(
-    body: &Body,
-    element: Element,
-    size: &Size,
-    jitter: Option<Jitter>,
-) -> Result<Mesh, Failure> {
-    if let Some(kind) = element.kind() {
-        return mesh(body, kind, size, jitter);
-    }
-    let Size::File(file) = size else {
-        let problem = format!("makes cells of one kind, not {}", element.name());
-        return Err(Failure::input(Key::Size(""), problem, "take a mesh: size = { file = \"...\" }"));
-    };
-    let read = read(&joined(body, file), Key::Size("file"))?;
-    let of_order = |order| (0..read.cell_count()).all(|cell| read.kind(cell).order() == order);
-    let mesh = match element.order() {
-        order if of_order(order) => read,
-        2 if of_order(1) => raise_order(&read),
-        order => {
-            let (found, other) =
-                (if of_order(2) { "quadratic cells" } else { "cells of both orders" }, 3 - order);
-            let problem = format!("holds {found}, not {}", element.name());
-            let help = format!("take element = \"{}\", or cells of one order", Element::mixed(other).name());
-            return Err(Failure::input(Key::Size("file"), problem, &help));
-        }
-    };
-    sound(body, mesh, size, jitter)
 }
 
 /// Reads a mesh file in cells of one kind. Linear cells are raised to their quadratic kind with straight

@@ -5,15 +5,12 @@ use std::sync::Arc;
 use cases::scene::{self, ErrorKind};
 use efg::{CloudSource, Functions, Integration};
 use geometry::shapes::Shape;
-use geometry::{CellKind, Cloud, CloudError, Mesh, cloud, cloud_from_mesh, files, locate};
+use geometry::{CellKind, Cloud, CloudError, Mesh, cloud, cloud_from_mesh, locate};
 use shape::{length, position};
 
-use super::discretise::dilation;
-use super::{Scenario, body, cloud_file, file_body, grading};
-use crate::Failure;
-use crate::discretise::place;
-use crate::discretise::{Coupled, Dilation, Discretisation, Essential, InnerPoints, Refine};
-use crate::error::Key;
+use super::{Scenario, body, body_mesh, cloud_file, file_body, grading};
+use crate::discretise::{Coupled, Discretisation, Essential, InnerPoints, Refine, place};
+use crate::error::{Failure, Key};
 
 /// Default stabilisation of Nitsche's method with smoothed gradients, times (lambda + 2 mu) / h with h from
 /// the trace inequality. The matrix is definite above 1; with 4, half of the energy is left.
@@ -63,7 +60,7 @@ struct CloudMethod {
     supports: Supports,
     /// Whether nodes act only in their own region.
     separate: bool,
-    dilation: Dilation,
+    dilation: scene::Dilation,
     /// Parameters, random seed and body of an adaptively refined cloud.
     refine: Option<(scene::Refine, u64, Body)>,
 }
@@ -108,7 +105,7 @@ impl Scenario<'_> {
             functions: functions(efg.functions),
             supports,
             separate,
-            dilation: dilation(efg.dilation),
+            dilation: efg.dilation,
             refine,
         };
         method.on(cloud)
@@ -120,7 +117,7 @@ impl Scenario<'_> {
         let scene::Body::File(file) = &self.scene.body else { return Ok(body::shape(&self.scene.body)) };
         let of_mesh = matches!(efg.cloud, scene::Cloud::Mesh { .. } | scene::Cloud::File { .. });
         let by_cells = of_mesh && !matches!(efg.integration, scene::Integration::Grid { .. });
-        if by_cells && !files::is_surface(&file.path) {
+        if by_cells && !mesh_files::is_surface(&file.path) {
             return Ok(None);
         }
         let shape: Body = file_body::load(file)?.surface.clone();
@@ -144,14 +141,14 @@ impl Scenario<'_> {
                 )
             })
         };
-        let cells_of = |size: &scene::Size| body::mesh(&self.scene.body, CellKind::Tet4, size, None);
+        let cells_of = |size: &scene::Size| body_mesh::mesh(&self.scene.body, CellKind::Tet4, size, None);
         let background = |count: usize| match &efg.background {
             Some(size) => cells_of(size).map_err(Failure::of_background),
             None => cells_of(&scene::Size::Nodes(count)),
         };
         Ok(match &efg.cloud {
             scene::Cloud::Mesh { size, jitter } => {
-                let mesh = body::mesh(&self.scene.body, CellKind::Tet4, size, *jitter)?;
+                let mesh = body_mesh::mesh(&self.scene.body, CellKind::Tet4, size, *jitter)?;
                 let background = match &efg.background {
                     Some(size) => cells_of(size).map_err(Failure::of_background)?,
                     None => mesh.clone(),
@@ -213,7 +210,8 @@ impl CloudMethod {
                 on: Arc::new(move |cloud| method.on(cloud)),
             }
         });
-        let (supports, shape_functions) = (Some(self.supports(&cloud)), self.shape_functions());
+        let supports = Some(self.supports(&cloud));
+        let shape_functions = self.shape_functions();
         let method = self.clone();
         Ok(Discretisation {
             nodes: Arc::new(nodes),

@@ -4,11 +4,10 @@ use std::collections::HashMap;
 
 use cases::scene::MeshFile;
 use geometry::shapes::Shape;
-use geometry::{Cloud, Mesh, Point3, cloud_from_mesh, files, locate, read_points};
+use geometry::{Cloud, Mesh, Point3, cloud_from_mesh, locate, read_points};
 
-use crate::Failure;
 use crate::adapter::npy;
-use crate::error::Key;
+use crate::error::{Failure, Key};
 
 /// Largest distance beyond the surface that counts as on the surface, over the body's diagonal: the rounding
 /// of text with six digits.
@@ -89,9 +88,9 @@ fn beyond(shape: &(dyn Shape + Send + Sync), p: &Point3) -> f64 {
 /// Returns an error if the file cannot be read, has another number of nodes than `nodes`, or has coincident
 /// nodes.
 pub fn read(file: &MeshFile, nodes: Option<usize>) -> Result<Read, Failure> {
-    let (points, lines, mesh) = if files::is_mesh(&file.path) {
-        let mesh = files::read(&file.path, file.unit)
-            .map_err(|bad| Failure::input(FILE, format!("can't be read: {bad}"), files::READ))?;
+    let (points, lines, mesh) = if mesh_files::is_mesh(&file.path) {
+        let mesh = mesh_files::read(&file.path, file.unit)
+            .map_err(|bad| Failure::input(FILE, format!("can't be read: {bad}"), mesh_files::READ))?;
         (mesh.points().to_vec(), Vec::new(), Some(mesh))
     } else if file.path.extension().is_some_and(|suffix| suffix == "npy") {
         (array(file)?, Vec::new(), None)

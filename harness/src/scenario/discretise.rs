@@ -5,11 +5,10 @@ use std::sync::Arc;
 use cases::scene::{self, Family};
 use geometry::{Mesh, Point3, Vector3};
 
-use super::{Scenario, body};
-use crate::Failure;
+use super::{Scenario, body_mesh};
+use crate::discretise::Discretisation;
 use crate::discretise::place::{self, tolerance};
-use crate::discretise::{Dilation, Discretisation};
-use crate::error::Key;
+use crate::error::{Failure, Key};
 
 impl Scenario<'_> {
     /// Discretises the scenario's method: its nodes, cells and rules.
@@ -27,9 +26,9 @@ impl Scenario<'_> {
     }
 
     pub(super) fn elements(&self, fem: &scene::Fem) -> Result<Discretisation, Failure> {
-        let mesh = body::mesh_of(&self.scene.body, fem.element, &fem.size, fem.jitter)?;
+        let mesh = body_mesh::mesh_of(&self.scene.body, fem.element, &fem.size, fem.jitter)?;
         let mesh = Arc::new(self.with_regions(mesh)?);
-        Ok(Discretisation::of_elements(mesh, fem.element.order(), fem.reduced, dilation(fem.dilation)))
+        Ok(Discretisation::of_elements(mesh, fem.element.order(), fem.reduced, fem.dilation))
     }
 
     /// Numbers the cells by material: 0 for the scene's material, k + 1 for its k-th region.
@@ -90,15 +89,5 @@ impl Scenario<'_> {
             second.name, names[1], first.name, names[0]
         );
         Err(Failure::input(key, problem, "name groups that share no cell"))
-    }
-}
-
-pub(super) fn dilation(dilation: scene::Dilation) -> Dilation {
-    match dilation {
-        scene::Dilation::Standard => Dilation::Standard,
-        scene::Dilation::ElementMean => Dilation::Element,
-        scene::Dilation::NodalMean => Dilation::Nodal,
-        scene::Dilation::NodalNear => Dilation::Near,
-        scene::Dilation::Mixed => Dilation::Mixed,
     }
 }

@@ -208,7 +208,8 @@ fn steps(scene: &Scene, across: f64) -> f64 {
         Procedure::Static(path) => path.steps as f64,
         Procedure::ImplicitDynamic(implicit) => implicit.ramp.steps as f64,
         Procedure::Explicit(explicit) => {
-            let (law, density) = (scene.material.law(), scene.material.density.unwrap_or(1e3));
+            let law = scene.material.law();
+            let density = scene.material.density.unwrap_or(1e3);
             let speed = ((law.lambda() + 2.0 * law.mu()) / density).sqrt();
             // The height of an organ's flat cells is less than a third of the mean cell size.
             let stable = 0.3 * narrowest(&scene.body) / across / speed;
@@ -246,7 +247,8 @@ method = [{ id = "m", family = "fem", element = "ELEMENT", size = SIZE }]
     fn nodes_are_those_of_the_mesh_within_a_third() {
         // 16 x 16 x 8 cells: corners, and midpoints of edges for quadratic elements.
         let corners = 17.0 * 17.0 * 9.0;
-        let (tet10, hex20) = (33.0 * 33.0 * 17.0, corners + 16.0 * 17.0 * 9.0 * 2.0 + 17.0 * 17.0 * 8.0);
+        let tet10 = 33.0 * 33.0 * 17.0;
+        let hex20 = corners + 16.0 * 17.0 * 9.0 * 2.0 + 17.0 * 17.0 * 8.0;
         for (element, exact) in [("tet4", corners), ("hex8", corners), ("tet10", tet10), ("hex20", hex20)] {
             for size in ["{ level = 3 }", "{ spacing = \"2.5 mm\" }", "{ cells = [16, 16, 8] }"] {
                 let found = of("{ kind = \"static\" }", element, size).nodes;

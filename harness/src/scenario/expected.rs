@@ -110,7 +110,7 @@ pub(super) fn of_spacing(body: &Body, kind: CellKind, spacing: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::body;
+    use super::super::body_mesh;
     use super::*;
 
     /// Any mesh refused by the estimate would be refused after meshing: no estimate exceeds the true count,
@@ -129,7 +129,7 @@ mod tests {
         ];
         for (body, kind) in bodies.iter().flat_map(|body| CellKind::ALL.map(|kind| (body, kind))) {
             let size = Size::Level(3);
-            let made = body::mesh(body, kind, &size, None).unwrap().points().len() as f64;
+            let made = body_mesh::mesh(body, kind, &size, None).unwrap().points().len() as f64;
             let foreseen = nodes(body, kind, &size);
             assert!(foreseen <= made && foreseen > 0.5 * made, "{body:?} {kind:?}: {foreseen} of {made}");
         }

@@ -8,10 +8,9 @@ use std::time::Duration;
 use cases::scene::{self, Family, ProcedureKind, Setting};
 
 use super::Scenario;
-use crate::Failure;
 use crate::adapter::{self, About, Outside};
 use crate::discretise::Discretisation;
-use crate::error::{Foreign, ForeignStatus, Key};
+use crate::error::{Failure, Foreign, ForeignStatus, Key};
 use crate::process::Limits;
 
 impl Scenario<'_> {

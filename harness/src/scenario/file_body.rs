@@ -10,10 +10,10 @@ use cases::scene::MeshFile;
 use geometry::generate::to_tets;
 use geometry::stuffing::{Stuffing, stuff, stuff_with_nodes, stuff_with_quadratic_nodes};
 use geometry::surface::BoundaryFaces;
-use geometry::{Facet, Mesh, Point3, Surface, Vector3, files, locate};
+use geometry::{Facet, Mesh, Point3, Surface, Vector3, locate};
 
-use crate::Failure;
-use crate::error::Key;
+use super::mesh_file;
+use crate::error::{Failure, Key};
 
 /// The surface of a file, and the mesh it bounds if the file has one.
 pub struct FileBody {
@@ -59,12 +59,12 @@ pub fn load(file: &MeshFile) -> Result<Arc<FileBody>, Failure> {
         return Ok(body.clone());
     }
     let key = || Key::Scene("body.path".into());
-    let (surface, mesh) = if files::is_surface(&file.path) {
-        let surface = files::read_surface(&file.path, file.unit)
-            .map_err(|bad| Failure::input(key(), format!("can't be read: {bad}"), files::SURFACES))?;
+    let (surface, mesh) = if mesh_files::is_surface(&file.path) {
+        let surface = mesh_files::read_surface(&file.path, file.unit)
+            .map_err(|bad| Failure::input(key(), format!("can't be read: {bad}"), mesh_files::SURFACES))?;
         (surface, None)
     } else {
-        let mesh = super::body::read(file, key())?;
+        let mesh = mesh_file::read(file, key())?;
         let boundary = BoundaryFaces::new(&mesh).map_err(|bad| {
             let problem = format!(
                 "has a boundary that is not a closed surface (faces counted from 1, lengths in m): {bad}"

@@ -4,8 +4,7 @@ use cases::scene::{Region, Relation};
 use geometry::shapes::Shape;
 use geometry::{Point3, Refinement};
 
-use crate::Failure;
-use crate::error::Key;
+use crate::error::{Failure, Key};
 
 /// Ratio of coarse to fine spacing of a graded cloud.
 const RATIO: f64 = 2.5;

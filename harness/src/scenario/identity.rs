@@ -11,33 +11,40 @@ impl Scenario<'_> {
     /// Returns the identity of this run.
     pub fn identity(&self) -> Identity {
         let large = !matches!(self.scene.procedure.kind(), ProcedureKind::Linear | ProcedureKind::Modes);
-        let identity = Identity {
+        Identity {
             case: self.case.clone(),
             purpose: purpose(self.scene.purpose),
             published: self.scene.published.map_or("", |p| p.name()).into(),
-            method: self.method.id.clone(),
-            series: self.method.series.clone(),
             law: large.then(|| self.scene.material.name().into()),
-            mass: self.method.mass.map(|mass| mass.name().into()),
             // Computed from a law's moduli, the value would be 0.49500000000000005. Twelve digits restore the
             // scene's value.
             poisson: self.laws().map_or(0.0, |(_, materials)| (materials[0].poisson() * 1e12).round() / 1e12),
             level: self.level,
             axis: self.scene.varied.as_ref().map_or(String::new(), |(name, _)| name.clone()),
             at: self.scene.varied.as_ref().map(|(_, value)| *value),
-            ..Identity::default()
-        };
-        match &self.method.family {
-            Family::Fem(fem) => of_elements(fem, identity),
-            Family::Efg(efg) => of_cloud(efg, identity),
-            Family::External(external) => Identity {
-                family: records::Family::External,
-                adapter: Some(adapter::label(&external.adapter, &external.settings)),
-                variant: external.elements.element.name().into(),
-                seed: external.elements.jitter.map_or(0, |j| j.seed),
-                ..identity
-            },
+            ..method_identity(&self.method)
         }
+    }
+}
+
+/// Returns what a scene says of a method, without the size.
+pub(crate) fn method_identity(method: &scene::Method) -> Identity {
+    let identity = Identity {
+        method: method.id.clone(),
+        series: method.series.clone(),
+        mass: method.mass.map(|mass| mass.name().into()),
+        ..Identity::default()
+    };
+    match &method.family {
+        Family::Fem(fem) => of_elements(fem, identity),
+        Family::Efg(efg) => of_cloud(efg, identity),
+        Family::External(external) => Identity {
+            family: records::Family::External,
+            adapter: Some(adapter::label(&external.adapter, &external.settings)),
+            variant: external.elements.element.name().into(),
+            seed: external.elements.jitter.map_or(0, |j| j.seed),
+            ..identity
+        },
     }
 }
 

@@ -3,8 +3,7 @@
 use cases::scene::{ErrorKind, Material};
 use material::{Law, LinearElastic, Material as _};
 
-use crate::Failure;
-use crate::error::Key;
+use crate::error::{Failure, Key};
 
 /// Returns the law of the material at `key` of the scene. A given Poisson's ratio replaces that of the law,
 /// if the law has one.
@@ -29,7 +28,8 @@ pub fn small_strain(law: &Law, key: &str) -> Result<LinearElastic, Failure> {
         return Ok(*linear);
     }
     let (lambda, mu) = (law.lambda(), law.mu());
-    let (young, poisson) = (mu * (3.0 * lambda + 2.0 * mu) / (lambda + mu), 0.5 * lambda / (lambda + mu));
+    let young = mu * (3.0 * lambda + 2.0 * mu) / (lambda + mu);
+    let poisson = 0.5 * lambda / (lambda + mu);
     LinearElastic::new(young, poisson)
         .map_err(|bad| Failure::at(ErrorKind::Invalid, Key::Scene(key.into()), bad.to_string(), ""))
 }

@@ -7,8 +7,7 @@ use efg::EfgError;
 use explicit::ExplicitError;
 use statics::{SolveError, StaticError, TimeError};
 
-use crate::Failure;
-use crate::error::{Finding, Key};
+use crate::error::{Failure, Finding, Key};
 use crate::scenario::Scenario;
 
 impl Scenario<'_> {

@@ -2,6 +2,7 @@
 //! solution.
 
 mod body;
+mod body_mesh;
 mod cloud;
 mod cloud_file;
 mod discretise;
@@ -13,14 +14,16 @@ mod grading;
 mod identity;
 mod law;
 mod locate;
+mod mesh_file;
 mod notes;
 mod same_body;
 pub(crate) mod setup;
 mod tools;
 
-pub(crate) use body::{coarse, point};
+pub(crate) use body::point;
+pub(crate) use body_mesh::coarse;
 pub(crate) use estimate::{Estimate, estimate, of_reference, too_large};
-pub(crate) use identity::{purpose, rule};
+pub(crate) use identity::{method_identity, purpose, rule};
 pub(crate) use notes::warnings;
 pub(crate) use tools::PlacedTool;
 
@@ -29,9 +32,8 @@ use cases::scene::{self, LoadKind, Prescribed, Reference, Scene, VectorField};
 use geometry::{Point3, Vector3};
 use material::{Law, LinearElastic, Prony};
 
-use crate::Failure;
-use crate::error::Key;
-use setup::{Applied, Load, Setup, Support};
+use crate::error::{Failure, Key};
+use setup::{Applied, Load, Setup, Support, SurfaceLoad};
 use tools::tools;
 
 /// A scene's method with the changes of a study.
@@ -79,8 +81,24 @@ impl Scenario<'_> {
         let medium = self.medium(&laws[0], materials[0])?;
         let e = &medium;
         let exact = self.exact(e)?;
-        let supports = self
-            .scene
+        Ok(Setup {
+            laws,
+            materials,
+            densities: self.scene.materials().map(|(_, material)| material.density).collect(),
+            supports: self.supports(e)?,
+            loads: self.loads(e)?,
+            relaxation: self.relaxation()?,
+            means: self.scene.output.means.clone(),
+            tools: tools(self.scene)?,
+            procedure: self.scene.procedure,
+            mass: self.method.mass,
+            contact: exact.as_ref().and_then(|exact| exact.contact()),
+            exact: exact.filter(|exact| exact.contact().is_none()),
+        })
+    }
+
+    fn supports(&self, e: &Medium) -> Result<Vec<Support>, Failure> {
+        self.scene
             .supports
             .iter()
             .enumerate()
@@ -106,22 +124,27 @@ impl Scenario<'_> {
                     }),
                 })
             })
-            .collect::<Result<Vec<_>, Failure>>()?;
-        let loads = self
-            .scene
+            .collect()
+    }
+
+    fn loads(&self, e: &Medium) -> Result<Vec<Load>, Failure> {
+        self.scene
             .loads
             .iter()
             .enumerate()
             .map(|(index, load)| {
+                let on = Applied::Surface;
                 let applied = match load.kind.clone() {
                     LoadKind::Traction(VectorField::Exact) => {
                         let exact = self.exact(e)?.ok_or_else(no_exact)?;
-                        Applied::Traction(Box::new(move |x, n| Ok(exact.traction(x, n))))
+                        on(SurfaceLoad::Traction(Box::new(move |x, n| Ok(exact.traction(x, n)))))
                     }
                     LoadKind::Traction(VectorField::Components(c)) => {
-                        Applied::Traction(Box::new(move |x, _| components(&c, x)))
+                        on(SurfaceLoad::Traction(Box::new(move |x, _| components(&c, x))))
                     }
-                    LoadKind::Pressure(field) => Applied::Pressure(Box::new(move |x| value(&field, x))),
+                    LoadKind::Pressure(field) => {
+                        on(SurfaceLoad::Pressure(Box::new(move |x| value(&field, x))))
+                    }
                     LoadKind::Body(VectorField::Exact) => {
                         let exact = self.exact(e)?.ok_or_else(no_exact)?;
                         Applied::Body(Box::new(move |x| Ok(exact.body_force(x))))
@@ -141,21 +164,7 @@ impl Scenario<'_> {
                     along_normal,
                 })
             })
-            .collect::<Result<Vec<_>, Failure>>()?;
-        Ok(Setup {
-            laws,
-            materials,
-            densities: self.scene.materials().map(|(_, material)| material.density).collect(),
-            relaxation: self.relaxation()?,
-            supports,
-            loads,
-            means: self.scene.output.means.clone(),
-            tools: tools(self.scene)?,
-            procedure: self.scene.procedure,
-            mass: self.method.mass,
-            contact: exact.as_ref().and_then(|exact| exact.contact()),
-            exact: exact.filter(|exact| exact.contact().is_none()),
-        })
+            .collect()
     }
 
     fn relaxation(&self) -> Result<Vec<Option<Prony>>, Failure> {

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use cases::scene::{self, Body, Scene, Size};
 use catalogue::warning;
-use geometry::{Mesh, files, pieces, quality};
+use geometry::{Mesh, pieces, quality};
 
 use super::file_body;
 use crate::discretise::place::{self, tolerance};
@@ -36,9 +36,9 @@ pub(crate) fn warnings(scene: &Scene, method: &scene::Method, mesh: &Mesh, nodes
 
 /// Warns of parts of a mesh file other than its mesh.
 fn left_out(file: &Path) -> Option<Warning> {
-    let mut parts = files::left_out(file);
-    parts.retain(|part| part.kind != files::Kind::Values);
-    let joins = parts.iter().filter(|part| part.kind == files::Kind::Joins).count();
+    let mut parts = mesh_files::left_out(file);
+    parts.retain(|part| part.kind != mesh_files::Kind::Values);
+    let joins = parts.iter().filter(|part| part.kind == mesh_files::Kind::Joins).count();
     (!parts.is_empty()).then(|| {
         let words = match joins {
             0 => "",
@@ -46,7 +46,7 @@ fn left_out(file: &Path) -> Option<Warning> {
                 ". The first of these connect or support parts of the body: without them the problem is a different one"
             }
         };
-        let list = files::summary(&parts).join(", ");
+        let list = mesh_files::summary(&parts).join(", ");
         let message = format!("only the mesh of {} is read; ignored parts: {list}{words}", file.display());
         Warning::new(&warning::LEFT_OUT, joins as f64, "body", message)
     })
@@ -111,7 +111,8 @@ fn cut(index: usize, region: &scene::MaterialRegion, mesh: &Mesh) -> Option<Warn
         let sides: Vec<[bool; 2]> = mesh.cell_points(cell).map(holds).collect();
         sides.contains(&[true; 2]) && sides.contains(&[false; 2])
     };
-    let (cells, all) = ((0..mesh.cell_count()).filter(is_cut).count(), mesh.cell_count());
+    let cells = (0..mesh.cell_count()).filter(is_cut).count();
+    let all = mesh.cell_count();
     if cells == 0 {
         return None;
     }

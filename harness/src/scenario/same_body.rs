@@ -1,13 +1,12 @@
 //! Checks that a method's mesh file is of the scene's body: same position, extent and volume.
 
 use cases::scene::{Body, MeshFile, Size};
-use geometry::{CellKind, Mesh, Point3, Vector3, files, quality};
+use geometry::{CellKind, Mesh, Point3, Vector3, quality};
 use shape::position;
 
-use super::body;
-use crate::Failure;
+use super::{body, mesh_file};
 use crate::discretise::place;
-use crate::error::Key;
+use crate::error::{Failure, Key};
 
 /// Meshes of one curved body differ by more than rounding, because they cut its corners. The outline may
 /// differ by this fraction of the body's size, or of a cell's edge on coarse meshes. The volume may differ by
@@ -49,12 +48,13 @@ impl Extent {
 pub fn check(body: &Body, file: &MeshFile, mesh: &Mesh) -> Result<(), Failure> {
     let of_body = match body {
         Body::File(of_body) if (&of_body.path, of_body.unit) == (&file.path, file.unit) => return Ok(()),
-        Body::File(of_body) if !files::is_surface(&of_body.path) => {
-            body::read(of_body, Key::Scene("body.path".into()))?
+        Body::File(of_body) if !mesh_files::is_surface(&of_body.path) => {
+            mesh_file::read(of_body, Key::Scene("body.path".into()))?
         }
         shape => body::unchecked(shape, CellKind::Tet4, &Size::Nodes(NODES), None)?,
     };
-    let (own, whole) = (Extent::of(mesh), Extent::of(&of_body));
+    let own = Extent::of(mesh);
+    let whole = Extent::of(&of_body);
     let edge = own.edge.max(whole.edge);
     let allowed = (OUTLINE * whole.size().max()).max(OF_EDGE * edge);
     let off = (own.min - whole.min).amax().max((own.max - whole.max).amax());

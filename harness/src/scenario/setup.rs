@@ -1,14 +1,12 @@
 //! The problem on a body independent of the method: materials, supports and loads as functions of position.
 
 use cases::exact::{Contact, Exact};
-use cases::scene::{Mass, Procedure};
+use cases::scene::{Mass, Place, Procedure};
 use geometry::{Point3, Vector3};
 use material::{Law, LinearElastic, Prony};
 
-use super::PlacedTool;
-use crate::Failure;
-use crate::discretise::place::Place;
-use crate::error::Key;
+use super::tools::PlacedTool;
+use crate::error::{Failure, Key};
 
 /// A vector field of position (m); an error names the position of a value that is not finite.
 pub type VectorField = Box<dyn Fn(&Point3) -> Result<Vector3, String> + Send + Sync>;
@@ -31,12 +29,18 @@ pub struct Support {
 
 /// The kind of a load, with its field.
 pub enum Applied {
+    /// On a part of the surface.
+    Surface(SurfaceLoad),
+    /// Force per reference volume, N/m^3, everywhere.
+    Body(VectorField),
+}
+
+/// The kind of a load on a surface, with its field.
+pub enum SurfaceLoad {
     /// Force per reference area, Pa.
     Traction(TractionField),
     /// Pressure against the outward normal, Pa.
     Pressure(ScalarField),
-    /// Force per reference volume, N/m^3, everywhere.
-    Body(VectorField),
 }
 
 /// A load and the part of the body it acts on.

@@ -5,8 +5,7 @@ use contact::{ContactError, ContactLaw, Drive, Tool};
 use geometry::{Point3, Vector3};
 use shape::Matrix3;
 
-use crate::Failure;
-use crate::error::Key;
+use crate::error::{Failure, Key};
 
 /// A tool with its name and its drive.
 pub struct PlacedTool {
@@ -54,7 +53,8 @@ fn placed(tool: &scene::Tool, index: usize) -> Result<PlacedTool, Failure> {
         None => ContactLaw::frictionless(tool.penalty),
     };
     let turned = tool.axis.map_or_else(Matrix3::identity, |axis| Tool::turned_to(&Vector3::from(axis)));
-    let (along, law) = (Vector3::from(tool.along), law.map_err(wrong)?);
+    let along = Vector3::from(tool.along);
+    let law = law.map_err(wrong)?;
     let solver = Tool::new(tool.shape, Point3::from(tool.at), turned, along, law).map_err(wrong)?;
     Ok(PlacedTool { name: tool.name.clone(), tool: solver, turned, drive, over: tool.over })
 }

@@ -1,11 +1,27 @@
 //! Arguments that select the runs of a study and the folder of their results.
 
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
+use catalogue::Dimension;
 use clap::Args;
 
-use super::Filters;
-use super::isolated::ApartArgs;
+use super::filters::Filters;
+
+/// Isolation of runs from each other.
+#[derive(Args)]
+pub struct ApartArgs {
+    /// Execute each run, with its reference, in its own process: a crash, an endless loop or a lack of memory
+    /// affects only this run
+    #[arg(long)]
+    pub isolate: bool,
+    /// Time limit of a run, including its reference, such as "60 s" or "10 min"
+    #[arg(long, value_name = "TIME", requires = "isolate", value_parser = duration)]
+    pub time_limit: Option<Duration>,
+    /// Memory limit of a run, such as 500MB or "2 GiB" (Linux only)
+    #[arg(long, value_name = "SIZE", requires = "isolate", value_parser = bytes)]
+    pub memory_limit: Option<u64>,
+}
 
 /// Arguments of `verify`.
 #[derive(Args)]
@@ -113,4 +129,35 @@ fn shard(text: &str) -> Result<(usize, usize), String> {
     let (k, n) = text.split_once('/').ok_or(fix)?;
     let (k, n): (usize, usize) = (k.parse().map_err(|_| fix)?, n.parse().map_err(|_| fix)?);
     if (1..=n).contains(&k) { Ok((k, n)) } else { Err(fix.into()) }
+}
+
+fn duration(text: &str) -> Result<Duration, String> {
+    let seconds = Dimension::Time.read_positive(text).map_err(|bad| bad.to_string())?;
+    Duration::try_from_secs_f64(seconds).map_err(|bad| bad.to_string())
+}
+
+fn bytes(text: &str) -> Result<u64, String> {
+    Dimension::Bytes.read_positive(text).map(|bytes| bytes as u64).map_err(|bad| bad.to_string())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn limits_have_units() {
+        assert_eq!(duration("0.5 s"), Ok(Duration::from_millis(500)));
+        assert_eq!(duration("2min"), Ok(Duration::from_secs(120)));
+        for text in ["60", "0 s", "-1 s", "nan s", "inf s", "soon", "1e300 s", "1 GB"] {
+            assert!(duration(text).is_err(), "{text}");
+        }
+        let sizes = [("500MB", 500_000_000), ("1.5 GB", 1_500_000_000), ("3 KiB", 3072), ("7 B", 7)];
+        for (text, size) in sizes {
+            assert_eq!(bytes(text), Ok(size), "{text}");
+        }
+        for text in ["", "4096", "0 B", "MB", "-1GB", "2 XB", "2 s"] {
+            assert!(bytes(text).is_err(), "{text}");
+        }
+        assert!(bytes("500").unwrap_err().contains("write \"500 GB\""), "{:?}", bytes("500"));
+    }
 }

@@ -10,23 +10,25 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
+use super::args::VerifyArgs;
 use super::files::{files, versions};
 use super::isolated::Apart;
+use super::plan::{QUICK, REPEATS, StudyPlan};
 use super::progress::{Progress, Running};
 use super::store::{Accept, Store};
 use super::task::{TaskResult, failed, key};
-use super::tasks::Task;
-use super::{Plan, QUICK, REPEATS, VerifyArgs};
-use crate::Failure;
+use super::tasks::{Task, named};
+use crate::error::Failure;
 use crate::outcome::Counters;
 use crate::run::{Group, RunOptions, case_name};
+use crate::scenario::rule;
 
 /// Time between two checks for the results of other processes.
 const LOOK: Duration = Duration::from_millis(20);
 
 /// State of a running study.
 pub(super) struct Work<'a> {
-    pub(super) plan: &'a Plan,
+    pub(super) plan: &'a StudyPlan,
     pub(super) args: &'a VerifyArgs,
     pub(super) store: &'a Store,
     /// Runner that starts a process for each task, if requested.
@@ -162,7 +164,7 @@ impl Work<'_> {
     }
 }
 
-impl Plan {
+impl StudyPlan {
     /// Indices of the tasks, grouped by scene and Poisson's ratio, in the order of the first task of each
     /// group.
     fn groups(&self) -> Vec<Vec<usize>> {
@@ -188,10 +190,10 @@ impl Plan {
         let repeats = if args.quick { QUICK } else { REPEATS };
         let Task { method, level, poisson, .. } = task;
         let RunOptions { picture, frames, split, states: _ } = options;
-        let case = case_name(scene);
-        let what = format!("{case} {method:?} {level} {poisson:?} {picture} {split:?} {frames} {repeats:?}");
         let versions = versions(scene, method);
-        let what = if versions.is_empty() { what } else { format!("{what} {versions:?}") };
+        let run = (case_name(scene), named(method), level, poisson);
+        let done = (picture, frames, split.map(rule), repeats.most, repeats.seconds);
+        let what = serde_json::to_string(&(run, done, versions)).expect("texts and numbers");
         key(text, &files(scene, method), &what)
     }
 
@@ -233,7 +235,8 @@ impl Plan {
 
     /// Result of one method. If its reference ended early, that is the result's failure.
     fn compared(&self, task: &Task, group: &Group, options: RunOptions) -> TaskResult {
-        let (case, method) = (case_name(&self.scenes[task.scene].2), &task.method);
+        let case = case_name(&self.scenes[task.scene].2);
+        let method = &task.method;
         let run = || group.run(&group.scenario(task.method.clone(), task.level), options);
         let mut result = match caught(run) {
             Ok(Ok(outcome)) => TaskResult::finished(&outcome),

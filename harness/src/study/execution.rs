@@ -4,13 +4,17 @@
 use std::path::Path;
 use std::sync::Arc;
 
+use super::args::VerifyArgs;
 use super::events::Events;
 use super::folder::{self, Folder};
-use super::{Finished, Plan, VerifyArgs, clean, merge};
-use crate::Failure;
+use super::merge;
+use super::plan::StudyPlan;
+use super::results::FinishedStudy;
+use super::store::clean;
+use crate::error::Failure;
 use crate::outcome::Watch;
 
-impl Plan {
+impl StudyPlan {
     /// Sets the watch of the runs.
     pub fn watched_by(&mut self, watch: Arc<Watch>) {
         self.watch = Some(watch);
@@ -30,14 +34,14 @@ impl Plan {
         args: &VerifyArgs,
         study: &Path,
         events: Option<&Events>,
-    ) -> Result<Finished, Failure> {
+    ) -> Result<FinishedStudy, Failure> {
         if let (false, Some(refused)) = (args.force, self.too_large(args).into_iter().next()) {
             return Err(Failure::Scene(Box::new(refused)));
         }
         let folder = folder::take(study, &args.out)?;
-        clean(args);
+        clean(&args.out);
         let finished = self.execute_taken(args, study, events, &folder);
-        folder.close(|| clean(args));
+        folder.close(|| clean(&args.out));
         finished
     }
 
@@ -47,7 +51,7 @@ impl Plan {
         study: &Path,
         events: Option<&Events>,
         folder: &Folder,
-    ) -> Result<Finished, Failure> {
+    ) -> Result<FinishedStudy, Failure> {
         folder.begin(study)?;
         merge::note(args, study)?;
         let mut finished = self.execute_watched(args, events);

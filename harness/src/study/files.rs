@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use cases::scene::{self, Scene};
 
-use super::Plan;
+use super::plan::StudyPlan;
 use super::tasks::Task;
 use crate::adapter::{self, Found};
 
@@ -34,7 +34,7 @@ pub(super) fn files(scene: &Scene, method: &scene::Method) -> Vec<PathBuf> {
                 .flat_map(|folder| adapter.files().map(|(name, _)| folder.join(name)).collect::<Vec<_>>()),
         );
     }
-    let included: Vec<PathBuf> = found.iter().flat_map(|file| geometry::files::included(file)).collect();
+    let included: Vec<PathBuf> = found.iter().flat_map(|file| mesh_files::included(file)).collect();
     found.extend(included);
     found.sort();
     found.dedup();
@@ -46,7 +46,7 @@ pub(crate) fn note_inputs(scene: &Scene) {
     scene.methods.iter().flat_map(|method| files(scene, method)).for_each(|file| disk::input(&file));
 }
 
-impl Plan {
+impl StudyPlan {
     /// Registers all files that the runs read as inputs, so that no output overwrites them.
     pub(crate) fn note_inputs(&self) {
         let of = |task: &Task| files(&self.scenes[task.scene].2, &task.method);

@@ -7,7 +7,7 @@ use std::io::{ErrorKind, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use crate::Failure;
+use crate::error::Failure;
 
 /// Lock file, which contains the ids of the processes in the folder. The system releases the lock of a
 /// process that dies.
@@ -180,7 +180,8 @@ pub(crate) fn replaced(out: &Path) -> Option<String> {
 
 /// Refuses a folder that holds the results of another file.
 fn free_for(file: &Path, out: &Path) -> Result<(), String> {
-    let (here, wanted) = (records::source_of(out), source(file));
+    let here = records::source_of(out);
+    let wanted = source(file);
     match here {
         Some(here) if here != wanted => Err(format!(
             "{} holds the results of {here}; give {wanted} its own folder, such as --out {}-{}",

@@ -3,8 +3,10 @@
 
 use std::collections::BTreeMap;
 
+use super::args::VerifyArgs;
+use super::plan::{QUICK, REPEATS, StudyPlan};
+use super::store::Store;
 use super::tasks::Task;
-use super::{Plan, QUICK, REPEATS, VerifyArgs, store};
 use crate::scenario::{estimate, of_reference};
 
 /// Expected times of the tasks of a plan, all repeats included.
@@ -19,14 +21,14 @@ pub(super) struct Foreseen {
     of_all: f64,
 }
 
-impl Plan {
+impl StudyPlan {
     /// Expected times of the tasks, from the times stored in the folder `--times`.
     pub(super) fn foreseen(&self, args: &VerifyArgs) -> Foreseen {
         let estimated: Vec<f64> = self.tasks.iter().map(|task| self.estimated(task, args)).collect();
         let stored = args
             .times
             .as_ref()
-            .map(|folder| store(&VerifyArgs { out: folder.clone(), ..VerifyArgs::of(folder) }));
+            .map(|folder| Store::of(&VerifyArgs { out: folder.clone(), ..VerifyArgs::of(folder) }));
         let took = |index: usize| stored.as_ref()?.seconds(&self.key(index, args));
         let known: Vec<Option<f64>> = (0..self.tasks.len()).map(took).collect();
         let ratios = || {

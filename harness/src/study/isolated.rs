@@ -5,35 +5,21 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, ExitStatus, Stdio};
 use std::time::{Duration, Instant};
 
-use catalogue::Dimension;
 use clap::Args;
 
+use super::args::VerifyArgs;
+use super::plan::StudyPlan;
 use super::store::Store;
 use super::task::TaskResult;
-use super::{Plan, VerifyArgs};
-use crate::Failure;
 use crate::adapter;
-use crate::process::{Started, group, last_words};
+use crate::error::Failure;
+use crate::process::group;
+use crate::process::group::{Started, last_words};
 use crate::run::case_name;
 
 /// Shortest and longest time between two checks whether a process has ended.
 const SHORTEST_PAUSE: Duration = Duration::from_micros(200);
 const LONGEST_PAUSE: Duration = Duration::from_millis(50);
-
-/// Isolation of runs from each other.
-#[derive(Args)]
-pub struct ApartArgs {
-    /// Execute each run, with its reference, in its own process: a crash, an endless loop or a lack of memory
-    /// affects only this run
-    #[arg(long)]
-    pub isolate: bool,
-    /// Time limit of a run, including its reference, such as "60 s" or "10 min"
-    #[arg(long, value_name = "TIME", requires = "isolate", value_parser = duration)]
-    pub time_limit: Option<Duration>,
-    /// Memory limit of a run, such as 500MB or "2 GiB" (Linux only)
-    #[arg(long, value_name = "SIZE", requires = "isolate", value_parser = bytes)]
-    pub memory_limit: Option<u64>,
-}
 
 /// Arguments of the hidden command `experiment`: one run of a study in a process of its own.
 #[derive(Args)]
@@ -60,15 +46,6 @@ pub struct ExperimentArgs {
     pub memory_limit: Option<u64>,
 }
 
-fn duration(text: &str) -> Result<Duration, String> {
-    let seconds = Dimension::Time.read_positive(text).map_err(|bad| bad.to_string())?;
-    Duration::try_from_secs_f64(seconds).map_err(|bad| bad.to_string())
-}
-
-fn bytes(text: &str) -> Result<u64, String> {
-    Dimension::Bytes.read_positive(text).map(|bytes| bytes as u64).map_err(|bad| bad.to_string())
-}
-
 /// Runner that starts a process for each run.
 pub(super) struct Apart<'a> {
     args: &'a VerifyArgs,
@@ -89,7 +66,7 @@ impl<'a> Apart<'a> {
     }
 
     /// Runs a task and returns its result, or the failure that corresponds to the end of its process.
-    pub(super) fn run(&self, plan: &Plan, index: usize, key: &str) -> TaskResult {
+    pub(super) fn run(&self, plan: &StudyPlan, index: usize, key: &str) -> TaskResult {
         let task = &plan.tasks[index];
         let answer = self.store.answer(key);
         let _ = disk::remove(&answer);
@@ -181,7 +158,7 @@ pub(crate) fn experiment(args: &ExperimentArgs) -> Result<(), Failure> {
     };
     let first = args.tables.first().copied().unwrap_or_default();
     let study = cases::scene::load_study_for(&args.study, first).map_err(unreadable)?;
-    let plan = Plan::of_tables(study, &args.tables).map_err(unreadable)?;
+    let plan = StudyPlan::of_tables(study, &args.tables).map_err(unreadable)?;
     let verify = VerifyArgs { quick: args.quick, ..VerifyArgs::of(&args.study) };
     let index = (0..plan.len()).find(|&index| plan.key(index, &verify) == args.key);
     let index = index
@@ -192,26 +169,4 @@ pub(crate) fn experiment(args: &ExperimentArgs) -> Result<(), Failure> {
     }
     let text = serde_json::to_string(&result).map_err(|bad| Failure::Run(bad.to_string()))?;
     records::write_text(&args.answer, text).map_err(|bad| Failure::Run(bad.to_string()))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn limits_have_units() {
-        assert_eq!(duration("0.5 s"), Ok(Duration::from_millis(500)));
-        assert_eq!(duration("2min"), Ok(Duration::from_secs(120)));
-        for text in ["60", "0 s", "-1 s", "nan s", "inf s", "soon", "1e300 s", "1 GB"] {
-            assert!(duration(text).is_err(), "{text}");
-        }
-        let sizes = [("500MB", 500_000_000), ("1.5 GB", 1_500_000_000), ("3 KiB", 3072), ("7 B", 7)];
-        for (text, size) in sizes {
-            assert_eq!(bytes(text), Ok(size), "{text}");
-        }
-        for text in ["", "4096", "0 B", "MB", "-1GB", "2 XB", "2 s"] {
-            assert!(bytes(text).is_err(), "{text}");
-        }
-        assert!(bytes("500").unwrap_err().contains("write \"500 GB\""), "{:?}", bytes("500"));
-    }
 }

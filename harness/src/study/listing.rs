@@ -4,8 +4,9 @@ use std::collections::BTreeSet;
 
 use cases::scene::{self, Cloud, Family, Functions, Size, SupportRule};
 
+use super::args::VerifyArgs;
+use super::plan::StudyPlan;
 use super::tasks::Task;
-use super::{Plan, VerifyArgs};
 use crate::run::case_name;
 use crate::scenario::{Estimate, estimate};
 
@@ -21,7 +22,7 @@ pub struct Planned {
     pub(crate) stored: bool,
 }
 
-impl Plan {
+impl StudyPlan {
     /// Planned runs in the order of the study.
     pub fn planned(&self, args: &VerifyArgs) -> Vec<Planned> {
         let foreseen = self.foreseen(args);

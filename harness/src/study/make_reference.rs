@@ -3,7 +3,7 @@
 use cases::scene::Scene;
 use geometry::Point3;
 
-use crate::Failure;
+use crate::error::Failure;
 use crate::outcome::{LoadStep, ToolStep, Watch, provenance};
 use crate::run::stored_reference::{Problem, Source, Stored, StoredStep, StoredTool};
 use crate::run::symmetry::Mirror;
@@ -54,7 +54,8 @@ fn by(scene: &Scene, text: &str, points: &[Point3], method: &str) -> Result<Stor
         probe_band: 0.0,
     };
     let displacement = points.iter().zip(&solution.targets);
-    let (program, machine) = (provenance::program(), provenance::machine());
+    let program = provenance::program();
+    let machine = provenance::machine();
     let Problem { problem, methods } = Problem::of(text);
     Ok(Stored {
         case: case_name(scene),

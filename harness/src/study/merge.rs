@@ -7,10 +7,14 @@ use cases::scene::{self, SceneError};
 use clap::Args;
 use serde::{Deserialize, Serialize};
 
+use super::args::VerifyArgs;
+use super::filters::Filters;
+use super::plan::StudyPlan;
+use super::results::FinishedStudy;
+use super::store;
 use super::store::Share;
 use super::task::TaskResult;
-use super::{Filters, Finished, Plan, VerifyArgs, store};
-use crate::Failure;
+use crate::error::Failure;
 use crate::outcome::provenance;
 use crate::run::case_name;
 
@@ -48,7 +52,7 @@ pub(crate) enum Unmerged {
 
 /// Merged results of the shares.
 pub(crate) struct Merged {
-    pub(crate) finished: Finished,
+    pub(crate) finished: FinishedStudy,
     /// Labels of the runs that no share has.
     pub(crate) missing: Vec<String>,
     /// Number of different machines on which the results were made.
@@ -81,7 +85,7 @@ fn is_same(one: &Path, other: &Path) -> bool {
 }
 
 /// Reads the study of the shares, with its runs and arguments.
-pub(crate) fn plan(args: &MergeArgs) -> Result<(PathBuf, Plan, VerifyArgs), Unmerged> {
+pub(crate) fn plan(args: &MergeArgs) -> Result<(PathBuf, StudyPlan, VerifyArgs), Unmerged> {
     let other = Unmerged::Other;
     if let Some(share) = args.shares.iter().find(|share| is_same(share, &args.out)) {
         let problem =
@@ -102,13 +106,13 @@ pub(crate) fn plan(args: &MergeArgs) -> Result<(PathBuf, Plan, VerifyArgs), Unme
     }
     let Note { study, quick, filter, filters } = notes.swap_remove(0);
     let study = args.study.clone().unwrap_or(study);
-    let mut plan = scene::load_study(&study).and_then(Plan::new).map_err(Unmerged::Scenes)?;
+    let mut plan = scene::load_study(&study).and_then(StudyPlan::new).map_err(Unmerged::Scenes)?;
     let verify = VerifyArgs { quick, filter, filters, out: args.out.clone(), ..VerifyArgs::of(&study) };
     plan.select(&verify);
     Ok((study, plan, verify))
 }
 
-impl Plan {
+impl StudyPlan {
     /// Takes every result from the first share that has it, and copies it to the folder of the whole study.
     pub(crate) fn merge(&self, args: &VerifyArgs, shares: &[PathBuf]) -> Result<Merged, Failure> {
         let unwritten = |bad: records::RecordError| Failure::Run(bad.to_string());

@@ -6,9 +6,10 @@ use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
+use super::args::Loudness;
 use super::events::{Event, Events};
+use super::summary;
 use super::task::TaskResult;
-use super::{Loudness, summary};
 use crate::print::shown;
 
 /// Shortest time between two lines.
@@ -60,7 +61,8 @@ impl<'a> Progress<'a> {
 
     /// Reports the end of a run.
     pub(crate) fn done(&self, running: &Running, result: &TaskResult, stored: bool) {
-        let (Running { case, method, begin, .. }, run) = (running, running.run);
+        let Running { case, method, begin, .. } = running;
+        let run = running.run;
         let reason = result.failure.as_ref().map(|(failure, _)| failure.reason.as_str());
         if let Some(events) = self.events {
             let seconds = begin.elapsed().as_secs_f64();

@@ -5,19 +5,22 @@ use std::path::{Path, PathBuf};
 
 use cases::scene;
 
-use super::{Plan, Task, case_name, check};
+use super::check;
+use super::plan::StudyPlan;
+use super::tasks::Task;
+use crate::run::case_name;
 
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
 }
 
-fn verification() -> Plan {
+fn verification() -> StudyPlan {
     let study = scene::load_study(&root().join("cases/studies/verify.toml")).expect("a sound study");
-    Plan::new(study).unwrap_or_else(|errors| panic!("{errors:?}"))
+    StudyPlan::new(study).unwrap_or_else(|errors| panic!("{errors:?}"))
 }
 
 /// Whether any check applies to a task, either a check of one run or of several runs together.
-fn is_checked(plan: &Plan, task: &Task) -> bool {
+fn is_checked(plan: &StudyPlan, task: &Task) -> bool {
     let of_tables = plan.tables(task).flat_map(|run| &run.checks).filter(|check| check::is_of_many(check));
     let mut of_tables = of_tables.filter(|c| c.methods.is_empty() || c.methods.contains(&task.method.id));
     plan.checks(task).next().is_some() || of_tables.next().is_some()
@@ -64,7 +67,7 @@ fn the_quick_tier_has_the_cases_of_the_baseline_and_no_others() {
     let baseline = reports::baseline::Baseline::load(&path).expect("a baseline");
     // A run's name begins with its case.
     let accepted: BTreeSet<&str> = baseline.runs.keys().filter_map(|run| run.split(' ').next()).collect();
-    let Plan { study, scenes, .. } = verification();
+    let StudyPlan { study, scenes, .. } = verification();
     let quick = study.runs.iter().filter(|run| run.quick).filter_map(|run| run.scene.file_stem()?.to_str());
     let mut expected: BTreeSet<&str> = quick.collect();
     // Stored references belong to both tiers.

@@ -2,9 +2,10 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use super::args::VerifyArgs;
 use super::foreseen::Foreseen;
+use super::plan::StudyPlan;
 use super::tasks::Task;
-use super::{Plan, VerifyArgs};
 
 /// Tasks that must stay in one share, with their expected time in seconds.
 struct Unit {
@@ -23,7 +24,7 @@ impl Unit {
     }
 }
 
-impl Plan {
+impl StudyPlan {
     /// Tasks of the k-th of n shares. The units are assigned in descending order of time, each to the share
     /// that would finish first with it.
     pub(super) fn share(&self, args: &VerifyArgs, (k, n): (usize, usize)) -> BTreeSet<usize> {

@@ -10,7 +10,9 @@ use disk::Kind;
 use records::{Machine, Program, RecordError};
 use serde::{Deserialize, Serialize};
 
+use super::args::VerifyArgs;
 use super::task::TaskResult;
+use crate::outcome::provenance;
 
 /// Folder of the stored results, relative to the folder of results.
 const TASKS: &str = "tasks";
@@ -18,8 +20,10 @@ const TASKS: &str = "tasks";
 /// Program and machine that made a result.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) struct Maker {
-    /// Version and hash of the program. Results of another build are not reused.
-    program: String,
+    /// The program's build. Results of another build are not reused.
+    program: Program,
+    /// Hash of the program's file.
+    hash: String,
     /// Processor and number of threads, because times of another machine are not comparable. The load is not
     /// included: a study is resumed at another time.
     machine: String,
@@ -31,7 +35,8 @@ impl Maker {
         let bytes = std::env::current_exe().and_then(fs::read).unwrap_or_default();
         let Machine { cpu, model, instructions, threads, .. } = machine;
         Maker {
-            program: format!("{program:?}, {}", blake3::hash(&bytes).to_hex()),
+            program: program.clone(),
+            hash: blake3::hash(&bytes).to_hex().to_string(),
             machine: format!("{cpu}, {model}, {instructions}, {threads} threads"),
         }
     }
@@ -104,6 +109,11 @@ pub(super) struct Store {
 }
 
 impl Store {
+    /// Store of the results of the single runs of a study.
+    pub(super) fn of(args: &VerifyArgs) -> Store {
+        Store::new(&args.out, Maker::new(&provenance::program(), &provenance::machine()))
+    }
+
     pub(super) fn new(out: &Path, by: Maker) -> Store {
         Store { folder: out.join(TASKS), by }
     }
@@ -131,7 +141,7 @@ impl Store {
         let good = match accept {
             Accept::Nothing => false,
             Accept::Finished => by == self.by && result.failure.is_none(),
-            Accept::All => by.program == self.by.program,
+            Accept::All => by.program == self.by.program && by.hash == self.by.hash,
         };
         Ok(good.then_some(result))
     }
@@ -187,7 +197,7 @@ impl Store {
 /// Programs and machines that made the results of a study's shares.
 #[derive(Default)]
 pub(super) struct Share {
-    program: Option<String>,
+    build: Option<(Program, String)>,
     /// Machines on which the results were made.
     pub(super) machines: BTreeSet<String>,
 }
@@ -207,7 +217,8 @@ impl Share {
             Ok(found) => found?,
             Err(problem) => return Some(Err(problem)),
         };
-        if *self.program.get_or_insert_with(|| by.program.clone()) != by.program {
+        let build = (by.program, by.hash);
+        if *self.build.get_or_insert_with(|| build.clone()) != build {
             return Some(Err(format!("{} was written by another build of the program", path.display())));
         }
         self.machines.insert(by.machine);
@@ -216,7 +227,7 @@ impl Share {
 }
 
 /// Whether a folder of results contains stored results of single runs.
-pub(super) fn any(out: &Path) -> bool {
+pub fn has_stored(out: &Path) -> bool {
     !files(&out.join(TASKS), &["json"]).is_empty()
 }
 
@@ -227,9 +238,15 @@ pub(super) fn keep(out: &Path, key: &str, text: &str) -> Result<(), RecordError>
     records::write_text(&folder.join(format!("{key}.json")), text)
 }
 
+/// Keeps only finished results of this program on this machine. Only the first joining process calls it.
+pub(crate) fn sweep(args: &VerifyArgs) {
+    clean(&args.out);
+    Store::of(args).sweep();
+}
+
 /// Removes files that killed processes left in a folder of results. Call it only if no other process uses the
 /// folder.
-pub(super) fn clean(out: &Path) {
+pub(crate) fn clean(out: &Path) {
     for path in files(&out.join(TASKS), &["partial", "claim", "answer"]) {
         let _ = disk::remove(&path);
     }
@@ -252,7 +269,8 @@ mod tests {
     #[test]
     fn another_program_machine_or_number_of_threads_runs_anew() {
         let dir = tempfile::tempdir().unwrap();
-        let (program, machine) = (Program::default(), Machine { threads: 2, ..Machine::default() });
+        let program = Program::default();
+        let machine = Machine { threads: 2, ..Machine::default() };
         let known = store(dir.path(), &program, &machine);
         known.save("key", &TaskResult::default()).unwrap();
         let found = |program: &Program, machine: &Machine, accept| {

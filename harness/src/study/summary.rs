@@ -6,9 +6,9 @@ use cases::scene::{ErrorKind, Scene};
 use catalogue::metric;
 use records::{Check, Record};
 
+use super::plan::{StudyPlan, label};
 use super::task::TaskResult;
 use super::tasks::Task;
-use super::{Plan, label};
 use crate::run::case_name;
 
 /// Summary of one run of a study, or of the checks of several runs together.
@@ -43,7 +43,7 @@ fn method_place(scene: &Scene, id: &str) -> String {
     format!("{}:{}", place.file, place.line)
 }
 
-impl Plan {
+impl StudyPlan {
     /// Summary of a run with its checks. The failure is added later, if it was not expected.
     pub(super) fn summary(&self, task: &Task, result: &TaskResult, checks: &[Check]) -> RunSummary {
         let (file, _, scene) = &self.scenes[task.scene];

@@ -4,6 +4,8 @@ use std::collections::HashMap;
 
 use cases::scene::{self, Scene, Size};
 
+use crate::scenario::method_identity;
+
 /// Run of a study.
 pub(super) struct Task {
     /// Indices of the run tables that request this run. The run is made once, even for several tables.
@@ -17,9 +19,24 @@ pub(super) struct Task {
     pub(super) split: Option<scene::Integration>,
 }
 
-/// Indices of runs by scene, Poisson's ratio and method. Comparing each run with all others takes minutes for
-/// 50,000 runs.
-pub(super) type Known = HashMap<(usize, String), Vec<usize>>;
+/// Indices of runs by scene, bits of Poisson's ratio and [`named`]. Comparing each run with all others takes
+/// minutes for 50,000 runs.
+pub(super) type Known = HashMap<(usize, Option<u64>, String), Vec<usize>>;
+
+/// Names a method of a scene with everything that a run table can change: size, seed, kernel, support scale,
+/// essential conditions and solver.
+pub(super) fn named(method: &scene::Method) -> String {
+    let identity = method_identity(method);
+    let mut name = format!("{}, {}, seed {}", method.id, identity.variant, identity.seed);
+    match method.size() {
+        Some(Size::Level(level)) => name += &format!(", level {level}"),
+        Some(Size::Nodes(nodes)) => name += &format!(", {nodes} nodes"),
+        // A run table gives no other sizes, so this is the size in the scene.
+        _ => {}
+    }
+    identity.settings().iter().for_each(|(setting, value)| name += &format!(", {setting} {value}"));
+    name
+}
 
 /// Lists the runs of one table: all combinations of methods, levels (or node counts), kernels, support
 /// scales, essential conditions, seeds, solvers and Poisson's ratios.
@@ -33,14 +50,12 @@ pub(super) fn list(
 ) {
     let ratios: Vec<Option<f64>> =
         if run.poisson.is_empty() { vec![None] } else { run.poisson.iter().copied().map(Some).collect() };
-    // Pictures are made of organs only, and not for every kernel or seed. A picture of a box would show
-    // nothing.
-    let organ = matches!(scene.body, scene::Body::Kidney { .. } | scene::Body::File(_));
     let plain = run.kernels.is_empty()
         && run.support_scales.is_empty()
         && run.nodes.is_empty()
         && run.essentials.is_empty();
-    let picture = organ && plain && run.seeds == 0;
+    // A picture of every kernel or seed would show the same body many times.
+    let picture = scene.output.pictures && plain && run.seeds == 0;
     // The scene's own Poisson's ratio makes one run, whether the table names it or not.
     let own = scene.material.constant("poisson");
     let own_ratio = |poisson: Option<f64>| poisson.or(own);
@@ -53,8 +68,8 @@ pub(super) fn list(
                 for method in placed.flat_map(|method| solvers(run, method)) {
                     // A run may occur in several tables, such as a level both alone and among other levels,
                     // or a cloud among clouds.
-                    let places =
-                        known.entry((at, format!("{:?} {method:?}", own_ratio(poisson)))).or_default();
+                    let which = (at, own_ratio(poisson).map(f64::to_bits), named(&method));
+                    let places = known.entry(which).or_default();
                     let fits = |t: &Task| run.split.is_none() || t.split.is_none() || run.split == t.split;
                     match places.iter().copied().find(|&place| fits(&tasks[place])) {
                         Some(place) => {
@@ -165,4 +180,36 @@ fn seeds(run: &scene::Run, method: scene::Method) -> Vec<scene::Method> {
 fn solvers(run: &scene::Run, method: scene::Method) -> Vec<scene::Method> {
     let others: Vec<_> = run.adapters.iter().filter_map(|adapter| method.solved_by(adapter)).collect();
     std::iter::once(method).chain(others).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+    use std::path::Path;
+
+    use cases::scene;
+
+    use crate::study::args::VerifyArgs;
+    use crate::study::plan::StudyPlan;
+
+    /// A resumed study would take the result of one run for the result of another.
+    #[test]
+    fn the_key_of_a_run_has_everything_that_a_run_table_changes() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("study.toml");
+        let scene = Path::new(env!("CARGO_MANIFEST_DIR")).join("../cases/scenes/first.toml");
+        let text = format!(
+            "title = \"variations\"\n\
+             [[run]]\nscene = {scene:?}\nmethods = [\"tet10\"]\nlevels = [1, 2]\npoisson = [0.3, 0.4]\n\
+             [[run]]\nscene = {scene:?}\nmethods = [\"efg\"]\nnodes = [200, 300]\n\
+             kernels = [\"cubic-spline\", \"wendland-c2\"]\nsupport_scales = [1.6, 2.0]\n\
+             essentials = [\"nitsche\", \"multipliers\"]\nseeds = 2\n"
+        );
+        std::fs::write(&path, text).unwrap();
+        let plan = StudyPlan::new(scene::load_study(&path).unwrap()).unwrap();
+        assert_eq!(plan.len(), 2 * 2 + 2_usize.pow(5));
+        let args = VerifyArgs::of(&path);
+        let keys: BTreeSet<String> = (0..plan.len()).map(|index| plan.key(index, &args)).collect();
+        assert_eq!(keys.len(), plan.len());
+    }
 }

@@ -1,65 +1,14 @@
 //! Verdict of results on a claim: its relations between two sides of methods, case by case.
 
 use catalogue::metric::Metric;
+use records::RunSet;
 use records::text::{list, percent, significant};
-use records::{Family, Record, RunSet};
-use serde::Deserialize;
 
-use super::{Claim, ClaimVerdict, Named, tested};
+use super::claim::{Claim, ClaimVerdict, tested};
+use super::relation::{Kind, Relation, Side};
 use crate::busy::decide;
 use crate::fronts::{Clock, is_unanswerable, judged};
 use crate::select::{Run, chosen, runs, solved};
-
-/// Methods on one side of a claim, selected by family, by id, or by both.
-#[derive(Clone, Debug, Default, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct Side {
-    family: Option<Family>,
-    #[serde(default)]
-    methods: Vec<String>,
-}
-
-impl Side {
-    fn takes(&self, record: &Record) -> bool {
-        self.family.is_none_or(|family| family == record.family)
-            && (self.methods.is_empty() || self.methods.contains(&record.method))
-    }
-
-    /// Methods of the side in words.
-    fn name(&self) -> String {
-        match self.family {
-            _ if !self.methods.is_empty() => list(&self.methods),
-            Some(Family::Fem) => "FEM".into(),
-            Some(Family::Efg) => "EFG".into(),
-            Some(Family::External) => "external".into(),
-            _ => "other".into(),
-        }
-    }
-}
-
-/// Kind of comparison.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-enum Kind {
-    /// Smallest error of the left side over that of the right side.
-    ErrorRatio,
-    /// Smallest time of the left side over that of the right side at equal errors, for every error that both
-    /// reach.
-    TimeRatio,
-}
-
-/// A comparison between the two sides of a claim.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct Relation {
-    kind: Kind,
-    /// Relative error in records.
-    error: Named,
-    at_most: f64,
-    /// Relative tolerance of the bound.
-    #[serde(default)]
-    tolerance: f64,
-}
 
 /// A claim with its verdict.
 #[derive(Clone, Debug, PartialEq)]
@@ -155,14 +104,6 @@ enum Held {
 }
 
 impl Relation {
-    /// Whether the error has no component, and the bound and its tolerance are in range.
-    pub(super) fn sound(&self) -> bool {
-        self.error.0 == self.error.0.metric.whole()
-            && self.at_most > 0.0
-            && self.at_most.is_finite()
-            && self.tolerance >= 0.0
-    }
-
     /// Compares the runs of the two sides in one case, and returns the extent to which the relation holds
     /// (`None` if there is nothing to compare) and a line that reports the result.
     fn holds(&self, runs: &[Run], claim: &Claim) -> (Option<Held>, String) {
@@ -245,7 +186,9 @@ impl Matched {
 
 #[cfg(test)]
 mod tests {
-    use super::super::parse;
+    use records::{Family, Record};
+
+    use super::super::claim::parse;
     use super::*;
     use crate::fronts::tests::run;
 

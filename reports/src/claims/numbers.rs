@@ -1,90 +1,12 @@
 //! Published numbers next to those of runs that match the published runs.
 
-use catalogue::Quantity;
 use catalogue::metric::{self, Metric};
 use records::Family;
-use serde::Deserialize;
 
-use super::{Named, reproduced};
+use super::claim::reproduced;
+use super::named::Named;
+use super::published::{Number, Ours, Published};
 use crate::select::{Run, by_case};
-
-/// A published run with its numbers.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct Published {
-    family: Family,
-    /// Element or kernel.
-    variant: String,
-    nodes: u64,
-    /// Scheme that transfers the displacement to the nodes of the secondary reference.
-    transfer: Option<String>,
-    pub(super) number: Vec<Number>,
-}
-
-/// A published number.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(crate) struct Number {
-    /// Description of the number.
-    pub(crate) what: String,
-    pub(crate) published: Printed,
-    /// Place in the publication.
-    pub(crate) place: String,
-    pub(super) ours: Ours,
-    /// Quantities that a comparable run has recorded.
-    #[serde(default)]
-    needs: Vec<Named>,
-}
-
-/// A number as it is printed, such as `0.40 mm`.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(try_from = "String")]
-pub(crate) struct Printed {
-    pub(crate) text: String,
-    /// Number of digits before the unit.
-    digits: usize,
-    /// SI value.
-    pub(crate) value: f64,
-    /// SI value of the unit.
-    pub(crate) unit: f64,
-}
-
-impl Printed {
-    /// Number without its unit.
-    pub(crate) fn digits(&self) -> &str {
-        &self.text[..self.digits]
-    }
-
-    /// Unit, `1` for a pure number.
-    pub(crate) fn unit(&self) -> &str {
-        self.text.get(self.digits + 1..).unwrap_or("1")
-    }
-}
-
-impl TryFrom<String> for Printed {
-    type Error = String;
-
-    fn try_from(text: String) -> Result<Printed, String> {
-        let read = |text: &str| Quantity::read(text).map(|read| read.value).map_err(|bad| bad.to_string());
-        let (digits, unit) = text.split_once(' ').unwrap_or((&text, "1"));
-        Ok(Printed { digits: digits.len(), value: read(&text)?, unit: read(&format!("1 {unit}"))?, text })
-    }
-}
-
-/// Part of the records that corresponds to a published number.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub(super) enum Ours {
-    Elements,
-    /// Sum of the times of phases, or the `total`.
-    Time(Vec<String>),
-    /// Quantity of the run.
-    Value(Named),
-    /// Quantity of the run's displacement after the transfer.
-    Transferred(Named),
-    LeastTransferred(Vec<Named>),
-    LargestTransferred(Vec<Named>),
-}
 
 impl Ours {
     /// SI value of a run, whose displacement after the transfer is that of `transferred`.
@@ -166,7 +88,8 @@ fn matches<'a, 'r>(runs: &'a [Run<'r>]) -> Vec<Match<'a, 'r>> {
 /// Published numbers paired, case by case, with those of every run that matches the published run.
 pub(crate) fn pairs<'a, 'r>(runs: &'a [Run<'r>]) -> Vec<Pair<'a, 'r>> {
     let of = |found: Match<'a, 'r>| {
-        let (run, transferred) = (found.run, found.transferred());
+        let run = found.run;
+        let transferred = found.transferred();
         let like = move |number: &&'static Number| number.needs.iter().all(|quantity| run.has(quantity.0));
         let numbers = found.published.number.iter().filter(like);
         numbers.map(move |number| Pair { number, run, ours: number.ours.of(run, transferred) })
@@ -237,10 +160,12 @@ pub(crate) fn splits<'a, 'r>(runs: &'a [Run<'r>]) -> Vec<Split<'a, 'r>> {
 
 #[cfg(test)]
 mod tests {
+    use records::{Purpose, Record};
+
+    use super::super::published::Printed;
     use super::*;
     use crate::blank::Blank as _;
     use crate::select::runs;
-    use records::{Purpose, Record};
 
     fn record(case: &str, who: (&str, Family, &str), nodes: u64, quantity: &str, value: f64) -> Record {
         let (method, family, variant) = who;

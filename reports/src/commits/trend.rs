@@ -5,7 +5,7 @@ use std::fmt;
 use records::{Pair, Paired, RecordError, difference};
 use serde::Serialize;
 
-use super::Summary;
+use super::summary::Summary;
 use crate::compare::{Comparison, Ratio};
 
 /// Relative change of an error that counts. Smaller changes may be the last bits of another compiler.
@@ -176,7 +176,8 @@ fn errors(old: &Summary, new: &Summary) -> Result<Vec<ErrorStep>, RecordError> {
 pub(super) fn trends(all: Vec<(u32, Summary)>) -> Result<Vec<Trend>, RecordError> {
     let mut found: Vec<(String, String, Vec<Added>)> = Vec::new();
     for (number, summary) in all {
-        let (source, machine) = (summary.source.clone(), machine(&summary));
+        let source = summary.source.clone();
+        let machine = machine(&summary);
         let at = found.iter().position(|(s, m, _)| *s == source && *m == machine).unwrap_or_else(|| {
             found.push((source, machine, Vec::new()));
             found.len() - 1
@@ -192,7 +193,8 @@ pub(super) fn trends(all: Vec<(u32, Summary)>) -> Result<Vec<Trend>, RecordError
                 last.results.push(summary);
             }
             _ => {
-                let (commit, label) = (summary.program.revision(), summary.label.clone());
+                let commit = summary.program.revision();
+                let label = summary.label.clone();
                 commits.push(Added { number, commit, label, results: vec![summary] });
             }
         }

@@ -53,7 +53,8 @@ pub fn across(pair: &mut (RunSet, RunSet), settings: &[String]) -> Result<(), St
     for set in [&mut pair.0, &mut pair.1] {
         let mut owners: BTreeMap<String, (String, String)> = BTreeMap::new();
         for record in &mut set.records {
-            let (own, name) = (std::mem::take(&mut record.run), record.run_name());
+            let own = std::mem::take(&mut record.run);
+            let name = record.run_name();
             clears.iter().for_each(|clear| clear(record));
             record.run = record.run_name();
             let first = owners.entry(record.run.clone()).or_insert_with(|| (own.clone(), name.clone()));
@@ -78,7 +79,9 @@ mod tests {
 
     fn set(runs: &[(&str, &str, f64)]) -> RunSet {
         let record = |&(method, dilation, value): &(&str, &str, f64)| {
-            let (case, method, dilation) = ("block".into(), method.into(), Some(dilation.into()));
+            let case = "block".into();
+            let method = method.into();
+            let dilation = Some(dilation.into());
             Record { case, method, dilation, value, ..Record::blank() }.named("rms").of_its_run()
         };
         RunSet { records: runs.iter().map(record).collect(), ..RunSet::default() }

@@ -92,7 +92,8 @@ pub struct Ratio {
 
 impl Ratio {
     fn new(scope: Scope, name: &str, count: usize, log: f64, limit: f64) -> Ratio {
-        let (ratio, called) = (log.exp(), log.abs() > limit);
+        let ratio = log.exp();
+        let called = log.abs() > limit;
         Ratio { scope, name: name.into(), count, ratio, limit: limit.exp(), called }
     }
 }
@@ -137,7 +138,9 @@ impl Cell {
             times.iter().fold((f64::MAX, 0.0f64), |(low, high), &t| (low.min(t), high.max(t)))
         };
         self.repeats.iter().zip(common).all(|([before, after], common)| {
-            let (before, after, common) = (ends(before), ends(after), common.exp());
+            let before = ends(before);
+            let after = ends(after);
+            let common = common.exp();
             if slower { after.0 > before.1 * common } else { after.1 < before.0 * common }
         })
     }
@@ -235,7 +238,8 @@ fn singles(cells: &[Cell], beside: &[f64], common: &[f64]) -> Vec<Ratio> {
         scale(&sorted[low..low + count])
     };
     let one = |(rank, &at): (usize, &usize)| {
-        let (cell, log) = (&cells[at], beside[at]);
+        let cell = &cells[at];
+        let log = beside[at];
         let limit = PART_LEAST[0].max(SINGLE_SIGMAS * all.max(near(rank)));
         let mut ratio = Ratio::new(Scope::Run, &cell.name, 1, log, limit);
         ratio.called &= cell.is_apart(common, log > 0.0);

@@ -7,8 +7,8 @@ use records::text::significant;
 
 use super::axes::TEXT;
 use super::canvas::{Anchor, BLACK_INK, Canvas, Colour, GREY, text_width};
+use super::figure::{Data, Figure};
 use super::grid::WIDTH;
-use super::{Data, Figure};
 use crate::appearance::Look;
 use crate::claims::reproduced;
 use crate::select::{Run, competing, kernels, labels, representative, series};

@@ -4,9 +4,9 @@ use catalogue::metric;
 use records::Family;
 
 use super::axes::Axis;
+use super::figure::{Data, Figure, PAGE, continued, paged};
 use super::grid::{Content, multiples};
 use super::style::{find, styles};
-use super::{Data, Figure, PAGE, continued, paged};
 use crate::plot::{Curve, Plot, Scale};
 use crate::select::{Run, by_case};
 

@@ -4,9 +4,9 @@ use catalogue::metric::{self, Metric};
 
 use super::axes::{Axis, Panel, TEXT};
 use super::canvas::{Anchor, Canvas, GREY};
+use super::figure::{Data, Figure, PAGE, continued, paged};
 use super::grid::{Content, multiples};
 use super::style::{find, styles};
-use super::{Data, Figure, PAGE, continued, paged};
 use crate::order::ROUNDING;
 use crate::plot::{self, Curve, Plot, Scale};
 use crate::quantity::label;

@@ -4,9 +4,9 @@ use records::text::list;
 
 use super::axes::{Axis, Panel, TEXT};
 use super::canvas::{Canvas, GREY};
+use super::figure::{Data, Figure, PAGE, continued, paged};
 use super::grid::{Content, multiples};
 use super::style::{Style, find, styles};
-use super::{Data, Figure, PAGE, continued, paged};
 use crate::fronts::{Clock, DEADLINES, Deadline, FLOOR, FRONT, Question, pareto};
 use crate::plot::{self, Curve, Plot, Scale};
 use crate::quantity::label;

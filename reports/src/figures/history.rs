@@ -6,9 +6,9 @@ use records::Family;
 
 use super::axes::Axis;
 use super::canvas::{Canvas, Colour};
+use super::figure::{Data, Figure, PAGE, continued, paged};
 use super::grid::{Content, multiples};
 use super::style::{find, styles};
-use super::{Data, Figure, PAGE, continued, paged};
 use crate::history::{band, between, curve, reference};
 use crate::plot::{self, Curve, Plot, Scale};
 use crate::select::{Run, by_case, labels, series};

@@ -5,10 +5,9 @@ use records::Family;
 
 use super::axes::Axis;
 use super::canvas::GREY;
-
+use super::figure::{Data, Figure, PAGE, continued, paged};
 use super::grid::{Content, multiples};
 use super::style::{find, styles};
-use super::{Data, Figure, PAGE, continued, paged};
 use crate::fronts::FLOOR;
 use crate::plot::{Curve, Plot, Scale};
 use crate::quantity::label;

@@ -5,9 +5,9 @@ use records::cell::csv_line;
 
 use super::axes::Axis;
 use super::canvas::Canvas;
+use super::figure::{Data, Figure};
 use super::grid::{Content, multiples};
 use super::style::{Style, find, styles};
-use super::{Data, Figure};
 use crate::commits::{Point, Trend};
 use crate::error::ReportError;
 

@@ -2,9 +2,9 @@
 //! time over the smallest time of any method.
 
 use super::axes::Axis;
+use super::figure::{Data, Figure};
 use super::grid::{Content, multiples};
 use super::style::{find, styles};
-use super::{Data, Figure};
 use crate::cheapest::{methods, problems, ratios};
 use crate::fronts::wanted;
 use crate::plot::{self, Curve, Plot, Scale};

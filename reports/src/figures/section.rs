@@ -8,10 +8,10 @@ use records::{Section, SurfaceField};
 use super::axes::TEXT;
 use super::canvas::{Anchor, Canvas, GREY};
 use super::colour::Scale;
+use super::figure::{Data, Figure};
 use super::grid::{WIDTH, wrapped};
 use super::silhouette;
 use super::surface::{Chosen, GRASPED, Pose, carried, pictured, titled};
-use super::{Data, Figure};
 use crate::select::Run;
 
 /// Fraction of a section's cells whose pressures lie within the colour scale, for the median method.

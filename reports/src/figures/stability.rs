@@ -7,8 +7,8 @@ use records::{Axis, AxisVerdict as Verdict, Trial};
 
 use super::axes::TEXT;
 use super::canvas::{Anchor, BLACK_INK, Canvas, Colour, GREY, text_width};
+use super::figure::{Data, Figure};
 use super::grid::{WIDTH, wrapped};
-use super::{Data, Figure};
 use crate::quantity::label_of_name;
 
 const ROW: f64 = 15.0;

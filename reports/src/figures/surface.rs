@@ -8,9 +8,9 @@ use records::{Family, SurfaceField};
 use super::axes::TEXT;
 use super::canvas::{Anchor, BLACK_INK, Canvas, GREY, text_width};
 use super::colour::Scale;
+use super::figure::{Data, Figure, Pictured};
 use super::grid::{WIDTH, wrapped};
 use super::silhouette;
-use super::{Data, Figure, Pictured};
 use crate::select::Run;
 
 /// Largest number of bodies in a figure and in a row.

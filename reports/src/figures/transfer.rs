@@ -10,9 +10,9 @@ use records::text::tick;
 
 use super::axes::{Axis, Panel, TEXT};
 use super::canvas::{Anchor, BLACK_INK, Canvas, GREY, PALE, text_width};
+use super::figure::{Data, Figure};
 use super::grid::WIDTH;
 use super::style::{legend, legend_height, styles};
-use super::{Data, Figure};
 use crate::findings::source;
 use crate::select::{Run, by_case};
 

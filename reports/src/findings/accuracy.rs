@@ -6,10 +6,9 @@ use catalogue::metric;
 use records::Purpose;
 use records::text::{list, percent, plural, significant};
 
-use super::cases;
 use crate::figures::sweeps;
 use crate::order;
-use crate::select::{Run, by_case, competing, labels, series};
+use crate::select::{Run, by_case, competing, labels, named_cases, series};
 
 /// Ratio of the errors of the least and the most compressible material above which a method locks.
 const LOCKS: f64 = 2.0;
@@ -114,7 +113,7 @@ const SLACK: f64 = 0.15;
 /// Sentences on the observed orders that agree with theory, and on the orders that do not agree.
 pub(super) fn orders(runs: &[Run]) -> Vec<String> {
     let (mut held, mut below, mut short) = (0, Vec::new(), 0);
-    for (name, group) in cases(runs) {
+    for (name, group) in named_cases(runs) {
         let all = series(group);
         for (label, s) in labels(all.iter().map(|s| s.is())).into_iter().zip(&all) {
             for error in [&metric::L2, &metric::ENERGY] {

@@ -14,7 +14,7 @@ use records::RunSet;
 
 use crate::claims;
 use crate::clouds::Clouds;
-use crate::select::{Run, competing, groups, solved};
+use crate::select::{Run, solved};
 
 /// Findings under one heading.
 pub(crate) struct Topic {
@@ -38,22 +38,4 @@ pub(crate) fn all(set: &RunSet, runs: &[Run], clouds: &[Clouds]) -> Vec<Topic> {
         Topic { title: "Order of convergence", sentences: accuracy::orders(&solved) },
     ];
     topics.into_iter().filter(|t| !t.sentences.is_empty()).collect()
-}
-
-/// Runs of each case, named `case` or `case at ν = 0.3`, without patch tests.
-fn cases<'a, 'r>(runs: &'a [Run<'r>]) -> Vec<(String, &'a [Run<'r>])> {
-    let mut out = Vec::new();
-    for case in competing(runs) {
-        let by_ratio = groups(case, |r| r.is.poisson.to_bits());
-        for group in &by_ratio {
-            let is = group[0].is;
-            let name = if by_ratio.len() > 1 {
-                format!("{} at ν = {}", is.case, records::text::ratio(is.poisson))
-            } else {
-                is.case.clone()
-            };
-            out.push((name, *group));
-        }
-    }
-    out
 }

@@ -34,7 +34,8 @@ pub(super) fn published(runs: &[Run]) -> Vec<String> {
 
 /// A published number, ours, and their ratio.
 fn compared(pair: &Pair) -> Option<String> {
-    let (ours, published) = (pair.ours?, &pair.number.published);
+    let ours = pair.ours?;
+    let published = &pair.number.published;
     let shown = match published.unit() {
         "1" => significant(ours, 4),
         "s" => duration(ours),

@@ -4,14 +4,13 @@ use catalogue::metric;
 use records::Family;
 use records::text::{list, significant};
 
-use super::cases;
-use crate::select::{Run, labels, series};
+use crate::select::{Run, labels, named_cases, series};
 
 /// Sentences for every case with modes: the error of the first frequency by family and mass, and the methods
 /// with spurious modes.
 pub(super) fn vibrations(runs: &[Run]) -> Vec<String> {
     let mut out = Vec::new();
-    for (case, runs) in cases(runs) {
+    for (case, runs) in named_cases(runs) {
         // The finest run of each method.
         let all = series(runs);
         let finest: Vec<&Run> = all.iter().map(|s| s.finest()).collect();

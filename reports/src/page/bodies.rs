@@ -1,6 +1,6 @@
 //! Bodies in three dimensions: one element of the page for each case, parsed on demand.
 
-use records::{Body, BodyState, Faces, SurfaceField};
+use records::{BodyState, Faces, RecordedBody, SurfaceField};
 use serde::Serialize;
 
 use crate::error::ReportError;
@@ -27,7 +27,7 @@ struct BodyView<'a> {
     #[serde(skip_serializing_if = "Option::is_none")]
     tools_like: Option<&'a str>,
     #[serde(flatten)]
-    body: Body,
+    body: RecordedBody,
     /// Series of the method's sizes.
     #[serde(skip)]
     series: &'a str,
@@ -38,7 +38,7 @@ struct BodyView<'a> {
 
 impl BodyView<'_> {
     fn size(&self) -> usize {
-        let Body { points, faces, off, cloud, tools, states, .. } = &self.body;
+        let RecordedBody { points, faces, off, cloud, tools, states, .. } = &self.body;
         let fixed = points.len() + off.len() + cloud.len() + of_faces(faces);
         let tools: usize = tools.iter().map(|t| t.points.len() + t.quads.len()).sum();
         fixed + tools + states.iter().map(of_state).sum::<usize>() + self.inside()
@@ -119,7 +119,7 @@ fn share(bodies: &mut [BodyView]) {
     for k in 1..bodies.len() {
         let (before, rest) = bodies.split_at_mut(k);
         let own = &mut rest[0];
-        let first = |same: fn(&Body, &Body) -> bool| {
+        let first = |same: fn(&RecordedBody, &RecordedBody) -> bool| {
             before.iter().find(|b| b.case == own.case && same(&b.body, &own.body)).map(|b| b.method)
         };
         let like = first(|a, b| a.points == b.points && a.faces == b.faces);
@@ -160,10 +160,12 @@ fn fit(bodies: &mut Vec<BodyView>, room: usize) {
         let large = largest(&|b| !needed(b) && can_go(b));
         let inner = bodies.iter().enumerate().filter(|(_, b)| b.inside() > 0);
         let inner = inner.max_by_key(|(k, b)| (b.inside(), std::cmp::Reverse(*k))).map(|(k, _)| k);
-        let (moving, any) = (largest(&|b| b.body.states.len() > 1), largest(&|b| !needed(b)));
+        let moving = largest(&|b| b.body.states.len() > 1);
+        let any = largest(&|b| !needed(b));
         match (large, inner, moving, any) {
             (None, Some(k), _, _) => {
-                let (case, method) = (bodies[k].case, bodies[k].like.unwrap_or(bodies[k].method));
+                let case = bodies[k].case;
+                let method = bodies[k].like.unwrap_or(bodies[k].method);
                 let alike = |b: &&mut BodyView| b.case == case && b.like.unwrap_or(b.method) == method;
                 bodies.iter_mut().filter(alike).for_each(|b| b.body.inside = None);
             }
@@ -184,7 +186,7 @@ mod tests {
     use super::*;
     use records::{Inside, InsideState, pack};
 
-    fn body_view(case: &'static str, method: &'static str, body: Body) -> BodyView<'static> {
+    fn body_view(case: &'static str, method: &'static str, body: RecordedBody) -> BodyView<'static> {
         BodyView {
             case,
             method,
@@ -201,10 +203,10 @@ mod tests {
     fn what_has_no_room_is_left_out_and_counted() {
         let view = |method: &'static str, points: usize| {
             let state = || BodyState { u: pack(vec![0f32; 3 * points]), ..BodyState::default() };
-            let body = Body {
+            let body = RecordedBody {
                 points: pack(vec![0f32; 3 * points]),
                 states: vec![state(), state(), state()],
-                ..Body::default()
+                ..RecordedBody::default()
             };
             body_view("a", method, body)
         };
@@ -237,7 +239,12 @@ mod tests {
             body_view(
                 "a",
                 method,
-                Body { points: pack(vec![0f32; 3]), states, inside: Some(inside), ..Body::default() },
+                RecordedBody {
+                    points: pack(vec![0f32; 3]),
+                    states,
+                    inside: Some(inside),
+                    ..RecordedBody::default()
+                },
             )
         };
         let mut all = vec![view("tet4"), view("tet4-nodal")];
@@ -252,7 +259,8 @@ mod tests {
     fn methods_on_one_mesh_share_their_surface() {
         let view = |case: &'static str, method: &'static str, points: usize| {
             let states = vec![BodyState { u: pack(vec![1f32; 3 * points]), ..BodyState::default() }];
-            let body = Body { points: pack(vec![0f32; 3 * points]), states, ..Body::default() };
+            let body =
+                RecordedBody { points: pack(vec![0f32; 3 * points]), states, ..RecordedBody::default() };
             body_view(case, method, body)
         };
         let mut all =

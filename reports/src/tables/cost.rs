@@ -56,7 +56,8 @@ pub(super) fn cost(runs: &[Run]) -> Table {
     for (label, series) in labelled(runs) {
         let orders = PHASES.map(|phase| growth(&series, phase));
         let Some(prepare) = &orders[0] else { continue };
-        let (least, most) = (series.runs[0].is.nodes, series.finest().is.nodes);
+        let least = series.runs[0].is.nodes;
+        let most = series.finest().is.nodes;
         let points = Some(series.finest().is.points as f64).filter(|&points| points > 0.0);
         let per_point = |value: Option<f64>, scale: f64| points.zip(value).map(|(n, v)| scale * v / n);
         let poisson = ratio(series.is().poisson);

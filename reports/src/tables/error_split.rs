@@ -4,10 +4,9 @@ use catalogue::metric;
 use records::Family;
 use records::text::ratio;
 
-use super::{labelled, millimetres};
-use crate::select::Run;
+use crate::select::{Run, labelled};
 use crate::table::Column::{Number, Words};
-use crate::table::{Cell, Table};
+use crate::table::{Cell, Table, thousandths};
 
 /// Components of the error of a cloud, RMS in m. They do not add up, because the underlying fields are
 /// correlated.
@@ -92,7 +91,7 @@ pub(super) fn error_split(runs: &[Run]) -> Table {
         ],
     );
     for part in parts(runs) {
-        let of = |value: Option<f64>| Cell::Digits(millimetres(value), 3);
+        let of = |value: Option<f64>| Cell::Digits(thousandths(value), 3);
         table.row(&[
             Cell::Text(&part.run.is.case),
             Cell::Text(&ratio(part.run.is.poisson)),

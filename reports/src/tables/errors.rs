@@ -3,10 +3,9 @@
 use catalogue::metric::{self, Address};
 use records::text::ratio;
 
-use super::{labelled, millimetres};
-use crate::select::{Run, solved};
+use crate::select::{Run, labelled, solved};
 use crate::table::Column::{Number, Words};
-use crate::table::{Cell, Table};
+use crate::table::{Cell, Table, thousandths};
 
 /// Table of relative L2, energy and pressure errors.
 pub(super) fn relative(runs: &[Run]) -> Table {
@@ -90,7 +89,7 @@ fn rows(
             Cell::Text(&poisson),
             Cell::Text(&label),
             Cell::Count(run.is.nodes),
-            Cell::Digits(millimetres(Some(run.is.spacing)).filter(|h| *h > 0.0), 4),
+            Cell::Digits(thousandths(Some(run.is.spacing)).filter(|h| *h > 0.0), 4),
         ];
         cells.extend(filled.iter().zip(&values).map(|((_, of), v)| match of.metric {
             // A ratio close to one is most readable in plain notation.

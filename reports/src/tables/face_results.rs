@@ -27,7 +27,8 @@ fn of_places(mut table: Table, runs: &[Run], vector: &'static Metric, scale: f64
         let recorded = |found: &[Option<f64>; 3]| found.iter().any(Option::is_some);
         for (place, found) in (1..).zip((0..).map(at).take_while(recorded)) {
             let [x, y, z] = found.map(|value| Cell::Digits(value.map(|v| v * scale), 4));
-            let (case, nodes) = (Cell::Text(&run.is.case), Cell::Count(run.is.nodes));
+            let case = Cell::Text(&run.is.case);
+            let nodes = Cell::Count(run.is.nodes);
             table.row(&[case, Cell::Text(&label), nodes, Cell::Count(place), x, y, z]);
         }
     }

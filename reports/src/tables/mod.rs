@@ -26,7 +26,7 @@ use records::RunSet;
 
 use crate::clouds::Clouds;
 use crate::commits::Trend;
-use crate::select::{Run, by_material, labels};
+use crate::select::Run;
 use crate::table::Table;
 
 /// Every table with at least one row, in the order of the report.
@@ -62,18 +62,4 @@ pub(crate) fn all(set: &RunSet, runs: &[Run], clouds: &[Clouds], trends: &[Trend
         over_commits::over_commits(trends),
     ];
     tables.into_iter().filter(|t| !t.is_empty()).collect()
-}
-
-/// Runs, each with a label that is unique within its case and Poisson's ratio.
-fn labelled<'a, 'r>(runs: &'a [Run<'r>]) -> Vec<(&'a Run<'r>, String)> {
-    let mut out = Vec::new();
-    for group in by_material(runs) {
-        out.extend(group.iter().zip(labels(group.iter().map(|r| r.is))));
-    }
-    out
-}
-
-/// Converts metres to millimetres.
-fn millimetres(value: Option<f64>) -> Option<f64> {
-    value.map(|v| v * 1e3)
 }

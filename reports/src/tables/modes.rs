@@ -2,8 +2,7 @@
 
 use catalogue::metric::{self, Metric};
 
-use super::labelled;
-use crate::select::Run;
+use crate::select::{Run, labelled};
 use crate::table::Column::{Number, Words};
 use crate::table::{Cell, Table};
 

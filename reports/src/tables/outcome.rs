@@ -98,7 +98,8 @@ pub(super) fn warnings(set: &RunSet) -> Table {
     for reference in &set.references {
         for text in &reference.warnings {
             let method = format!("reference {}", reference.method);
-            let (case, none) = (Cell::Text(&reference.case), Cell::Text(""));
+            let case = Cell::Text(&reference.case);
+            let none = Cell::Text("");
             table.row(&[
                 case,
                 Cell::Text(&method),

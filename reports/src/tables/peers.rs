@@ -4,11 +4,10 @@ use catalogue::metric;
 use records::Family;
 use records::text::ratio;
 
-use super::millimetres as milliseconds;
 use crate::fronts::QUESTIONS;
 use crate::select::{Run, by_material};
 use crate::table::Column::{Number, Words};
-use crate::table::{Cell, Table};
+use crate::table::{Cell, Table, thousandths};
 
 /// Prefix of the phases that a solver reports itself.
 const OWN: &str = "own-";
@@ -45,7 +44,8 @@ pub(super) fn peers(runs: &[Run]) -> Table {
         for theirs in group.iter().filter(|run| run.is.family == Family::External) {
             let Some(ours) = group.iter().find(|ours| is_same_problem(ours, theirs)) else { continue };
             let over_ours = |theirs: Option<f64>, ours: Option<f64>| Some(theirs? / ours?);
-            let (own, long) = (own_phases(theirs), cpu(theirs).filter(|seconds| *seconds >= SHORTEST));
+            let own = own_phases(theirs);
+            let long = cpu(theirs).filter(|seconds| *seconds >= SHORTEST);
             let errors = error.map(|error| (theirs.value(error), ours.value(error)));
             let errors = errors.and_then(|(theirs, ours)| over_ours(theirs, ours));
             table.row(&[
@@ -54,11 +54,11 @@ pub(super) fn peers(runs: &[Run]) -> Table {
                 Cell::Text(&theirs.is.variant),
                 Cell::Count(theirs.is.nodes),
                 Cell::Text(theirs.is.adapter.as_deref().unwrap_or_default()),
-                Cell::Digits(milliseconds(ours.total()), 3),
-                Cell::Digits(milliseconds(theirs.total()), 3),
+                Cell::Digits(thousandths(ours.total()), 3),
+                Cell::Digits(thousandths(theirs.total()), 3),
                 Cell::Digits(over_ours(theirs.total(), ours.total()), 3),
                 Cell::Digits(over_ours(long, cpu(ours)), 3),
-                Cell::Digits(milliseconds(own), 3),
+                Cell::Digits(thousandths(own), 3),
                 Cell::Digits(over_ours(own, ours.total()), 3),
                 Cell::Digits(errors, 4),
             ]);

@@ -2,11 +2,10 @@
 
 use catalogue::metric;
 
-use super::millimetres;
 use crate::claims::{pairs, splits};
 use crate::select::Run;
 use crate::table::Column::{Number, Words};
-use crate::table::{Cell, Table};
+use crate::table::{Cell, Table, thousandths};
 
 /// Table of published numbers: value, place, computed value and the ratio of the two.
 pub(super) fn beside_ours(runs: &[Run]) -> Table {
@@ -76,10 +75,10 @@ pub(super) fn rms_parts(runs: &[Run]) -> Table {
             table.row(&[
                 Cell::Text(&split.cloud.is.case),
                 Cell::Text(&what),
-                Cell::Digits(millimetres(x), 3),
-                Cell::Digits(millimetres(y), 3),
-                Cell::Digits(millimetres(z), 3),
-                Cell::Digits(millimetres(all), 3),
+                Cell::Digits(thousandths(x), 3),
+                Cell::Digits(thousandths(y), 3),
+                Cell::Digits(thousandths(z), 3),
+                Cell::Digits(thousandths(all), 3),
             ]);
         }
     }

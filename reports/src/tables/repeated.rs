@@ -2,11 +2,10 @@
 
 use records::text::ratio;
 
-use super::{labelled, millimetres as milliseconds};
 use crate::fronts::{DEADLINES, Frame, RESOLUTION};
-use crate::select::{Run, solved};
+use crate::select::{Run, labelled, solved};
 use crate::table::Column::{Number, Words};
-use crate::table::{Cell, Table};
+use crate::table::{Cell, Table, thousandths};
 
 /// Table of every run with repeated solves, with a row for each kind of result of its frames.
 pub(super) fn repeated(runs: &[Run]) -> Table {
@@ -35,7 +34,8 @@ pub(super) fn repeated(runs: &[Run]) -> Table {
     let solved = solved(runs);
     for (run, label) in labelled(&solved) {
         for frame in Frame::ALL {
-            let (median, p99) = (frame.time(run, "median"), frame.p99(run));
+            let median = frame.time(run, "median");
+            let p99 = frame.p99(run);
             let p999 = frame.time(run, "p99.9");
             if [median, p99, p999].iter().all(Option::is_none) {
                 continue;
@@ -68,11 +68,11 @@ pub(super) fn repeated(runs: &[Run]) -> Table {
     table
 }
 
-/// A time in milliseconds, or a note that it is below the resolution of the clock.
+/// A time in thousandths, or a note that it is below the resolution of the clock.
 fn resolved<'a>(seconds: Option<f64>) -> Cell<'a> {
     match seconds {
         Some(time) if time < RESOLUTION => Cell::Named("< 0.001", 1e3 * time),
-        time => Cell::Digits(milliseconds(time), 3),
+        time => Cell::Digits(thousandths(time), 3),
     }
 }
 

@@ -3,10 +3,9 @@
 use records::Machine;
 use records::text::ratio;
 
-use super::{labelled, millimetres as milliseconds};
-use crate::select::{Run, solved};
+use crate::select::{Run, labelled, solved};
 use crate::table::Column::{Number, Spread, Words};
-use crate::table::{Cell, Table};
+use crate::table::{Cell, Table, thousandths};
 
 const PHASES: [&str; 6] = ["prepare", "assemble", "factor", "solve", "transfer", "total"];
 
@@ -58,7 +57,7 @@ pub(super) fn phases(runs: &[Run], machine: &Machine) -> Table {
             Cell::Count(run.is.dofs),
             Cell::Text(run.by.word()),
         ];
-        cells.extend(times.iter().map(|(m, s)| Cell::Spread(milliseconds(*m), milliseconds(*s))));
+        cells.extend(times.iter().map(|(m, s)| Cell::Spread(thousandths(*m), thousandths(*s))));
         cells.extend(
             [run.memory(), run.memory_of_process()].map(|bytes| Cell::Digits(bytes.map(|b| b / 1e6), 3)),
         );

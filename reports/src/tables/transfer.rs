@@ -3,10 +3,9 @@
 use catalogue::metric;
 use records::Family;
 
-use super::millimetres;
 use crate::select::Run;
 use crate::table::Column::{Number, Words};
-use crate::table::{Cell, Table};
+use crate::table::{Cell, Table, thousandths};
 
 /// Table of error and cost of every scheme, by transferred field.
 pub(super) fn schemes(runs: &[Run]) -> Table {
@@ -39,7 +38,7 @@ pub(super) fn schemes(runs: &[Run]) -> Table {
     );
     for run in runs.iter().filter(|r| r.is.family == Family::Interp) {
         let (from, settings) = carried(run);
-        let [x, y, z, all] = metric::RMS.parts().map(|part| Cell::Digits(millimetres(run.value(part)), 3));
+        let [x, y, z, all] = metric::RMS.parts().map(|part| Cell::Digits(thousandths(run.value(part)), 3));
         table.row(&[
             Cell::Text(&run.is.case),
             Cell::Text(&from),
@@ -52,9 +51,9 @@ pub(super) fn schemes(runs: &[Run]) -> Table {
             y,
             z,
             all,
-            Cell::Digits(millimetres(run.value(&metric::TRANSFER_RMS)), 3),
-            Cell::Digits(millimetres(run.time("prepare", "median")), 3),
-            Cell::Digits(millimetres(run.time("transfer", "median")), 3),
+            Cell::Digits(thousandths(run.value(&metric::TRANSFER_RMS)), 3),
+            Cell::Digits(thousandths(run.time("prepare", "median")), 3),
+            Cell::Digits(thousandths(run.time("transfer", "median")), 3),
         ]);
     }
     table

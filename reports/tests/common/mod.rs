@@ -248,6 +248,10 @@ fn kidney(set: &mut RunSet) {
             );
         }
     }
+    kidney_transfers(set, case);
+}
+
+fn kidney_transfers(set: &mut RunSet, case: &str) {
     type Scheme = (&'static str, Option<u64>, Option<f64>, f64);
     let schemes: [Scheme; 6] = [
         ("nearest", None, None, 0.9e-3),

@@ -52,7 +52,8 @@ fn multiply_lanes<const FMA: bool>(stiffness: &Stiffness, u: &[Vector3], out: &m
         // read one entry early, so that its upper three lanes count.
         let mut sums = [[0.0; 4]; 3];
         for (&j, block) in columns.iter().zip(blocks) {
-            let (entries, x) = (block.data.0.as_flattened(), &u[j as usize]);
+            let entries = block.data.0.as_flattened();
+            let x = &u[j as usize];
             for (c, (sum, start)) in sums.iter_mut().zip([0, 3, 5]).enumerate() {
                 for (l, sum) in sum.iter_mut().enumerate() {
                     *sum = madd::<FMA>(entries[start + l], x[c], *sum);
@@ -108,7 +109,8 @@ impl Stiffness {
         for i in 0..u.len() {
             let (columns, blocks) = self.row(i);
             for (&j, block) in columns.iter().zip(blocks) {
-                let (j, block) = (j as usize, block.abs());
+                let j = j as usize;
+                let block = block.abs();
                 out[i] += block * u[j].abs();
                 if j != i {
                     out[j] += block.tr_mul(&u[i].abs());

@@ -3,10 +3,12 @@
 use crate::names::suggest;
 use crate::parameter::Parameter;
 use crate::problem::Problem;
+use crate::values::Values;
 
-/// Named object of the catalogue. `B` is the type of its constructor, a function of checked [`Values`].
-///
-/// [`Values`]: crate::Values
+/// Constructor of a `T` from checked values.
+pub type Build<T> = fn(&Values) -> Result<T, Problem>;
+
+/// Named object of the catalogue. `B` is the type of its constructor, such as [`Build`].
 #[derive(Clone, Copy, Debug)]
 pub struct Entry<B> {
     /// Name in files and tables.
@@ -32,6 +34,14 @@ impl<B> Entry<B> {
     /// Returns the parameter with that name.
     pub fn parameter(&self, name: &str) -> Option<&'static Parameter> {
         self.parameters.iter().find(|parameter| parameter.name == name)
+    }
+}
+
+impl<T> Entry<Build<T>> {
+    /// Returns the entry with another constructor.
+    pub const fn built_by<U>(self, build: Build<U>) -> Entry<Build<U>> {
+        let Entry { name, meaning, source, parameters, .. } = self;
+        Entry { name, meaning, source, parameters, build }
     }
 }
 

@@ -10,9 +10,9 @@
 //! solvers record them and reports draw them.
 //!
 //! ```
-//! use tissuebench_catalogue::{Dimension, Entry, Parameter, Problem, Value, Values, find, metric};
+//! use tissuebench_catalogue::{Build, Dimension, Entry, Parameter, Problem, Value, Values, find, metric};
 //! // A spring that a scene could name: `{ spring = "linear", stiffness = ... }`.
-//! type Spring = Entry<fn(&Values) -> Result<f64, Problem>>;
+//! type Spring = Entry<Build<f64>>;
 //! static SPRINGS: [Spring; 1] = [Entry {
 //!     name: "linear",
 //!     meaning: "force in proportion to the length",
@@ -42,9 +42,9 @@ mod values;
 pub mod warning;
 
 pub use dimension::Dimension;
-pub use entry::{Entry, find, names};
+pub use entry::{Build, Entry, find, names};
 pub use names::{nearest, suggest};
-pub use parameter::{Kind, Parameter, Range, short};
+pub use parameter::{Kind, Parameter, Range, Value, short};
 pub use problem::{Problem, clip};
 pub use quantity::{Exponents, Quantity, UnitWord, units};
-pub use values::{Value, Values};
+pub use values::Values;

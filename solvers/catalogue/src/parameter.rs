@@ -2,7 +2,6 @@
 
 use crate::dimension::Dimension;
 use crate::problem::Problem;
-use crate::values::Value;
 
 /// Parameter of an entry.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -53,6 +52,17 @@ pub enum Range {
     Within(f64, f64),
     /// Above the first number and below the second.
     Between(f64, f64),
+}
+
+/// Value of one parameter, in SI.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Value {
+    /// A number.
+    Number(f64),
+    /// Several numbers.
+    List(Vec<f64>),
+    /// True or false.
+    Flag(bool),
 }
 
 impl Parameter {

@@ -1,19 +1,8 @@
 //! Checked values of an entry's parameters.
 
 use crate::names::suggest;
-use crate::parameter::Parameter;
+use crate::parameter::{Parameter, Value};
 use crate::problem::Problem;
-
-/// Value of one parameter, in SI.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Value {
-    /// A number.
-    Number(f64),
-    /// Several numbers.
-    List(Vec<f64>),
-    /// True or false.
-    Flag(bool),
-}
 
 /// Values of an entry's parameters: the given values, each known and in its range, and defaults for the other
 /// parameters.

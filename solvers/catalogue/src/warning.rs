@@ -1,7 +1,7 @@
 //! Warnings about the results of a run. A run with warnings has all its numbers and its status; its reader,
 //! or a check, decides whether the numbers are right.
 
-use crate::Dimension;
+use crate::dimension::Dimension;
 
 /// Kind of warning, with the dimension of the value that is recorded with it.
 #[derive(Debug, PartialEq)]

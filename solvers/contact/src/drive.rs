@@ -2,7 +2,8 @@
 
 use shape::Vector3;
 
-use crate::{Contacts, Tool};
+use crate::contacts::Contacts;
+use crate::tool::Tool;
 
 /// Drive of a tool: its displacement or its force at the end of the loading. The value grows in proportion to
 /// time.

@@ -3,7 +3,10 @@
 
 use shape::Vector3;
 
-use super::{ContactSurface, Contacts, Slip, Tool};
+use crate::contacts::Contacts;
+use crate::law::Slip;
+use crate::surface::ContactSurface;
+use crate::tool::Tool;
 
 /// History of all points of a surface against one tool. Evaluating contact never changes the history: during
 /// the iterations of a step, every trial state starts from the last committed state.

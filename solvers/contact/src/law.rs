@@ -23,7 +23,7 @@
 
 use shape::{Matrix3, Vector3};
 
-use super::ContactError;
+use crate::error::ContactError;
 
 /// Moduli of a contact per undeformed area, Pa/m, and the coefficient of friction.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -119,7 +119,8 @@ impl ContactLaw {
         response.after = after;
         response.speed = motion * by_gap;
         let trial = drift - normal * normal.dot(&drift);
-        let (length, limit) = (trial.norm(), self.friction * pressure);
+        let length = trial.norm();
+        let limit = self.friction * pressure;
         let mut stretch = trial;
         response.drift = drift;
         response.state = State::Stick;

@@ -28,24 +28,29 @@
 //! # }
 //! ```
 
+mod contacts;
 mod drive;
 mod error;
 mod evaluate;
 mod history;
 mod law;
+mod outline;
 mod overlap;
 mod search;
+mod side;
 mod surface;
 mod tool;
 mod tool_shape;
 mod tool_travel;
 
+pub use contacts::Contacts;
 pub use drive::{Drive, DrivenTool, ToolState};
 pub use error::ContactError;
-pub use evaluate::{ContactCounts, Contacts};
+pub use evaluate::ContactCounts;
 pub use history::ContactHistory;
 pub use law::{ContactLaw, Slip};
-pub use overlap::{ON_THE_WAY, Outline};
+pub use outline::Outline;
+pub use overlap::ON_THE_WAY;
 pub use search::{ContactSearch, SearchAt};
 pub use surface::ContactSurface;
 pub use tool::{PointContact, Tool};

@@ -1,9 +1,12 @@
 //! Detection of tools that overlap the body but touch no contact point: they have no force, without any other
 //! sign of error.
 
-use shape::{Point3, PointRows, Vector3};
+use shape::{Point3, Vector3};
 
-use super::{ContactError, ContactSurface, Stand, Tool};
+use crate::error::ContactError;
+use crate::surface::ContactSurface;
+use crate::tool::Tool;
+use crate::tool_travel::Stand;
 
 /// Largest accepted overlap during the loading, if a tool overlaps the surface between its contact points and
 /// touches none of them yet. The overlap is the depth of a surface location in the tool, divided by the
@@ -13,43 +16,6 @@ pub const ON_THE_WAY: f64 = 0.5;
 const IN_THE_END: f64 = 0.01;
 /// Number of subdivisions of a triangle into four, to find its deepest location.
 const DIVISIONS: usize = 5;
-
-/// Triangulated surface without quadrature: it carries no force, but represents the body between the contact
-/// points.
-#[derive(Clone, Copy, Debug)]
-pub struct Outline<'a> {
-    rows: &'a PointRows,
-    triangles: &'a [[u32; 3]],
-}
-
-impl<'a> Outline<'a> {
-    /// Makes the outline from triangles. Their corners are indices of points of `rows`, and the shape
-    /// functions of `rows` move these points with the body.
-    ///
-    /// # Errors
-    ///
-    /// [`ContactError::Length`] if a corner is not a point of `rows`.
-    pub fn new(rows: &'a PointRows, triangles: &'a [[u32; 3]]) -> Result<Outline<'a>, ContactError> {
-        let expected = rows.points().len();
-        match triangles.iter().flatten().find(|&&k| k as usize >= expected) {
-            Some(&k) => {
-                Err(ContactError::Length { what: "corners of the outline", found: k as usize + 1, expected })
-            }
-            None => Ok(Outline { rows, triangles }),
-        }
-    }
-
-    pub(super) fn len(&self) -> usize {
-        self.rows.points().len()
-    }
-
-    /// Position `X + sum_I N_I u_I` of a corner, m.
-    pub(super) fn position(&self, corner: usize, u: &[Vector3]) -> Point3 {
-        let (nodes, values) = self.rows.rows().row(corner);
-        let moved: Vector3 = nodes.iter().zip(values).map(|(&node, value)| u[node as usize] * *value).sum();
-        self.rows.points()[corner] + moved
-    }
-}
 
 impl ContactSurface<'_> {
     /// Checks that a tool that touches no contact point does not overlap the outline by too much. Only the

@@ -8,8 +8,12 @@
 
 use shape::Vector3;
 
-use super::surface::CLUSTER;
-use super::{ContactCounts, ContactError, ContactHistory, ContactSurface, Contacts, Tool};
+use crate::contacts::Contacts;
+use crate::error::ContactError;
+use crate::evaluate::ContactCounts;
+use crate::history::ContactHistory;
+use crate::surface::{CLUSTER, ContactSurface};
+use crate::tool::Tool;
 
 /// Margin over the mean distance between points. A larger margin keeps a list for longer, with more points in
 /// it.
@@ -125,7 +129,8 @@ impl SearchAt<'_, '_> {
         history: &ContactHistory,
         counts: &mut ContactCounts,
     ) -> Result<Option<Contacts>, ContactError> {
-        let (surface, u) = (self.search.surface, self.u);
+        let surface = self.search.surface;
+        let u = self.u;
         let reach = surface.reach(tool, closure, u, history, counts)?;
         if !self.serves(number, closure, reach) {
             self.list(number, tool, closure, reach)?;
@@ -144,7 +149,8 @@ impl SearchAt<'_, '_> {
     }
 
     fn list(&mut self, number: usize, tool: &Tool, closure: f64, reach: f64) -> Result<(), ContactError> {
-        let (search, u) = (&mut *self.search, self.u);
+        let search = &mut *self.search;
+        let u = self.u;
         let surface = search.surface;
         let far = reach + search.margin;
         let near = surface.near(tool, closure, far, u)?;

@@ -4,7 +4,9 @@ use std::ops::Range;
 
 use shape::{Point3, SurfaceRows, Vector3};
 
-use super::{ContactError, Contacts, Outline, Tool};
+use crate::error::ContactError;
+use crate::outline::Outline;
+use crate::tool::Tool;
 
 /// Largest number of points in a cluster.
 pub(super) const CLUSTER: usize = 32;
@@ -26,7 +28,7 @@ pub struct ContactSurface<'a> {
     /// Surface between the points, if given.
     pub(super) outline: Option<Outline<'a>>,
     /// Two neighbours of each point, counter-clockwise seen from outside; the point itself if it has none.
-    beside: Vec<[u32; 2]>,
+    pub(super) beside: Vec<[u32; 2]>,
 }
 
 /// Cluster of points with a bounding box.
@@ -128,39 +130,6 @@ impl<'a> ContactSurface<'a> {
         Ok(near)
     }
 
-    /// Checks that no more than a tenth of a tool's force points out of the body. A tool above this limit has
-    /// slipped through between points and lifts them from within. `contacts` are those of one tool in the
-    /// state `u` (m).
-    ///
-    /// The deformed normal of a point, `(x_b - x_a) x (x_c - x_a)`, is computed from two neighbouring points,
-    /// which ignores any bending between them. Two cases are therefore accepted: a force that points out of
-    /// the surface by less than 12 degrees, and a few points on a crease. Points at corners and on edges are
-    /// not checked, because faces of different directions meet there.
-    ///
-    /// # Errors
-    ///
-    /// [`ContactError::WithinBody`] with the first point that is pushed outwards.
-    pub fn check_side(&self, contacts: &Contacts, u: &[Vector3]) -> Result<(), ContactError> {
-        let (mut all, mut outwards, mut first) = (0.0, 0.0, None);
-        for (&point, traction) in contacts.points().iter().zip(contacts.tractions()) {
-            let [b, c] = self.beside[point as usize].map(|q| self.position(q as usize, u));
-            let at = self.position(point as usize, u);
-            let normal = (b - at).cross(&(c - at));
-            let push = traction.norm() * self.rows.weights()[point as usize];
-            all += push;
-            if traction.dot(&normal) > 0.2 * traction.norm() * normal.norm() {
-                outwards += push;
-                first = first.or(Some((point as usize, at)));
-            }
-        }
-        match first {
-            Some((point, at)) if outwards > 0.1 * all => {
-                Err(ContactError::WithinBody { share: outwards / all, point, at })
-            }
-            _ => Ok(()),
-        }
-    }
-
     /// Current position `X + sum_I N_I u_I` of a point, m.
     #[inline]
     pub fn position(&self, point: usize, u: &[Vector3]) -> Point3 {
@@ -193,7 +162,8 @@ impl Cluster {
         }
         nodes.truncate(kept);
         let (low, high) = range(order[points.clone()].iter().map(|&q| rows.points()[q as usize].coords));
-        let (middle, half) = (Point3::from((low + high) * 0.5), (high - low) * 0.5);
+        let middle = Point3::from((low + high) * 0.5);
+        let half = (high - low) * 0.5;
         Cluster { points, nodes: first..kept, middle, half, lebesgue, excess }
     }
 

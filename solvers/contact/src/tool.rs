@@ -3,7 +3,9 @@
 use shape::{Matrix3, Point3, Vector3};
 
 use super::law::Response;
-use super::{ContactError, ContactLaw, Slip, ToolShape};
+use crate::ToolShape;
+use crate::error::ContactError;
+use crate::law::{ContactLaw, Slip};
 
 /// Rigid tool that moves by `closure * along` (m) without rotating. The `closure` (m) is its displacement
 /// along the unit vector `along`.

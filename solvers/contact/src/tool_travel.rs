@@ -7,7 +7,9 @@
 
 use shape::{Point3, Vector3};
 
-use super::{ContactError, ContactSurface, Tool};
+use crate::error::ContactError;
+use crate::surface::ContactSurface;
+use crate::tool::Tool;
 
 /// Number of bisections of a path: to a millionth of its length.
 const HALVINGS: usize = 20;
@@ -91,7 +93,8 @@ impl ContactSurface<'_> {
             });
             let [(a, half_a), (b, half_b)] = [ends[0].clone()?, ends[1].clone()?];
             let (low, high) = ((a - half_a).inf(&(b - half_b)), (a + half_a).sup(&(b + half_b)));
-            let (middle, half) = (nalgebra::center(&low, &high), (high - low) * 0.5);
+            let middle = nalgebra::center(&low, &high);
+            let half = (high - low) * 0.5;
             // The distance function changes by no more than the distance travelled.
             if tool.shape().foot(&tool.local(0.0, &middle)).0 - half.norm() < -limit {
                 passed.push(&self.order[cluster.points.clone()]);
@@ -115,8 +118,11 @@ impl Passage {
     /// Follows one point. A point that is as deep before or after the step has not been jumped over.
     fn meet(&mut self, tool: &Tool, closures: [f64; 2], ends: [Point3; 2]) {
         let [a, b] = [tool.local(closures[0], &ends[0]), tool.local(closures[1], &ends[1])];
-        let (way, foot) = (b - a, |part: f64| tool.shape().foot(&(a + (b - a) * part)));
-        let (before, after, travel) = (foot(0.0).0, foot(1.0).0, way.norm());
+        let way = b - a;
+        let foot = |part: f64| tool.shape().foot(&(a + (b - a) * part));
+        let before = foot(0.0).0;
+        let after = foot(1.0).0;
+        let travel = way.norm();
         if 0.5 * (before + after - travel) >= -self.depth {
             return;
         }

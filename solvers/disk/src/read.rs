@@ -4,8 +4,9 @@ use std::fs::{File, Metadata, OpenOptions};
 use std::io::{self, ErrorKind, Read};
 use std::path::Path;
 
+use crate::identity::input;
 use crate::kind::{Kind, irregular};
-use crate::{input, write::without_waiting};
+use crate::write::without_waiting;
 
 /// Opens a regular file for reading, up to the size limit of its kind.
 ///

@@ -80,7 +80,8 @@ fn textbook(
     let mut list = Vec::with_capacity(neighbours.len());
     for &node in neighbours {
         let p = &mls.nodes()[node as usize];
-        let (r, radius) = (x - p, mls.radius(node as usize));
+        let r = x - p;
+        let radius = mls.radius(node as usize);
         let d = r.norm();
         let (w, slope) = KERNEL.eval(d / radius);
         let dw = if d > 0.0 { r * (slope / (d * radius)) } else { Vector3::zeros() };

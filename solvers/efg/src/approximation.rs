@@ -7,14 +7,20 @@ use geometry::Mesh;
 use rayon::prelude::*;
 use shape::{GradRows, Point3, PointRows, Rows, Unity, Vector3};
 
+use crate::basis::Basis;
 use crate::buckets::Buckets;
 use crate::coupling::{Coupling, Layer, border_vertices};
-use crate::gaps::{Detour, Gaps};
-use crate::info::{Outcome, Tally};
+use crate::detour::Detour;
+use crate::ellipsoid::Ellipsoid;
+use crate::error::EfgError;
+use crate::gaps::Gaps;
+use crate::info::{MlsInfo, Outcome, Tally};
+use crate::kernel::Kernel;
 use crate::max_entropy::{CUT, Neighbours};
 use crate::mls::{Ball, Group};
 use crate::row_list::{RowList, sample_step};
-use crate::{Basis, EfgError, Ellipsoid, Kernel, MlsInfo, support};
+use crate::support;
+use crate::supports::Supports;
 
 /// Points per parallel task. The number is fixed, so results have the same bits at any number of threads.
 const CHUNK: usize = 128;
@@ -40,9 +46,7 @@ const UNITY: Unity = Unity::Within(1e-8);
 /// of its neighbours is also an error: no positive functions reproduce linear fields there.
 pub struct Approximation {
     nodes: Vec<Point3>,
-    balls: Vec<Ball>,
-    /// Supports adapted to the cloud, within `balls`; empty if the balls are the supports.
-    ellipsoids: Vec<Ellipsoid>,
+    supports: Supports,
     functions: Functions,
     buckets: Buckets,
     /// Coupled finite elements; their nodes follow those of the cloud.
@@ -148,17 +152,9 @@ impl Approximation {
         let balls: Vec<Ball> =
             nodes.iter().zip(&radii).map(|(p, &radius)| Ball { at: p.coords.into(), radius }).collect();
         let buckets = Buckets::new(&balls);
-        let (ellipsoids, regions) = (Vec::new(), Vec::new());
-        Ok(Approximation {
-            nodes,
-            balls,
-            ellipsoids,
-            functions,
-            buckets,
-            coupling: None,
-            regions,
-            gaps: None,
-        })
+        let supports = Supports { balls, ellipsoids: Vec::new() };
+        let regions = Vec::new();
+        Ok(Approximation { nodes, supports, functions, buckets, coupling: None, regions, gaps: None })
     }
 
     /// Builds moving least squares as [`Approximation::new`] does, with one ellipsoidal support per node
@@ -174,7 +170,8 @@ impl Approximation {
     ) -> Result<Approximation, EfgError> {
         let around = ellipsoids.iter().map(Ellipsoid::radius).collect();
         let approximation = Approximation::new(nodes, around, kernel, basis)?;
-        Ok(Approximation { ellipsoids, ..approximation })
+        let supports = Supports { ellipsoids, ..approximation.supports };
+        Ok(Approximation { supports, ..approximation })
     }
 
     /// Regularises the quadratic block of the moment matrix at every point by `mu` times the sum of the
@@ -199,7 +196,7 @@ impl Approximation {
     /// connect separate pieces. Supports of a convex body do not change. This method must precede
     /// [`Approximation::coupled`].
     pub fn within(self, background: &Mesh) -> Result<Approximation, EfgError> {
-        let gaps = Gaps::find(&self, background)?;
+        let gaps = Gaps::find(&self.nodes, &self.supports, background)?;
         Ok(Approximation { gaps, ..self })
     }
 
@@ -207,7 +204,8 @@ impl Approximation {
     /// through the body has a detour. The list is empty for a body without gaps.
     pub(crate) fn across_gaps(&self, points: &[Point3]) -> Result<Vec<Vec<u32>>, EfgError> {
         let Some(gaps) = &self.gaps else { return Ok(Vec::new()) };
-        let (nodes, reach) = (&self.nodes[..self.balls.len()], self.widest());
+        let nodes = &self.nodes[..self.supports.balls.len()];
+        let reach = self.supports.widest();
         let across = |(x, cell): (&Point3, u32)| {
             let detours = gaps.detours(x, cell, nodes, reach);
             let near = |&n: &u32| detours[n as usize] > 0.0 && (nodes[n as usize] - x).norm() < reach;
@@ -244,8 +242,8 @@ impl Approximation {
         };
         let coupling = Coupling::new(background, vertices)?;
         let kept = coupling.kept(&self.nodes)?;
-        let balls: Vec<Ball> = kept.iter().map(|&(n, _)| self.balls[n]).collect();
-        let ellipsoids = kept.iter().filter_map(|&(n, _)| self.ellipsoids.get(n).copied()).collect();
+        let balls: Vec<Ball> = kept.iter().map(|&(n, _)| self.supports.balls[n]).collect();
+        let ellipsoids = kept.iter().filter_map(|&(n, _)| self.supports.ellipsoids.get(n).copied()).collect();
         let mut nodes: Vec<Point3> = kept.iter().map(|&(n, _)| self.nodes[n]).collect();
         if nodes.len() < Basis::Linear.terms() {
             return Err(EfgError::TooFewNodes { found: nodes.len(), needed: Basis::Linear.terms() });
@@ -257,8 +255,7 @@ impl Approximation {
         nodes.extend(vertices.iter().map(|&v| background.points()[v as usize]));
         Ok(Approximation {
             nodes,
-            balls,
-            ellipsoids,
+            supports: Supports { balls, ellipsoids },
             buckets,
             coupling: Some(coupling),
             regions,
@@ -286,12 +283,7 @@ impl Approximation {
     /// Returns the support radius of a node, m: the longest semi-axis of an ellipsoid, and zero for a
     /// finite-element node, whose support consists of cells.
     pub fn radius(&self, node: usize) -> f64 {
-        self.balls.get(node).map_or(0.0, |ball| ball.radius)
-    }
-
-    /// Returns the largest support radius, m.
-    pub(crate) fn widest(&self) -> f64 {
-        self.balls.iter().map(|ball| ball.radius).fold(0.0, f64::max)
+        self.supports.radius(node)
     }
 
     /// Computes shape values at points (m); nodes of a row are in ascending order.
@@ -409,8 +401,8 @@ impl Approximation {
     #[inline(always)]
     fn find(&self, x: &Point3, layer: Option<&Layer>, rows: &mut RowList) {
         let first = rows.nodes.len();
-        self.buckets.find(x, &self.balls, &mut rows.nodes);
-        if !self.ellipsoids.is_empty() {
+        self.buckets.find(x, &self.supports.balls, &mut rows.nodes);
+        if !self.supports.ellipsoids.is_empty() {
             let kept = self.within_ellipsoids(x, &mut rows.nodes[first..]);
             rows.nodes.truncate(first + kept);
         }
@@ -443,15 +435,7 @@ impl Approximation {
     /// Returns the distance of a point from a node, relative to the extent of the node's support in this
     /// direction.
     fn relative(&self, node: u32, x: &Point3) -> f64 {
-        self.length(node, &(self.nodes[node as usize] - x))
-    }
-
-    /// Returns the length of an offset (m), relative to the extent of the node's support in its direction.
-    pub(crate) fn length(&self, node: u32, e: &Vector3) -> f64 {
-        match self.ellipsoids.get(node as usize) {
-            Some(ellipsoid) => ellipsoid.square((*e).into()).max(0.0).sqrt(),
-            None => e.norm() / self.balls[node as usize].radius,
-        }
+        self.supports.length(node, &(self.nodes[node as usize] - x))
     }
 }
 

@@ -202,7 +202,8 @@ mod tests {
         // The number is not a multiple of eight.
         let balls: Vec<Ball> =
             (0..83).map(|i| Ball { at: place(i), radius: 0.2 + 0.01 * (i % 7) as f64 }).collect();
-        let (few, grid) = (Buckets::new(&balls), Buckets::Grid(Grid::new(&balls)));
+        let few = Buckets::new(&balls);
+        let grid = Buckets::Grid(Grid::new(&balls));
         assert!(matches!(few, Buckets::Few(_)));
         let mut total = 0;
         for x in (100..400).map(|i| Point3::from(place(i).map(|c| 1.6 * c - 0.3))) {

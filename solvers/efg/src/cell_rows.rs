@@ -6,10 +6,12 @@ use geometry::quadrature::{self, Rule};
 use rayon::prelude::*;
 use shape::{Point3, PointRows, Vector3};
 
+use crate::approximation::Approximation;
 use crate::cells::tet_measure;
+use crate::error::EfgError;
 use crate::facets::{canonical, triangle_points, triangle_rule, vector_area};
+use crate::info::MlsInfo;
 use crate::row_list::{RowList, sample_step};
-use crate::{Approximation, EfgError, MlsInfo};
 
 /// Cells per parallel task. The number is fixed, so results have the same bits at any number of threads.
 const CHUNK: usize = 128;
@@ -140,7 +142,8 @@ impl<const P: usize> Parts<'_, P> {
     /// Estimates the number of entries of all rows from those of a few cells.
     fn expected_entries(&self, nodes: usize) -> usize {
         let count = self.volumes.len();
-        let (mut sum, mut batch) = (Sum::<P>::new(nodes), RowList::default());
+        let mut sum = Sum::<P>::new(nodes);
+        let mut batch = RowList::default();
         for cell in (0..count).step_by(sample_step(count)) {
             self.add(cell, &mut sum, &mut batch);
         }
@@ -193,7 +196,8 @@ fn basis_slopes<const P: usize>(mesh: &Mesh, cell: usize) -> [Vector3; P] {
 
 /// Returns the corners of a cell that correspond to the canonical corners of one of its faces.
 pub(crate) fn local_corners(mesh: &Mesh, cell: usize, face: usize) -> [usize; 3] {
-    let (nodes, local) = (mesh.cell(cell), mesh.kind(cell).faces()[face]);
+    let nodes = mesh.cell(cell);
+    let local = mesh.kind(cell).faces()[face];
     let mut corners = [local[0], local[1], local[2]];
     corners.sort_unstable_by_key(|&c| nodes[c]);
     corners

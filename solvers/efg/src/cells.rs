@@ -4,7 +4,7 @@ use geometry::quadrature::Rule;
 use geometry::{CellKind, Mesh};
 use shape::{Matrix3, Point3, Vector3};
 
-use crate::EfgError;
+use crate::error::EfgError;
 
 /// Appends the points and weights (m^3) of a tet4.
 pub(crate) fn tet_points(
@@ -51,7 +51,8 @@ pub(crate) fn hex_points(
 /// Returns volume (m^3) and centroid of a tet4.
 pub(crate) fn tet_measure(mesh: &Mesh, cell: usize) -> Result<(f64, Point3), EfgError> {
     if mesh.kind(cell) != CellKind::Tet4 {
-        let (kind, what) = (mesh.kind(cell), "cell smoothing");
+        let kind = mesh.kind(cell);
+        let what = "cell smoothing";
         return Err(EfgError::CellKind { cell, kind, what, allowed: "tet4" });
     }
     let p = tet_corners(mesh, cell);

@@ -14,7 +14,7 @@
 use geometry::{CellKind, Locator, Mesh};
 use shape::{Point3, Vector3};
 
-use crate::EfgError;
+use crate::error::EfgError;
 use crate::mls::Moments;
 use crate::row_list::RowList;
 
@@ -137,7 +137,8 @@ impl Coupling {
         if self.corners[cell] == [NONE; 4] {
             return layer;
         }
-        let (values, slopes) = (self.locator.barycentric(cell, x), self.locator.slopes(cell));
+        let values = self.locator.barycentric(cell, x);
+        let slopes = self.locator.slopes(cell);
         let mut left = Moments { values: [0.0; 4], slopes: [[0.0; 3]; 4] };
         for (corner, &index) in self.corners[cell].iter().enumerate() {
             let (value, slope) = (values[corner], slopes[corner]);

@@ -12,7 +12,8 @@ use nalgebra::{Matrix3, SymmetricEigen};
 use rayon::prelude::*;
 use shape::Point3;
 
-use crate::{EfgError, Support};
+use crate::error::EfgError;
+use crate::support::Support;
 
 /// Ratio of the longest to the shortest extent of a cell above which the cell counts as flat: only rounding
 /// of coordinates is left.
@@ -117,7 +118,8 @@ fn metrics(mesh: &Mesh) -> Result<Vec<Metric>, EfgError> {
     let points = mesh.points();
     let mut moments = vec![(Matrix3::zeros(), 0u32); points.len()];
     for cell in 0..mesh.cell_count() {
-        let (nodes, ends) = (mesh.cell(cell), mesh.kind(cell).edges());
+        let nodes = mesh.cell(cell);
+        let ends = mesh.kind(cell).edges();
         let square = |&[a, b]: &[usize; 2]| {
             let e = points[nodes[b] as usize] - points[nodes[a] as usize];
             e * e.transpose()

@@ -6,7 +6,9 @@ use geometry::quadrature::{self, Parts, Rule};
 use geometry::{CellKind, Facet, Mesh};
 use shape::{FluxRows, Point3, SurfaceRows, Vector3};
 
-use crate::{Approximation, EfgError, MlsInfo};
+use crate::approximation::Approximation;
+use crate::error::EfgError;
+use crate::info::MlsInfo;
 
 /// Points, weights (m^2) and outward unit normals on a list of facets.
 struct FacetPoints {

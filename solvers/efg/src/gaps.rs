@@ -21,8 +21,10 @@ use geometry::{CellKind, Locator, Mesh};
 use rayon::prelude::*;
 use shape::{Point3, Vector3};
 
+use crate::detour::Detour;
+use crate::error::EfgError;
 use crate::row_list::RowList;
-use crate::{Approximation, EfgError};
+use crate::supports::Supports;
 use ways::{Graph, Ways};
 
 /// Product of unit normals below which two faces face each other: at a re-entrant corner of less than 84
@@ -58,14 +60,6 @@ struct Cut {
     at: [f64; 4],
 }
 
-/// Detour from a node to a point, relative to the extent of the node's support, and its gradient (1/m). The
-/// detour is added to the relative straight distance.
-#[derive(Clone, Copy, Default)]
-pub(crate) struct Detour {
-    pub(crate) longer: f64,
-    pub(crate) slope: Vector3,
-}
-
 /// A boundary face: its centre, outward unit normal, and the radius of the ball around it, m.
 struct Face {
     centre: Point3,
@@ -75,12 +69,11 @@ struct Face {
 
 impl Gaps {
     /// Finds the gaps that supports bridge; `None` if there are none.
-    pub fn find(approximation: &Approximation, background: &Mesh) -> Result<Option<Gaps>, EfgError> {
-        let faces = facing(background, 2.0 * approximation.widest());
+    pub fn find(nodes: &[Point3], supports: &Supports, background: &Mesh) -> Result<Option<Gaps>, EfgError> {
+        let faces = facing(background, 2.0 * supports.widest());
         if faces.is_empty() {
             return Ok(None);
         }
-        let nodes = approximation.nodes();
         let locator = Locator::new(background)?;
         let corners: Vec<[u32; 4]> =
             (0..background.cell_count()).map(|cell| [0, 1, 2, 3].map(|k| background.cell(cell)[k])).collect();
@@ -96,23 +89,24 @@ impl Gaps {
         };
         let graph = Graph::new(background, &corners);
         let mut gaps = Gaps { locator, graph, corners, homes, offsets: Vec::new(), cuts: Vec::new() };
-        gaps.fill(approximation, &faces);
+        gaps.fill(nodes, supports, &faces);
         Ok(Some(gaps))
     }
 
-    fn fill(&mut self, approximation: &Approximation, faces: &[Face]) {
-        let all: Vec<u32> = (0..approximation.nodes().len() as u32).collect();
+    fn fill(&mut self, nodes: &[Point3], supports: &Supports, faces: &[Face]) {
+        let all: Vec<u32> = (0..nodes.len() as u32).collect();
         let crossed = |&&node: &&u32| {
-            let (x, reach) = (approximation.nodes()[node as usize], approximation.radius(node as usize));
+            let x = nodes[node as usize];
+            let reach = supports.radius(node as usize);
             let near = |face: &&Face| (face.centre - x).norm() < reach + face.radius;
             let near: Vec<&Face> = faces.iter().filter(near).collect();
             near.iter().enumerate().any(|(k, a)| near[..k].iter().any(|b| a.faces(b)))
         };
         let balls: Vec<(Point3, f64)> = (0..self.corners.len()).map(|cell| self.ball(cell)).collect();
         let cuts_of = |ways: &mut Ways, &node: &u32| {
-            let x = approximation.nodes()[node as usize];
-            let reach = approximation.radius(node as usize);
-            let length = |a: &Point3, b: &Point3| approximation.length(node, &(a - b));
+            let x = nodes[node as usize];
+            let reach = supports.radius(node as usize);
+            let length = |a: &Point3, b: &Point3| supports.length(node, &(a - b));
             ways.walk(&self.graph, &x, &self.corners[self.homes[node as usize] as usize], length, FARTHEST);
             let detour = |vertex: u32| {
                 let straight = length(self.graph.place(vertex), &x);
@@ -235,7 +229,8 @@ impl Gaps {
 impl Face {
     /// Whether the two faces face each other, in contact or with a gap between them.
     fn faces(&self, other: &Face) -> bool {
-        let (apart, slack) = (other.centre - self.centre, TOUCHING * (self.radius + other.radius));
+        let apart = other.centre - self.centre;
+        let slack = TOUCHING * (self.radius + other.radius);
         self.normal.dot(&other.normal) < TURNED
             && apart.dot(&self.normal) > -slack
             && apart.dot(&other.normal) < slack

@@ -4,8 +4,10 @@ use geometry::quadrature::{self, Rule};
 use geometry::{CellKind, Mesh};
 use shape::VolumeRows;
 
+use crate::approximation::Approximation;
 use crate::cells::{hex_points, tet_points};
-use crate::{Approximation, EfgError, MlsInfo};
+use crate::error::EfgError;
+use crate::info::MlsInfo;
 
 /// Rules of the two cell kinds for a number of points.
 enum CellRule {
@@ -29,14 +31,15 @@ pub fn gauss_rows(
     let mut known: Option<(CellKind, CellRule)> = None;
     for cell in 0..background.cell_count() {
         let kind = background.kind(cell);
-        if known.as_ref().is_none_or(|(k, _)| *k != kind) {
-            known = Some((kind, rule(cell, kind, points_per_cell)?));
+        let rule = match known.take() {
+            Some((of, rule)) if of == kind => rule,
+            _ => rule(cell, kind, points_per_cell)?,
+        };
+        match &rule {
+            CellRule::Tet(rule) => tet_points(background, cell, rule, &mut points, &mut weights)?,
+            CellRule::Hex(rule) => hex_points(background, cell, rule, &mut points, &mut weights)?,
         }
-        match &known {
-            Some((_, CellRule::Tet(rule))) => tet_points(background, cell, rule, &mut points, &mut weights)?,
-            Some((_, CellRule::Hex(rule))) => hex_points(background, cell, rule, &mut points, &mut weights)?,
-            None => unreachable!("the rule was set above"),
-        }
+        known = Some((kind, rule));
     }
     let cells =
         || (0..points_per_cell * background.cell_count()).map(|q| (q / points_per_cell) as u32).collect();

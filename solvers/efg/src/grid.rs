@@ -3,7 +3,9 @@
 use geometry::quadrature;
 use shape::{Point3, VolumeRows};
 
-use crate::{Approximation, EfgError, MlsInfo};
+use crate::approximation::Approximation;
+use crate::error::EfgError;
+use crate::info::MlsInfo;
 
 /// Largest number of points of a grid. A larger grid usually indicates a wrong unit.
 const MOST_POINTS: f64 = 2e7;

@@ -24,6 +24,7 @@ mod buckets;
 mod cell_rows;
 mod cells;
 mod coupling;
+mod detour;
 mod ellipsoid;
 mod error;
 mod exp;
@@ -42,6 +43,7 @@ mod row_list;
 mod smoothed;
 mod source;
 mod support;
+mod supports;
 
 pub use approximation::Approximation;
 pub use basis::Basis;

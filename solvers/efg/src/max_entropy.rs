@@ -16,8 +16,8 @@
 use lanes::{LANES, Lanes};
 use shape::{Matrix3, Point3, Vector3};
 
+use crate::detour::Detour;
 use crate::exp::exp;
-use crate::gaps::Detour;
 
 /// Value of `exp(-beta r^2)` below which a node does not contribute: 2.8 spacings with `gamma = 1.8`.
 pub(crate) const CUT: f64 = 1e-6;
@@ -307,7 +307,8 @@ impl Neighbours {
             add(&mut sums[8], &product(&wz, z));
         }
         let [x, y, z, xx, xy, xz, yy, yz, zz] = sums.map(|s| s.iter().sum::<f64>() * (-2.0 / state.total));
-        let (mean, moment) = (Vector3::new(x, y, z), Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz));
+        let mean = Vector3::new(x, y, z);
+        let moment = Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz);
         let slope = (Matrix3::identity() + moment).transpose() * inverse;
         let part = 1.0 / (state.total * self.scale);
         for (g, grads) in grads.chunks_mut(LANES).enumerate() {

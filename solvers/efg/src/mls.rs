@@ -12,8 +12,8 @@ mod distances;
 use lanes::{LANES, Lanes};
 use shape::{Point3, Vector3};
 
-use crate::Ellipsoid;
 use crate::basis::{PRODUCT, monomials, terms};
+use crate::ellipsoid::Ellipsoid;
 use crate::kernel::Kernel;
 use crate::ldlt::{Ldlt, Matrices, norm};
 
@@ -346,7 +346,8 @@ impl Group {
     #[inline(always)]
     fn stretched_flows<const M: usize>(&mut self, c: &Matrices<M, 1>) -> (Matrices<M, 3>, [Lanes; 3]) {
         let longest = self.longest();
-        let (mut flows, mut spread) = ([[[0.0; LANES]; 3]; M], [[0.0; LANES]; 3]);
+        let mut flows = [[[0.0; LANES]; 3]; M];
+        let mut spread = [[0.0; LANES]; 3];
         for k in 0..longest {
             let (w, [x, y, z], normal) = (self.weight[k], self.offset[k], self.normal[k]);
             let (dw, inverse) = (self.slope[k], self.chain[k]);
@@ -470,7 +471,8 @@ fn conditions<const M: usize>(
             residual[l] += row[l] * row[l];
         }
     }
-    let (norm, inverse_norm) = (norm(a), ldlt.inverse_norm());
+    let norm = norm(a);
+    let inverse_norm = ldlt.inverse_norm();
     let mut conditions = [None; LANES];
     for l in 0..LANES {
         if ldlt.is_sound(l) && residual[l] < REPRODUCTION_TOLERANCE * REPRODUCTION_TOLERANCE {

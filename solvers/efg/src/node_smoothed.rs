@@ -5,11 +5,13 @@ use geometry::{Facet, Mesh};
 use rayon::prelude::*;
 use shape::{GradRows, Point3, Rows, TraceRows, Unity, VolumeRows};
 
+use crate::approximation::Approximation;
 use crate::cell_rows::{CellRows, Sum, face_basis, local_corners};
 use crate::cells::tet_measure;
+use crate::error::EfgError;
 use crate::facets::{triangle_rule, vector_area};
+use crate::info::MlsInfo;
 use crate::row_list::RowList;
-use crate::{Approximation, EfgError, MlsInfo};
 
 /// Vertices per parallel task. The number is fixed, so results have the same bits at any number of threads.
 const CHUNK: usize = 64;

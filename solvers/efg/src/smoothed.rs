@@ -4,11 +4,13 @@
 use geometry::{Facet, Mesh};
 use shape::{GradRows, Rows, TraceRows, Unity, VolumeRows};
 
+use crate::approximation::Approximation;
 use crate::cell_rows::{CellRows, face_basis, local_corners, volume_basis};
 use crate::cells::tet_measure;
+use crate::error::EfgError;
 use crate::facets::{triangle_rule, vector_area};
+use crate::info::MlsInfo;
 use crate::row_list::RowList;
-use crate::{Approximation, EfgError, MlsInfo};
 
 /// The field of smoothed gradients inside a cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -11,12 +11,17 @@ use shape::{
     SurfaceRows, TraceRows, Vector3, VolumeRows,
 };
 
-use crate::facets::divided_surface_rows;
-use crate::{
-    Approximation, Basis, EfgError, Kernel, MlsInfo, Smoothing, Support, flux_rows, gauss_regions,
-    gauss_rows, grid_rows, node_smoothed_regions, node_smoothed_rows, node_smoothed_trace, smoothed_regions,
-    smoothed_rows, smoothed_trace, surface_rows,
-};
+use crate::approximation::Approximation;
+use crate::basis::Basis;
+use crate::error::EfgError;
+use crate::facets::{divided_surface_rows, flux_rows, surface_rows};
+use crate::gauss::{gauss_regions, gauss_rows};
+use crate::grid::grid_rows;
+use crate::info::MlsInfo;
+use crate::kernel::Kernel;
+use crate::node_smoothed::{node_smoothed_regions, node_smoothed_rows, node_smoothed_trace};
+use crate::smoothed::{Smoothing, smoothed_regions, smoothed_rows, smoothed_trace};
+use crate::support::Support;
 
 /// The shape functions of a cloud.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -183,7 +188,8 @@ impl CloudSource {
         if found.as_ref().is_ok_and(|(_, info)| info.enlarged == 0) {
             return Ok((found?.0, 0));
         }
-        let (mut moved, mut count) = (points.to_vec(), 0);
+        let mut moved = points.to_vec();
+        let mut count = 0;
         for (point, place) in moved.iter_mut().zip(locate(&self.background, points)?) {
             if place.outside > BEYOND * self.spacing {
                 let corners = self.background.cell_points(place.cell as usize).zip(place.barycentric);
@@ -212,7 +218,8 @@ impl RowSource for CloudSource {
     }
 
     fn volume(&self) -> Result<Quadrature, SourceError> {
-        let (approximation, background) = (&self.approximation, &*self.background);
+        let approximation = &self.approximation;
+        let background = &*self.background;
         let mut lost = None;
         let (rows, info) = match &self.integration {
             Integration::Gauss { points } => gauss_rows(approximation, background, *points)?,

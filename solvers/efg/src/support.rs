@@ -4,7 +4,7 @@ use geometry::Search;
 use rayon::prelude::*;
 use shape::Point3;
 
-use crate::EfgError;
+use crate::error::EfgError;
 
 /// Rule for the support radius of every node.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -49,7 +49,8 @@ fn an_affine_map_of_body_and_cloud_leaves_the_shape_values_alone() {
                 // Rounding of the moments, whose condition number flat cells square (quadratic basis: once
                 // more).
                 let tolerance = 1e-15 * info.condition_max.max(1e3);
-                let (back, mut at_rim) = (map.transpose(), 0);
+                let back = map.transpose();
+                let mut at_rim = 0;
                 for q in 0..here.points().len() {
                     let ((nodes, values), (same, others)) = (here.rows().row(q), stretched.rows().row(q));
                     // By rounding, a node at the boundary of its support may drop out; its value is then as

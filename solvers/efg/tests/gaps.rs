@@ -113,7 +113,8 @@ fn a_slit_parts_the_nodes_beside_it_and_not_those_around_its_end() {
                 }
                 most
             };
-            let (glued, cut) = (functions(&mesh), functions(&mesh).within(&mesh).unwrap());
+            let glued = functions(&mesh);
+            let cut = functions(&mesh).within(&mesh).unwrap();
             let above = 1.2e-2..2e-2;
             assert!(across(&glued, above.clone()) > 0.05, "{name}, {bend}");
             assert!(across(&cut, above.clone()) < 0.05, "{name}, {bend}: {}", across(&cut, above));
@@ -132,7 +133,8 @@ fn fields_of_the_basis_are_reproduced_and_gradients_are_those_of_the_values() {
         let (rows, info) = gauss_rows(&mls, &mesh, 4).unwrap();
         assert!(info.neighbours_min >= basis.terms(), "{name}");
         for q in 0..rows.weights().len() {
-            let ((nodes, values), grads) = (rows.rows().row(q), rows.at().row(q).1);
+            let (nodes, values) = rows.rows().row(q);
+            let grads = rows.at().row(q).1;
             let (mut value, mut grad) = (0.0, Vector3::zeros());
             for ((&n, v), g) in nodes.iter().zip(values).zip(grads) {
                 let at = field(basis, &mesh.points()[n as usize]).0;
@@ -151,7 +153,8 @@ fn fields_of_the_basis_are_reproduced_and_gradients_are_those_of_the_values() {
                 let points: Vec<Point3> = some.iter().map(|&q| rows.points()[q] + by).collect();
                 mls.point_rows(&points).unwrap().0
             };
-            let (ahead, behind) = (moved(step), moved(-step));
+            let ahead = moved(step);
+            let behind = moved(-step);
             for (k, &q) in some.iter().enumerate() {
                 let (nodes, grads) = rows.at().row(q);
                 let of = |rows: &PointRows, node: u32| {
@@ -225,7 +228,8 @@ fn bodies_without_gaps_keep_their_bits() {
     ];
     for (body, mesh) in &bodies {
         for (name, _, functions) in ALL {
-            let (plain, within) = (functions(mesh), functions(mesh).within(mesh).unwrap());
+            let plain = functions(mesh);
+            let within = functions(mesh).within(mesh).unwrap();
             let rows = |mls: &Approximation| gauss_rows(mls, mesh, 1).map(|(rows, _)| rows);
             assert_eq!(rows(&plain), rows(&within), "{body}, {name}");
         }

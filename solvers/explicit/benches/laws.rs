@@ -138,7 +138,8 @@ fn table(laws: &[Law], bodies: &Bodies) {
 }
 
 fn main() {
-    let (laws, bodies) = (laws(), Bodies::new());
+    let laws = laws();
+    let bodies = Bodies::new();
     let mut criterion = Criterion::default().configure_from_args();
     groups(&mut criterion, &laws, &bodies);
     criterion.final_summary();

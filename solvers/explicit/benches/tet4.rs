@@ -224,7 +224,8 @@ fn main() {
     let path = LanePath::best();
     let pools = [1, 2].map(|n| ThreadPoolBuilder::new().num_threads(n).build().unwrap());
     let neo_hookean = NeoHookean::new(20e3, 0.495).unwrap();
-    let (moduli, laws) = ([neo_hookean.mu(), neo_hookean.lambda()], [Law::NeoHookean(neo_hookean)]);
+    let moduli = [neo_hookean.mu(), neo_hookean.lambda()];
+    let laws = [Law::NeoHookean(neo_hookean)];
 
     let blocks: Vec<Block> = (0..BLOCKS).map(Block::new).collect();
     let mut out: Vec<Forces> = (0..BLOCKS).map(|_| Forces([[0.0; LANES]; 12])).collect();

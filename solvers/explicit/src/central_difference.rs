@@ -1,9 +1,12 @@
 //! Explicit time integration: central differences with velocities at half steps.
 
+use shape::{Matrix3, Vector3};
+
 use super::critical_step::{CriticalStep, Estimate, LanczosParams, critical_step_touching};
 use super::step_lanes::{Forces, Inertia, accelerate, advance};
-use super::{ExplicitError, InternalForce, ToolEnergies, Tools};
-use shape::{Matrix3, Vector3};
+use crate::error::ExplicitError;
+use crate::force::InternalForce;
+use crate::tools::{ToolEnergies, Tools};
 
 /// Parameters of a time integration.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -226,7 +229,8 @@ impl<'a, 'b> Dynamics<'a, 'b> {
     fn estimated(&mut self) -> Result<CriticalStep, ExplicitError> {
         let constrained = &self.constrained;
         let springs = self.tools.as_ref().and_then(Tools::springs);
-        let (step, time) = (self.step, self.time());
+        let step = self.step;
+        let time = self.time();
         critical_step_touching(
             self.force,
             self.mass,
@@ -302,8 +306,10 @@ impl<'a, 'b> Dynamics<'a, 'b> {
     /// With `c = alpha dt / 2`: `v_(n+1/2) = ((1 - c) v_(n-1/2) + dt M^-1 (f_ext - f_int)) / (1 + c)`; `dt`
     /// is the mean of the steps before and after.
     fn accelerate(&mut self, external: &mut External) -> Result<f64, ExplicitError> {
-        let (step, time) = (self.step, self.time());
-        let (before_dt, after_dt) = (self.before, self.params.dt);
+        let step = self.step;
+        let time = self.time();
+        let before_dt = self.before;
+        let after_dt = self.params.dt;
         let dt = 0.5 * (before_dt + after_dt);
         self.force.evaluate(&self.u, &mut self.internal).map_err(|at| ExplicitError::InvertedAt {
             step,
@@ -318,7 +324,8 @@ impl<'a, 'b> Dynamics<'a, 'b> {
         }
 
         let c = 0.5 * self.params.damping * dt;
-        let (keep, push) = ((1.0 - c) / (1.0 + c), dt / (1.0 + c));
+        let keep = (1.0 - c) / (1.0 + c);
+        let push = dt / (1.0 + c);
         let first = step == 0;
         // From here on, the internal forces are the forces that the body holds against its loads, contact
         // included.
@@ -336,7 +343,8 @@ impl<'a, 'b> Dynamics<'a, 'b> {
         let forces =
             Forces { external: &self.external, before: &self.previous_external, internal: &self.internal };
         let sums = accelerate(self.force.path(), &self.inertia, [keep, push], forces, &mut self.v);
-        let (mut kinetic, mut moved) = (0.5 * sums.kinetic, sums.moved);
+        let mut kinetic = 0.5 * sums.kinetic;
+        let mut moved = sums.moved;
         let [mut lost, mut next_lost] = sums.lost.map(|lost| 0.5 * lost);
         let work = if first { 0.0 } else { 0.5 * before_dt * sums.work };
         // Prescribed velocities, their part of the energies and their reactions.
@@ -403,7 +411,8 @@ impl<'a, 'b> Dynamics<'a, 'b> {
     }
 
     fn balance(&mut self, kinetic: f64) -> Result<Balance, ExplicitError> {
-        let (step, time) = (self.step, self.time());
+        let step = self.step;
+        let time = self.time();
         let strain = self.force.energy(&self.u).map_err(|at| ExplicitError::InvertedAt { step, time, at })?;
         let [external, support, damping] = self.work;
         let tools = self.tools.as_ref().map(Tools::energies).unwrap_or_default();
@@ -418,7 +427,9 @@ impl<'a, 'b> Dynamics<'a, 'b> {
     }
 
     fn check_step(&mut self) -> Result<(), ExplicitError> {
-        let (step, time, dt) = (self.step, self.time(), self.params.dt);
+        let step = self.step;
+        let time = self.time();
+        let dt = self.params.dt;
         let critical = self.critical_step()?.dt;
         // A NaN must not pass, hence `!(dt <= critical)`.
         if !(dt <= critical) {

@@ -1,9 +1,9 @@
 //! Critical time step, from the largest eigenvalue of `M^-1 K` by Lanczos.
 
-use shape::SurfaceRows;
+use shape::{Matrix3, SurfaceRows, Vector3};
 
-use super::{ExplicitError, InternalForce};
-use shape::{Matrix3, Vector3};
+use crate::error::ExplicitError;
+use crate::force::InternalForce;
 
 /// Parameters for the estimate of the critical step by the Lanczos method.
 #[derive(Clone, Copy, Debug, PartialEq)]

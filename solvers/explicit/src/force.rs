@@ -1,16 +1,17 @@
 //! Internal forces of a body, computed by the fastest kernel that fits its table and laws.
 
-use shape::Layout;
+use lanes::LanePath;
+use material::Material as _;
+use shape::{Layout, Matrix3, Vector3};
 
 use super::body::ExplicitBody;
 use super::hex8::Hex8;
 use super::moduli::LaneLaw;
 use super::rows::Ragged;
 use super::tet4::Tet4;
-use super::{ExplicitError, InvertedPoint, Kernel, KernelInfo, plain};
-use lanes::LanePath;
-use material::Material as _;
-use shape::{Matrix3, Vector3};
+use crate::error::{ExplicitError, InvertedPoint};
+use crate::kernel::{Kernel, KernelInfo};
+use crate::plain;
 
 /// Evaluator of the internal force `f_I(u) = dE/du_I` of a body, for many evaluations.
 pub struct InternalForce<'a> {

@@ -6,17 +6,15 @@
 //! element and three components instead of 576. Forces are computed by the transpose of each step.
 
 use geometry::element::HEX_CORNERS;
-use shape::DilationGroups;
+use lanes::{LANES, LanePath};
+use shape::{DilationGroups, Matrix3, Point3, Vector3, locality_order};
 
-use super::Kernel;
 use super::body::ExplicitBody;
 use super::chunks::{Border, ChunkNodes, Slot, load, split};
 use super::hex8_lanes::{Block, Point, dilated, internal};
 use super::moduli::LaneLaw;
 use super::trilinear::{NODE, fit, reference};
-use lanes::{LANES, LanePath};
-use shape::locality_order;
-use shape::{Matrix3, Point3, Vector3};
+use crate::kernel::Kernel;
 
 /// Elements per chunk, with some 1400 distinct nodes.
 const SIZE: usize = 1024;

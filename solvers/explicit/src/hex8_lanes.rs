@@ -320,7 +320,8 @@ fn neo_hookean<const FMA: bool, const BITS: usize>(
     u: &[Slot],
     f: &mut [Slot],
 ) -> bool {
-    let (mut x, mut good) = (Scratch::EMPTY, [1.0; LANES]);
+    let mut x = Scratch::EMPTY;
+    let mut good = [1.0; LANES];
     for k in 0..8 {
         gather::<BITS>(&blocks[0], k, u, &mut x.u);
     }
@@ -348,7 +349,8 @@ fn dilated_neo_hookean<const FMA: bool, const BITS: usize>(
     u: &[Slot],
     f: &mut [Slot],
 ) -> bool {
-    let (mut x, mut good) = (Scratch::EMPTY, [1.0; LANES]);
+    let mut x = Scratch::EMPTY;
+    let mut good = [1.0; LANES];
     for k in 0..8 {
         gather::<BITS>(&blocks[0], k, u, &mut x.u);
     }
@@ -364,7 +366,9 @@ fn dilated_neo_hookean<const FMA: bool, const BITS: usize>(
         for q in 0..8 {
             fetch(&next.points[q]);
             gather::<BITS>(next, q, u, &mut x.u);
-            let (w, c, [s, p]) = (&block.points[q].weight, &x.coefficients[q], &x.shared);
+            let w = &block.points[q].weight;
+            let c = &x.coefficients[q];
+            let [s, p] = &x.shared;
             pull_back::<FMA>(&block.points[q].map, &mut x.points[q], |l, h| {
                 pressed::<FMA>([c[0][l], c[1][l], c[2][l]], h[0] + h[4] + h[8], s[l], w[l] * p[l])
             });
@@ -384,7 +388,8 @@ fn other<const FMA: bool, const BITS: usize>(
     u: &[Slot],
     f: &mut [Slot],
 ) -> bool {
-    let (mut x, mut good) = (Scratch::EMPTY, [1.0; LANES]);
+    let mut x = Scratch::EMPTY;
+    let mut good = [1.0; LANES];
     for k in 0..8 {
         gather::<BITS>(&blocks[0], k, u, &mut x.u);
     }

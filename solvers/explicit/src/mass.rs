@@ -3,7 +3,7 @@
 use geometry::CellKind;
 use shape::VolumeRows;
 
-use super::ExplicitError;
+use crate::error::ExplicitError;
 
 /// Method of lumping the consistent mass matrix `M_IJ = sum_q rho w N_I N_J` onto its diagonal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -3,11 +3,10 @@
 
 #![allow(non_snake_case)]
 
-use shape::{DilationGroups, VolumeRows};
-
-use super::InvertedPoint;
 use material::volume_change;
-use shape::{Matrix3, Vector3};
+use shape::{DilationGroups, Matrix3, Vector3, VolumeRows};
+
+use crate::error::InvertedPoint;
 
 /// Returns the displacement gradient at one point, and `J - 1`; an error unless `J > 0`.
 fn strain(volume: &VolumeRows, q: usize, u: &[Vector3]) -> Result<(Matrix3, f64), InvertedPoint> {

@@ -5,6 +5,8 @@ use contact::{ContactCounts, ContactError, ContactHistory, ContactSearch, Contac
 use contact::{Drive, Stand, Tool, ToolState};
 use shape::Vector3;
 
+use crate::critical_step::Springs;
+
 /// Tool under a constant drive, with its initial state.
 #[derive(Clone, Debug)]
 pub struct PressingTool<'a> {
@@ -85,10 +87,10 @@ impl<'a> Pressing<'a> {
     }
 
     /// Returns the surface with the largest penalty or stick slope, Pa/m.
-    pub(super) fn springs(&self) -> Option<super::Springs<'a>> {
+    pub(super) fn springs(&self) -> Option<Springs<'a>> {
         let stiffest = |tool: &PressingTool| tool.tool.law().penalty().max(tool.tool.law().stick());
         let modulus = self.tools.iter().map(stiffest).reduce(f64::max)?;
-        Some(super::Springs { surface: self.surface.rows(), modulus })
+        Some(Springs { surface: self.surface.rows(), modulus })
     }
 
     /// Adds the contact forces (N) in the state `u` (m) to `force` and commits the contact. An error has the

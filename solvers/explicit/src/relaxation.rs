@@ -1,10 +1,13 @@
 //! Adaptive dynamic relaxation: the static solution as the limit of a damped motion.
 
-use super::central_difference::constrained;
-use super::critical_step::{LanczosParams, critical_step_touching};
-use super::{ExplicitError, InternalForce, Pressing};
 use material::Material;
 use shape::{FixedDof, Vector3};
+
+use super::central_difference::constrained;
+use super::critical_step::{LanczosParams, critical_step_touching};
+use crate::error::ExplicitError;
+use crate::force::InternalForce;
+use crate::pressing::Pressing;
 
 /// Parameters of a relaxation.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -139,7 +142,8 @@ fn check(n: usize, mass: &[f64], start: &[Vector3], params: RelaxationParams) ->
     if params.tolerance > 0.0 && params.tolerance < 1.0 {
         return Ok(());
     }
-    let (what, value) = ("tolerance of the relaxation", params.tolerance);
+    let what = "tolerance of the relaxation";
+    let value = params.tolerance;
     Err(ExplicitError::BadParameter { what, value, allowed: "between 0 and 1" })
 }
 
@@ -275,7 +279,8 @@ impl<'a, 'b> Trajectory<'a, 'b> {
                 let out = self.external[i][axis] - self.internal[i][axis];
                 let move_by = r * r * self.du[i][axis] + s * s / self.mass[i] * out;
                 if !move_by.is_finite() {
-                    let (what, time) = ("out-of-balance force", step as f64 * dt);
+                    let what = "out-of-balance force";
+                    let time = step as f64 * dt;
                     return Err(ExplicitError::NotFinite { step, time, what, node: i });
                 }
                 residual = residual.max(out.abs());

@@ -120,7 +120,8 @@ fn internal_lanes<const FMA: bool>(
     not_inverted: &mut bool,
 ) {
     // Holds `H` of each batch, later replaced by `w P`.
-    let (mut x, mut good) = ([[[0.0; LANES]; 9]; TOGETHER], [1.0; LANES]);
+    let mut x = [[[0.0; LANES]; 9]; TOGETHER];
+    let mut good = [1.0; LANES];
     let mut first = 0;
     for batches in chunk.batches.chunks(TOGETHER) {
         let mut start = first;

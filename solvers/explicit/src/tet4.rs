@@ -5,15 +5,15 @@
 //! conserved to the last bit of each element. An element takes 88 bytes (9 gradients, weight, four 16-bit
 //! nodes) instead of 120.
 
-use super::Kernel;
+use lanes::{LANES, LanePath};
+use shape::{Vector3, locality_order};
+
 use super::body::ExplicitBody;
 use super::chunks::{Border, ChunkNodes, Slot, load, split};
 use super::moduli::LaneLaw;
 use super::nodal::Nodal;
 use super::tet4_lanes::{Block, Chunk, dilated, dilations, internal};
-use lanes::{LANES, LanePath};
-use shape::Vector3;
-use shape::locality_order;
+use crate::kernel::Kernel;
 
 /// Elements per chunk, with about 512 distinct nodes, whose displacements and forces stay in the first-level
 /// cache.

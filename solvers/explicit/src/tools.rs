@@ -1,9 +1,13 @@
 //! Rigid tools in explicit dynamics: driven by displacement or force, in contact by penalty with friction.
 
-use super::{ExplicitError, Springs};
-use contact::{ContactCounts, ContactError, ContactHistory, ContactSearch, ContactSurface, Contacts};
-use contact::{Drive, Stand, Tool, ToolState};
+use contact::{
+    ContactCounts, ContactError, ContactHistory, ContactSearch, ContactSurface, Contacts, Drive, Stand, Tool,
+    ToolState,
+};
 use shape::{Point3, Vector3};
+
+use crate::critical_step::Springs;
+use crate::error::ExplicitError;
 
 /// Tool with its drive and its ramp.
 ///
@@ -120,7 +124,8 @@ impl<'a> Tools<'a> {
         let each = tools.iter().map(|&of| Moving::new(of, surface, u)).collect();
         let forces = vec![Vector3::zeros(); u.len()];
         let search = ContactSearch::new(surface, tools.len());
-        let (loaded, is_loaded) = (Vec::new(), vec![false; u.len()]);
+        let loaded = Vec::new();
+        let is_loaded = vec![false; u.len()];
         Ok(Tools { surface, search, each, forces, loaded, is_loaded, counts: ContactCounts::default() })
     }
 

@@ -81,8 +81,10 @@ pub(super) fn slopes_back(d: &[[f64; 4]; 3]) -> [f64; 8] {
     let (xy, xz, yz) = (GAUSS * (x.1 + y.1), GAUSS * (x.2 + z.1), GAUSS * (y.2 + z.2));
     let xyz = GAUSS * GAUSS * (x.3 + y.3 + z.3);
     let pair = |sum: f64, difference: f64| (sum - difference, sum + difference);
-    let ((b0, b4), (b1, b5)) = ((-z.0, z.0), pair(x.0, xz));
-    let ((b2, b6), (b3, b7)) = (pair(y.0, yz), pair(xy, xyz));
+    let (b0, b4) = (-z.0, z.0);
+    let (b1, b5) = pair(x.0, xz);
+    let (b2, b6) = pair(y.0, yz);
+    let (b3, b7) = pair(xy, xyz);
     let ((a0, a2), (a1, a3)) = (pair(b0, b2), pair(b1, b3));
     let ((a4, a6), (a5, a7)) = (pair(b4, b6), pair(b5, b7));
     let ((v0, v1), (v2, v3)) = (pair(a0, a1), pair(a2, a3));

@@ -3,7 +3,7 @@
 use geometry::Mesh;
 use shape::{Coarser, Rows, Unity};
 
-use crate::FemError;
+use crate::error::FemError;
 
 /// Returns the interpolation from the corners of a mesh with quadratic cells to all its nodes, or `None` for
 /// a mesh of linear cells alone. The corners of all cells are the nodes of the coarser, linear mesh. The

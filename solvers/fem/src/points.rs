@@ -1,15 +1,15 @@
 //! Rows at given points: probes, transfer targets, points of stress output.
 
+use geometry::element::{Element, with_element};
 use geometry::{Mesh, Point3, Vector3};
 use rayon::prelude::*;
 use shape::{GradRows, PointRows, Rows};
 
-use crate::FemError;
 use crate::closest::Surface;
+use crate::error::FemError;
 use crate::locate::{Locator, Place};
 use crate::map::{Nodes, inverse, physical};
 use crate::volume::UNITY;
-use geometry::element::{Element, with_element};
 
 /// Points outside the mesh, which were replaced by the nearest point of its surface.
 #[derive(Clone, Debug, PartialEq)]

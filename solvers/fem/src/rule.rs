@@ -3,7 +3,7 @@
 use geometry::quadrature::{self, Parts, Rule, TRI_RULES};
 use geometry::{CellKind, FaceKind};
 
-use crate::FemError;
+use crate::error::FemError;
 
 /// Largest number of Gauss points along an axis of a face; a larger number is taken for a typing error.
 const MOST_PER_AXIS: usize = 16;
@@ -54,7 +54,8 @@ impl VolumeRule {
     }
 
     pub(crate) fn rule(&self, kind: CellKind) -> Result<Rule<3>, FemError> {
-        let (points, cell) = (self.points(kind), kind.entry().cell);
+        let points = self.points(kind);
+        let cell = kind.entry().cell;
         (cell.rule)(points).ok_or_else(|| FemError::NoRule {
             kind: kind.name(),
             points,

@@ -9,10 +9,11 @@ use shape::{
     SurfaceRows, VolumeRows,
 };
 
-use crate::{
-    SurfaceRule, VolumeRule, divided_surface_rows, element_dilation, flux_rows, linear_nodes,
-    nearest_grad_rows, nearest_point_rows, outline_rows, pressure_rows, regions, surface_rows, volume_rows,
-};
+use crate::linear::linear_nodes;
+use crate::points::{nearest_grad_rows, nearest_point_rows};
+use crate::rule::{SurfaceRule, VolumeRule};
+use crate::surface::{divided_surface_rows, flux_rows, outline_rows, surface_rows};
+use crate::volume::{element_dilation, pressure_rows, regions, volume_rows};
 
 /// Finite elements of a mesh as a source of tables. The nodes of the mesh are the nodes of the method.
 pub struct Elements {

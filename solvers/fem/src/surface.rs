@@ -1,14 +1,15 @@
 //! Surface quadrature rows of facets: values only for loads, values and gradients for Nitsche's method.
 
+use geometry::element::{Element, with_element};
 use geometry::quadrature::{Parts, Rule};
 use geometry::{CellKind, FaceKind, Facet, Mesh, Point3, Vector3};
 use shape::{FluxRows, GradRows, PointRows, Rows, SurfaceRows};
 
+use crate::error::FemError;
 use crate::face::{Face, into_cell, with_face};
 use crate::map::{Nodes, inverse, physical};
+use crate::rule::SurfaceRule;
 use crate::volume::UNITY;
-use crate::{FemError, SurfaceRule};
-use geometry::element::{Element, with_element};
 
 /// Returns shape values, weights `w |dx/ds x dx/dt|` (m^2) and outward unit normals at the points of every
 /// facet, in the order given. Curved faces are integrated as they are. Rows have the facet's own nodes, in

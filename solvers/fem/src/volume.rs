@@ -2,13 +2,14 @@
 
 use std::ops::Range;
 
+use geometry::element::{Element, with_element};
 use geometry::{CellKind, Mesh, Point3, Vector3};
 use rayon::prelude::*;
 use shape::{DilationGroups, GradRows, Layout, Rows, Unity, VolumeRows};
 
+use crate::error::FemError;
 use crate::map::{Nodes, inverse, physical};
-use crate::{FemError, VolumeRule};
-use geometry::element::{Element, with_element};
+use crate::rule::VolumeRule;
 
 /// Tolerance of the sum of shape values, which is one within a few last bits (20 terms of size 1: some
 /// 1e-15).
@@ -41,7 +42,8 @@ pub fn volume_rows(mesh: &Mesh, rule: &VolumeRule) -> Result<VolumeRows, FemErro
             offsets.push(at);
         }
     }
-    let (rows, entries) = (offsets.len() - 1, *offsets.last().unwrap_or(&0));
+    let rows = offsets.len() - 1;
+    let entries = *offsets.last().unwrap_or(&0);
     let mut points = vec![Point3::origin(); rows];
     let mut weights = vec![0.0; rows];
     let mut nodes = vec![0; entries];

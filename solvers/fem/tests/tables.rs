@@ -201,7 +201,8 @@ fn points_know_their_cell_their_region_and_their_group() {
     let mesh = mixed();
     for rule in &RULES {
         let volume = volume_rows(&mesh, rule).unwrap();
-        let (cells, regions) = (cell_of_point(&mesh, rule), regions(&mesh, rule));
+        let cells = cell_of_point(&mesh, rule);
+        let regions = regions(&mesh, rule);
         let groups = element_dilation(&mesh, rule).unwrap();
         assert_eq!(cells.len(), volume.weights().len());
         assert_eq!(groups.point_count(), cells.len());

@@ -1,7 +1,7 @@
 //! Faces of cells. Node order is that of VTK and Abaqus. The corner nodes of each face are ordered so that
 //! its normal, by the right-hand rule, points outwards.
 
-use crate::CellKind;
+use crate::element::CellKind;
 
 /// The shapes of a cell's faces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -56,7 +56,7 @@ impl FaceKind {
     }
 
     /// Element type of Gmsh.
-    pub(crate) fn gmsh(self) -> u64 {
+    pub fn gmsh(self) -> u64 {
         match self {
             FaceKind::Tri3 => 2,
             FaceKind::Tri6 => 9,
@@ -66,7 +66,7 @@ impl FaceKind {
     }
 
     /// Cell type of VTK.
-    pub(crate) fn vtk(self) -> u8 {
+    pub fn vtk(self) -> u8 {
         match self {
             FaceKind::Tri3 => 5,
             FaceKind::Tri6 => 22,

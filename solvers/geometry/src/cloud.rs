@@ -1,17 +1,21 @@
 //! Node clouds: nodes without cells, each with a local spacing that support radii are multiples of.
 
+mod error;
 mod farthest;
 mod generate;
 mod read;
 mod sizes;
 
-pub use generate::{CloudError, Refinement, cloud, cloud_of_sizes};
+pub use error::CloudError;
+pub use generate::{Refinement, cloud, cloud_of_sizes};
 pub use read::{PointFile, PointFileError, PointProblem, read_points, read_points_text};
 pub use sizes::Sizes;
 
 use rayon::prelude::*;
 
-use crate::{Mesh, Point3, Search};
+use crate::Point3;
+use crate::mesh::Mesh;
+use crate::search::Search;
 
 /// Number of neighbours whose mean distance is the spacing of a node in a cloud without a mesh, close to the
 /// number of edges at a node of a tetrahedral mesh.

@@ -10,6 +10,7 @@ mod boxes;
 mod convert;
 mod cylinder;
 mod lattice;
+mod parts;
 mod shell;
 pub mod surfaces;
 mod wedges;
@@ -20,7 +21,9 @@ pub use convert::{converted, is_convertible, raise_order, to_tets, turned};
 pub use cylinder::cylinder_mesh;
 pub use shell::{ShellExtent, sphere_shell_mesh};
 
-use crate::{CellKind, Mesh, MeshError, quality::InvertedElement};
+use crate::element::CellKind;
+use crate::mesh::{Mesh, MeshError};
+use crate::quality::InvertedElement;
 
 /// Errors of mesh generation.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

@@ -1,4 +1,4 @@
-//! Bodies in space: meshes, node clouds, quadrature, spatial search, mesh files and mesh quality.
+//! Bodies in space: meshes, node clouds, quadrature, spatial search and mesh quality.
 //!
 //! All lengths are in metres, and all data are in flat arrays. The crate is independent of approximations and
 //! materials.
@@ -19,7 +19,6 @@
 mod cell;
 mod cloud;
 pub mod element;
-pub mod files;
 pub mod generate;
 mod locate;
 mod mesh;

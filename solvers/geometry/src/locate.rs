@@ -2,8 +2,10 @@
 
 use rayon::prelude::*;
 
+use crate::element::CellKind;
+use crate::mesh::Mesh;
 use crate::triangle::closest_on_triangle;
-use crate::{Matrix3, Mesh, Point3, Vector3};
+use crate::{Matrix3, Point3, Vector3};
 
 /// Tolerance on negative barycentric coordinates of a point inside a cell, so that rounding loses no point on
 /// a face between two cells.
@@ -32,7 +34,7 @@ pub enum LocateError {
         /// Cell index.
         cell: usize,
         /// Kind of the cell.
-        kind: crate::CellKind,
+        kind: CellKind,
     },
     /// A tetrahedron without volume.
     #[error("cell {cell} has no volume: det J = {det_j:e} m^3")]
@@ -324,7 +326,7 @@ impl Locator {
     /// Squared distance (m^2) to the faces of a cell, and the closest point.
     fn closest_on_cell(&self, cell: usize, p: &Point3) -> (f64, Point3) {
         let mut best = (f64::INFINITY, self.corners[cell][0]);
-        for face in crate::CellKind::Tet4.faces() {
+        for face in CellKind::Tet4.faces() {
             let q = closest_on_triangle(p, &[0, 1, 2].map(|k| self.corners[cell][face[k]]));
             let distance = (q - p).norm_squared();
             if distance < best.0 {
@@ -354,7 +356,8 @@ mod tests {
         for mesh in [kidney_mesh(CellKind::Tet4, 4).unwrap(), slab.unwrap()] {
             let cells = Locator::new(&mesh).unwrap();
             let [low, high] = [cells.low, cells.boxes.iter().fold(cells.low, |high, b| high.sup(&b[1]))];
-            let (middle, extent) = (nalgebra::center(&low, &high), high - low);
+            let middle = nalgebra::center(&low, &high);
+            let extent = high - low;
             // Low-discrepancy points in three times the box, by multiples of irrational steps, and mesh nodes
             // moved by whole extents, which are equally close to several cells.
             let at =

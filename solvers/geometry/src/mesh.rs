@@ -4,7 +4,9 @@
 use std::collections::BTreeMap;
 use std::sync::OnceLock;
 
-use crate::{CellKind, FaceKind, Point3};
+use crate::Point3;
+use crate::cell::FaceKind;
+use crate::element::CellKind;
 
 /// One face of one cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -295,7 +297,8 @@ impl Mesh {
         for node in 0..self.points.len() {
             starts[node + 1] += starts[node];
         }
-        let (mut next, mut order) = (starts.clone(), vec![0; faces.len()]);
+        let mut next = starts.clone();
+        let mut order = vec![0; faces.len()];
         for (at, (nodes, _)) in faces.iter().enumerate() {
             let slot = &mut next[nodes[0] as usize];
             order[*slot] = at;

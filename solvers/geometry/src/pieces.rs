@@ -3,7 +3,8 @@
 
 use std::collections::HashMap;
 
-use crate::{Facet, Mesh, Point3};
+use crate::Point3;
+use crate::mesh::{Facet, Mesh};
 
 /// Largest distance of coinciding nodes of two pieces, relative to the shortest edge of the adjacent faces.
 /// Files round coordinates to five digits.
@@ -163,7 +164,8 @@ mod tests {
     /// Two boxes side by side along x, with a gap of `off` (m).
     fn two(kind: CellKind, off: f64, cells: [usize; 3]) -> Mesh {
         let block = |low: f64, cells: [usize; 3]| {
-            let (min, max) = (Point3::new(low, 0.0, 0.0), Point3::new(low + 1.0, 1.0, 1.0));
+            let min = Point3::new(low, 0.0, 0.0);
+            let max = Point3::new(low + 1.0, 1.0, 1.0);
             box_mesh(kind, min, max, cells, [1.0; 3], None).unwrap()
         };
         let (a, b) = (block(0.0, [3, 2, 2]), block(1.0 + off, cells));

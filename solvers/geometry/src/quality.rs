@@ -1,6 +1,8 @@
 //! Mesh quality: volumes, Jacobians, dihedral angles and aspect, each with the worst element.
 
-use crate::{CellKind, Mesh, Point3, Vector3, element, quadrature};
+use crate::element::CellKind;
+use crate::mesh::Mesh;
+use crate::{Point3, Vector3, element, quadrature};
 
 /// Error of a mesh with inverted cells; describes the first of them.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
@@ -201,7 +203,8 @@ fn dihedrals(kind: CellKind, points: &[Point3]) -> (f64, f64) {
             let face = kind.face_corners(face);
             let corners = face.len();
             let at = face.iter().position(|&n| n == a)?;
-            let (next, previous) = (face[(at + 1) % corners], face[(at + corners - 1) % corners]);
+            let next = face[(at + 1) % corners];
+            let previous = face[(at + corners - 1) % corners];
             let other = if next == b {
                 previous
             } else if previous == b {

@@ -188,7 +188,8 @@ fn kidney_surface_samples_are_uniform() {
     let mesh = tissuebench_geometry::generate::kidney_mesh(CellKind::Tet4, 24).unwrap();
     let parts: [fn(&Point3) -> bool; 4] =
         [|p| p.x < 0.0, |p| p.y.abs() < 0.015, |p| p.z.abs() < 0.005, |p| p.x > 0.012 && p.y.abs() > 0.015];
-    let (mut area, mut share) = (0.0, [0.0; 4]);
+    let mut area = 0.0;
+    let mut share = [0.0; 4];
     for &f in mesh.group("surface").unwrap() {
         let p: Vec<Point3> = mesh.facet_nodes(f).map(|n| mesh.points()[n as usize]).collect();
         let a = 0.5 * (p[1] - p[0]).cross(&(p[2] - p[0])).norm();

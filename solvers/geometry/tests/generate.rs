@@ -11,7 +11,8 @@ use tissuebench_geometry::shapes::{Kidney, Shape};
 use tissuebench_geometry::{CellKind, Facet, Mesh, Point3, Vector3, quality};
 
 fn unit_box(kind: CellKind, cells: [usize; 3], jitter: Option<Jitter>) -> Mesh {
-    let (min, max) = (Point3::new(-0.1, 0.2, 0.3), Point3::new(0.9, 0.7, 0.6));
+    let min = Point3::new(-0.1, 0.2, 0.3);
+    let max = Point3::new(0.9, 0.7, 0.6);
     box_mesh(kind, min, max, cells, [1.0; 3], jitter).unwrap()
 }
 
@@ -130,7 +131,8 @@ fn box_groups_lie_in_their_planes_and_counts_are_exact() {
 
 #[test]
 fn grading_gives_the_asked_ratio_and_jitter_keeps_the_boundary() {
-    let (min, max) = (Point3::origin(), Point3::new(1.0, 1.0, 1.0));
+    let min = Point3::origin();
+    let max = Point3::new(1.0, 1.0, 1.0);
     let mesh = box_mesh(CellKind::Hex8, min, max, [5, 1, 1], [4.0, 1.0, 1.0], None).unwrap();
     let x: Vec<f64> = mesh.points()[..6].iter().map(|p| p.x).collect();
     assert!(((x[5] - x[4]) / (x[1] - x[0]) - 4.0).abs() < 1e-12, "{x:?}");

@@ -29,7 +29,8 @@ fn simplex_rules_are_exact_to_their_degree_and_no_further() {
     for (points, degree) in TET_RULES {
         let rule = tet(points).unwrap();
         assert_eq!(rule.len(), points);
-        let (good, bad) = (simplex_error(&rule, degree), simplex_error(&rule, degree + 1));
+        let good = simplex_error(&rule, degree);
+        let bad = simplex_error(&rule, degree + 1);
         // Rounding of the tabulated digits: 1e-16 per parameter, times the degree.
         assert!(good < 3e-14, "tet {points}: error {good:e} at degree {degree}");
         assert!(bad > 1e-6, "tet {points}: degree {degree} is understated ({bad:e})");
@@ -37,7 +38,8 @@ fn simplex_rules_are_exact_to_their_degree_and_no_further() {
     for (points, degree) in TRI_RULES {
         let rule = tri(points).unwrap();
         assert_eq!(rule.len(), points);
-        let (good, bad) = (simplex_error(&rule, degree), simplex_error(&rule, degree + 1));
+        let good = simplex_error(&rule, degree);
+        let bad = simplex_error(&rule, degree + 1);
         assert!(good < 3e-14, "tri {points}: error {good:e} at degree {degree}");
         assert!(bad > 1e-6, "tri {points}: degree {degree} is understated ({bad:e})");
     }

@@ -1,24 +1,24 @@
 //! Linear interpolation in a mesh of tetrahedra.
 
-use catalogue::Entry;
+use catalogue::{Build, Entry};
 use geometry::{Mesh, Point3, locate};
 use nalgebra::Matrix3;
 use shape::{GradRows, PointRows, Rows, Unity};
 
+use crate::error::InterpError;
 use crate::neighbours::check_finite;
-use crate::scheme::{SchemeEntry, Source, Transfer};
-use crate::{InterpError, TransferInfo};
+use crate::transfer::{Source, Transfer, TransferInfo};
 
 /// The scheme of [`barycentric`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Barycentric;
 
-pub(crate) const ENTRY: SchemeEntry = Entry {
+pub(crate) const ENTRY: Entry<Build<Barycentric>> = Entry {
     name: "barycentric",
     meaning: "linear interpolation in the tetrahedra of the mesh",
     source: "",
     parameters: &[],
-    build: |_| Ok(Barycentric.into()),
+    build: |_| Ok(Barycentric),
 };
 
 impl Transfer for Barycentric {

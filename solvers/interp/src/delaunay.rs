@@ -174,7 +174,8 @@ impl Insertion {
     /// Collects the cells in conflict, starting from one of them, and the faces around them.
     fn empty(&mut self, start: u32, node: u32) {
         self.stamp += 2;
-        let (out, within) = (self.stamp, self.stamp + 1);
+        let out = self.stamp;
+        let within = self.stamp + 1;
         self.cavity.clear();
         self.rim.clear();
         self.cavity.push(start);

@@ -1,10 +1,11 @@
 //! Convex hull of a cloud, and the position of targets relative to it.
 
 use geometry::closest_on_triangle;
+use lanes::LANES;
 use shape::{Point3, Vector3};
 
 use crate::delaunay::{Delaunay, FACES, NONE};
-use crate::lanes::{LANES, Lanes, dot};
+use crate::lanes::{Lanes, dot};
 
 /// Relative depth to which targets on or near the hull are moved inwards (distances from 0 at the middle of
 /// the cloud to 1 on the hull). On the hull itself, cells of the Voronoi diagram are unbounded. Rounding

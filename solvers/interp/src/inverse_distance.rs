@@ -1,13 +1,12 @@
 //! Inverse-distance weighting, the transfer of the paper on which this project is based.
 
+use catalogue::{Build, Dimension, Entry, Kind, Parameter, Range};
 use shape::{Point3, PointRows, Unity};
 
-use catalogue::{Dimension, Entry, Kind, Parameter, Range};
-
-use crate::{InterpError, TransferInfo};
+use crate::error::InterpError;
 use crate::neighbours::{Found, Neighbours, check_count, check_finite};
-use crate::scheme::{SchemeEntry, Source, Transfer};
 use crate::table::{Batch, in_chunks};
+use crate::transfer::{Source, Transfer, TransferInfo};
 
 /// The scheme of [`inverse_distance`].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -18,14 +17,15 @@ pub struct InverseDistance {
     pub power: f64,
 }
 
-pub(crate) const ENTRY: SchemeEntry = Entry {
+pub(crate) const ENTRY: Entry<Build<InverseDistance>> = Entry {
     name: "inverse-distance",
     meaning: "mean of the nearest nodes, weighted by a power of the inverse distance",
     source: "Shepard (1968), over the nearest nodes",
     parameters: &[NEIGHBOURS, POWER],
     build: |values| {
-        let (neighbours, power) = (values.number("neighbours")? as usize, values.number("power")?);
-        Ok(InverseDistance { neighbours, power }.into())
+        let neighbours = values.number("neighbours")? as usize;
+        let power = values.number("power")?;
+        Ok(InverseDistance { neighbours, power })
     },
 };
 

@@ -29,15 +29,63 @@ mod frame;
 mod hull;
 mod lanes;
 mod neighbours;
-mod scheme;
 mod sibson;
 mod table;
+mod transfer;
 mod twofold;
 
 pub use error::InterpError;
-pub use scheme::SchemeEntry;
+pub use transfer::TransferInfo;
 
-scheme::schemes! {
+use catalogue::{Build, Entry, Values};
+use geometry::Mesh;
+use shape::{GradRows, Point3, PointRows};
+
+use crate::transfer::{Source, Transfer};
+
+/// A transfer scheme that scene files can name.
+pub type SchemeEntry = Entry<Build<Scheme>>;
+
+/// Declares the files of the schemes, each with its types and their entries.
+macro_rules! schemes {
+    ($($file:ident::{$($scheme:ident [$($entry:ident),*]),*},)*) => {
+        $(
+            mod $file;
+            pub use $file::*;
+            $(
+                impl From<$scheme> for Scheme {
+                    fn from(scheme: $scheme) -> Scheme {
+                        Scheme::$scheme(scheme)
+                    }
+                }
+            )*
+        )*
+
+        /// A transfer scheme with its parameters.
+        #[derive(Clone, Copy, Debug, PartialEq)]
+        #[allow(missing_docs)] // each is its type
+        pub enum Scheme {
+            $($($scheme($scheme),)*)*
+        }
+
+        /// Entries of all schemes, in the order of tables. Defaults are those of the transfer study of the
+        /// kidney.
+        pub static SCHEMES: &[SchemeEntry] = &[$($($(
+            $file::$entry.built_by(|values| Ok(($file::$entry.build)(values)?.into()))
+        ),*),*),*];
+
+        impl Scheme {
+            fn transfer(&self) -> &dyn Transfer {
+                match self {
+                    $($(Scheme::$scheme(scheme) => scheme,)*)*
+                }
+            }
+        }
+    };
+}
+
+// Each scheme is a file with its function, a type that implements `Transfer` and its entry, and a line here.
+schemes! {
     nearest::{Nearest [ENTRY]},
     inverse_distance::{InverseDistance [ENTRY]},
     shepard::{Shepard [ENTRY]},
@@ -47,14 +95,60 @@ scheme::schemes! {
     barycentric::{Barycentric [ENTRY]},
 }
 
-/// Counts of special cases of a transfer; none of them is an error.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct TransferInfo {
-    /// Number of extrapolated targets, outside the mesh (barycentric) or outside the convex hull of the nodes
-    /// (natural neighbour). Other schemes always report 0.
-    pub outside: usize,
-    /// Number of targets for which the plain formula was replaced: by an enlarged support (Shepard, moving
-    /// least squares), by a regularised or reduced basis (moving least squares), or by a linear field fitted
-    /// to the natural neighbours, because rounding spoilt the Voronoi volumes (natural neighbour).
-    pub fallbacks: usize,
+impl Scheme {
+    /// Returns every scheme with its default parameters, in the order of tables.
+    pub fn all() -> impl Iterator<Item = Scheme> {
+        // No parameter of a scheme is required.
+        SCHEMES.iter().filter_map(|entry| (entry.build)(&Values::new(entry.parameters)).ok())
+    }
+
+    /// Returns the name used in scene files and tables.
+    pub fn name(&self) -> &'static str {
+        self.transfer().name()
+    }
+
+    /// Returns the scheme with this name and default parameters.
+    pub fn from_name(name: &str) -> Option<Scheme> {
+        Scheme::all().find(|scheme| scheme.name() == name)
+    }
+
+    /// Degree of the polynomials that are transferred exactly: 0, 1 or 2; `None` if not even constants are.
+    pub fn exact_degree(&self) -> Option<usize> {
+        self.transfer().exact_degree()
+    }
+
+    /// Whether a target at a node takes that node's value.
+    pub fn interpolates(&self) -> bool {
+        self.transfer().interpolates()
+    }
+
+    /// Builds the table from `nodes` to `targets` (m). Only [`Barycentric`] uses `mesh`,
+    /// whose points must equal `nodes`.
+    ///
+    /// # Errors
+    /// Nodes, parameters or a mesh that the scheme refuses.
+    pub fn rows(
+        &self,
+        nodes: &[Point3],
+        mesh: Option<&Mesh>,
+        targets: &[Point3],
+    ) -> Result<(PointRows, TransferInfo), InterpError> {
+        self.transfer().rows(Source { nodes, mesh }, targets)
+    }
+
+    /// Builds the table with the gradients (1/m) of its rows, for strain and stress at `targets` (m). Moving
+    /// least squares, radial bases and barycentric interpolation (constant in every tetrahedron) have
+    /// gradients in closed form.
+    ///
+    /// # Errors
+    /// The errors of [`Scheme::rows`], and [`InterpError::NoGradient`] for the other schemes: they have no
+    /// gradient in closed form, or none at the nodes.
+    pub fn grad_rows(
+        &self,
+        nodes: &[Point3],
+        mesh: Option<&Mesh>,
+        targets: &[Point3],
+    ) -> Result<(GradRows, TransferInfo), InterpError> {
+        self.transfer().grad_rows(Source { nodes, mesh }, targets)
+    }
 }

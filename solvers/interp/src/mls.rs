@@ -1,13 +1,13 @@
 //! Moving least squares, linear and quadratic: element-free Galerkin shape functions used as a transfer.
 
-use catalogue::Entry;
+use catalogue::{Build, Entry};
 use efg::{Approximation, Basis, CubicSpline, Kernel, MlsInfo, Support};
 use geometry::Cloud;
 use shape::{GradRows, Point3, PointRows};
 
+use crate::error::InterpError;
 use crate::neighbours::{check_count, check_finite};
-use crate::scheme::{SchemeEntry, Source, Transfer, scaled, support_scale};
-use crate::{InterpError, TransferInfo};
+use crate::transfer::{Source, Transfer, TransferInfo, scaled, support_scale};
 
 /// The scheme of [`mls`] with the linear basis.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -16,12 +16,12 @@ pub struct MlsLinear {
     pub support_scale: f64,
 }
 
-pub(crate) const MLS_LINEAR: SchemeEntry = Entry {
+pub(crate) const MLS_LINEAR: Entry<Build<MlsLinear>> = Entry {
     name: "mls-linear",
     meaning: "moving least squares, linear basis",
     source: "Lancaster and Salkauskas (1981)",
     parameters: &[support_scale(1.6)],
-    build: |values| Ok(MlsLinear { support_scale: values.number("support_scale")? }.into()),
+    build: |values| Ok(MlsLinear { support_scale: values.number("support_scale")? }),
 };
 
 impl Transfer for MlsLinear {
@@ -53,12 +53,12 @@ pub struct MlsQuadratic {
     pub support_scale: f64,
 }
 
-pub(crate) const MLS_QUADRATIC: SchemeEntry = Entry {
+pub(crate) const MLS_QUADRATIC: Entry<Build<MlsQuadratic>> = Entry {
     name: "mls-quadratic",
     meaning: "moving least squares, quadratic basis",
     source: "Lancaster and Salkauskas (1981)",
     parameters: &[support_scale(2.5)],
-    build: |values| Ok(MlsQuadratic { support_scale: values.number("support_scale")? }.into()),
+    build: |values| Ok(MlsQuadratic { support_scale: values.number("support_scale")? }),
 };
 
 impl Transfer for MlsQuadratic {
@@ -90,12 +90,12 @@ pub struct MlsModified {
     pub support_scale: f64,
 }
 
-pub(crate) const MLS_MODIFIED: SchemeEntry = Entry {
+pub(crate) const MLS_MODIFIED: Entry<Build<MlsModified>> = Entry {
     name: "mls-modified",
     meaning: "moving least squares, quadratic basis with penalised second derivatives",
     source: "Joldes et al. (2015)",
     parameters: &[support_scale(2.0)],
-    build: |values| Ok(MlsModified { support_scale: values.number("support_scale")? }.into()),
+    build: |values| Ok(MlsModified { support_scale: values.number("support_scale")? }),
 };
 
 impl Transfer for MlsModified {

@@ -1,29 +1,29 @@
 //! Natural neighbour interpolation.
 
-use catalogue::Entry;
+use catalogue::{Build, Entry};
 use lanes::{LanePath, on_path};
 use shape::{Point3, PointRows, Unity};
 
 use crate::delaunay::{Degenerate, Delaunay};
+use crate::error::InterpError;
 use crate::frame::{FLAT, centre_and_half_extent, thickness};
 use crate::hull::{Hull, Place};
 use crate::neighbours::{check_count, check_finite};
-use crate::scheme::{SchemeEntry, Source, Transfer};
 use crate::sibson::{Voronoi, Workspace};
 use crate::table::{Batch, in_chunks};
-use crate::{InterpError, TransferInfo};
+use crate::transfer::{Source, Transfer, TransferInfo};
 
 /// The scheme of [`natural_neighbour`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NaturalNeighbour;
 
-pub(crate) const ENTRY: SchemeEntry = Entry {
+pub(crate) const ENTRY: Entry<Build<NaturalNeighbour>> = Entry {
     name: SCHEME,
     meaning: "mean weighted by the volumes that the target's Voronoi cell takes from the cells of the nodes; \
               C1 except at the nodes",
     source: "Sibson (1980, 1981)",
     parameters: &[],
-    build: |_| Ok(NaturalNeighbour.into()),
+    build: |_| Ok(NaturalNeighbour),
 };
 
 impl Transfer for NaturalNeighbour {
@@ -159,7 +159,8 @@ mod tests {
         };
         let nodes = points(150, 1.0);
         let mesh = Delaunay::new(&nodes).unwrap();
-        let (hull, voronoi) = (Hull::new(&nodes, &mesh), Voronoi::new(nodes, &mesh));
+        let hull = Hull::new(&nodes, &mesh);
+        let voronoi = Voronoi::new(nodes, &mesh);
         let targets = points(601, 1.1);
         let on = |path| batch(path, &targets, &hull, &voronoi);
         let plain = on(LanePath::PORTABLE);

@@ -1,24 +1,23 @@
 //! The value of the nearest node.
 
+use catalogue::{Build, Entry};
 use shape::{Point3, PointRows, Unity};
 
-use catalogue::Entry;
-
-use crate::{InterpError, TransferInfo};
+use crate::error::InterpError;
 use crate::neighbours::{Found, Neighbours, check_count, check_finite};
-use crate::scheme::{SchemeEntry, Source, Transfer};
 use crate::table::{Batch, in_chunks};
+use crate::transfer::{Source, Transfer, TransferInfo};
 
 /// The scheme of [`nearest`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Nearest;
 
-pub(crate) const ENTRY: SchemeEntry = Entry {
+pub(crate) const ENTRY: Entry<Build<Nearest>> = Entry {
     name: "nearest",
     meaning: "value of the nearest node; discontinuous",
     source: "",
     parameters: &[],
-    build: |_| Ok(Nearest.into()),
+    build: |_| Ok(Nearest),
 };
 
 impl Transfer for Nearest {

@@ -3,7 +3,7 @@
 use geometry::Search;
 use shape::Point3;
 
-use crate::InterpError;
+use crate::error::InterpError;
 
 /// Refuses coordinates that are not finite.
 pub(crate) fn check_finite(nodes: &[Point3], targets: &[Point3]) -> Result<(), InterpError> {

@@ -3,16 +3,16 @@
 //! all targets.
 
 use algebra::Cholesky;
-use catalogue::{Dimension, Entry, Kind, Parameter, Range};
+use catalogue::{Build, Dimension, Entry, Kind, Parameter, Range};
 use geometry::Cloud;
 use nalgebra::{DMatrix, DVector, Matrix4, Matrix4xX, MatrixXx4};
 use rayon::prelude::*;
 use shape::{GradRows, Point3, PointRows, Rows, Unity, Vector3};
 
-use crate::{InterpError, TransferInfo};
+use crate::error::InterpError;
 use crate::frame::{FLAT, centre_and_half_extent, thickness};
 use crate::neighbours::{check_count, check_finite};
-use crate::scheme::{SchemeEntry, Source, Transfer, support_scale};
+use crate::transfer::{Source, Transfer, TransferInfo, support_scale};
 
 /// Radial functions, positive definite in space together with a linear polynomial (Wendland 2005, theorems
 /// 8.5, 8.16 and 8.17). [`Radial::Gaussian`] and [`Radial::WendlandC2`] are positive definite even without a
@@ -141,49 +141,51 @@ const fn width(default: f64) -> Parameter {
 const POLYNOMIAL: Parameter =
     Parameter::default("polynomial", Dimension::None, 1.0, "with a linear polynomial").of(Kind::Flag);
 
-pub(crate) const THIN_PLATE: SchemeEntry = Entry {
+pub(crate) const THIN_PLATE: Entry<Build<Radial>> = Entry {
     name: "thin-plate",
     meaning: "radial basis r^2 ln r with a linear polynomial",
     source: "Wendland (2005), chapter 8",
     parameters: &[],
-    build: |_| Ok(Radial::ThinPlate.into()),
+    build: |_| Ok(Radial::ThinPlate),
 };
 
-pub(crate) const CUBIC: SchemeEntry = Entry {
+pub(crate) const CUBIC: Entry<Build<Radial>> = Entry {
     name: "cubic",
     meaning: "radial basis r^3 with a linear polynomial",
     source: "Wendland (2005), chapter 8",
     parameters: &[],
-    build: |_| Ok(Radial::Cubic.into()),
+    build: |_| Ok(Radial::Cubic),
 };
 
-pub(crate) const MULTIQUADRIC: SchemeEntry = Entry {
+pub(crate) const MULTIQUADRIC: Entry<Build<Radial>> = Entry {
     name: "multiquadric",
     meaning: "radial basis -sqrt(r^2 + c^2) with a linear polynomial",
     source: "Hardy (1971)",
     parameters: &[width(1.0)],
-    build: |values| Ok(Radial::Multiquadric { shape: values.number("shape")? }.into()),
+    build: |values| Ok(Radial::Multiquadric { shape: values.number("shape")? }),
 };
 
-pub(crate) const GAUSSIAN: SchemeEntry = Entry {
+pub(crate) const GAUSSIAN: Entry<Build<Radial>> = Entry {
     name: "gaussian",
     meaning: "radial basis exp(-(r / c)^2)",
     source: "Wendland (2005), theorem 6.10",
     parameters: &[width(1.5), POLYNOMIAL],
     build: |values| {
-        let (shape, polynomial) = (values.number("shape")?, values.flag("polynomial"));
-        Ok(Radial::Gaussian { shape, polynomial }.into())
+        let shape = values.number("shape")?;
+        let polynomial = values.flag("polynomial");
+        Ok(Radial::Gaussian { shape, polynomial })
     },
 };
 
-pub(crate) const WENDLAND_C2: SchemeEntry = Entry {
+pub(crate) const WENDLAND_C2: Entry<Build<Radial>> = Entry {
     name: "wendland-c2",
     meaning: "radial basis (1 - q)^4 (4q + 1), zero beyond the support radius",
     source: "Wendland (1995)",
     parameters: &[support_scale(4.0), POLYNOMIAL],
     build: |values| {
-        let (support, polynomial) = (values.number("support_scale")?, values.flag("polynomial"));
-        Ok(Radial::WendlandC2 { support, polynomial }.into())
+        let support = values.number("support_scale")?;
+        let polynomial = values.flag("polynomial");
+        Ok(Radial::WendlandC2 { support, polynomial })
     },
 };
 
@@ -369,7 +371,8 @@ impl System {
             };
             polynomial.column_mut(t).copy_from_slice(&terms);
             for (value, node) in phi.column_mut(t).iter_mut().zip(&self.nodes) {
-                let (offset, width) = (x - node, self.inverse_square);
+                let offset = x - node;
+                let width = self.inverse_square;
                 let square = offset.norm_squared();
                 *value = match axis {
                     None => self.radial.eval(square, width),

@@ -1,14 +1,14 @@
 //! Shepard's method with compact kernels: moving least squares of order zero.
 
-use catalogue::Entry;
+use catalogue::{Build, Entry};
 use efg::{CubicSpline, Kernel, Support};
 use geometry::Cloud;
 use shape::{Point3, PointRows, Unity};
 
+use crate::error::InterpError;
 use crate::neighbours::{check_count, check_finite, squared_distances};
-use crate::scheme::{SchemeEntry, Source, Transfer, scaled, support_scale};
 use crate::table::{Batch, in_chunks};
-use crate::{InterpError, TransferInfo};
+use crate::transfer::{Source, Transfer, TransferInfo, scaled, support_scale};
 
 /// Factor by which all supports are enlarged beyond the nearest node if no node covers a target.
 const ENLARGE: f64 = 1.25;
@@ -23,12 +23,12 @@ pub struct Shepard {
     pub support_scale: f64,
 }
 
-pub(crate) const ENTRY: SchemeEntry = Entry {
+pub(crate) const ENTRY: Entry<Build<Shepard>> = Entry {
     name: "shepard",
     meaning: "mean of the nodes whose supports contain the target, weighted by cubic splines; smooth",
     source: "Shepard (1968), with compact kernels",
     parameters: &[support_scale(1.6)],
-    build: |values| Ok(Shepard { support_scale: values.number("support_scale")? }.into()),
+    build: |values| Ok(Shepard { support_scale: values.number("support_scale")? }),
 };
 
 impl Transfer for Shepard {

@@ -8,13 +8,14 @@
 //! contains the point, and is known in advance. The second is over the tetrahedra that the point forms with
 //! the faces around them. No Voronoi cell is ever built.
 
+use lanes::LANES;
 use nalgebra::Matrix3;
 use shape::{Point3, Vector3};
 
 use crate::circumcentre::circumcentre;
 use crate::delaunay::{Delaunay, FACES, NONE};
 use crate::hull::DEPTH;
-use crate::lanes::{LANES, Lanes};
+use crate::lanes::Lanes;
 
 /// Tolerance of circumspheres: a sphere also contains points beyond it by up to half of this fraction of the
 /// tetrahedron's size. The error of the resulting volumes is of third order in this tolerance. A point of a

@@ -3,7 +3,8 @@
 use rayon::prelude::*;
 use shape::{Point3, PointRows, Rows, Unity};
 
-use crate::{InterpError, TransferInfo};
+use crate::error::InterpError;
+use crate::transfer::TransferInfo;
 
 /// Targets per parallel task. The number is fixed, so results have the same bits at any number of threads.
 const CHUNK: usize = 128;

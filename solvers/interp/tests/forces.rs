@@ -49,7 +49,8 @@ fn force_and_moment_are_kept_as_promised() {
     let moment = |points: &[Point3], forces: &[Vector3<f64>]| -> Vector3<f64> {
         points.iter().zip(forces).map(|(x, f)| x.coords.cross(f)).sum()
     };
-    let (force, turn) = (forces.iter().sum::<Vector3<f64>>(), moment(&targets, &forces));
+    let force = forces.iter().sum::<Vector3<f64>>();
+    let turn = moment(&targets, &forces);
     let arm = 0.05 * forces.len() as f64;
     for scheme in schemes() {
         let nodal = rows(scheme, &mesh, &targets).apply_transposed(&forces);

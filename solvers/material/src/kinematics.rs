@@ -3,7 +3,7 @@
 
 use shape::Matrix3;
 
-use super::Tangent;
+use super::material::Tangent;
 
 /// Returns the cofactor matrix `cof A = d(det A)/dA`, so `A^-T = cof A / det A`.
 pub(super) fn cofactor(A: &Matrix3) -> Matrix3 {

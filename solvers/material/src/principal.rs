@@ -4,7 +4,8 @@
 use shape::Matrix3;
 
 use super::kinematics::{add_right, green_lagrange, volume_change};
-use super::{Tangent, spectral};
+use super::material::Tangent;
+use super::spectral;
 
 /// Principal axes and stretches of `C = F^T F = I + 2 E`.
 pub(super) struct Principal {

@@ -2,7 +2,7 @@
 
 use shape::Matrix3;
 
-use super::MaterialError;
+use crate::error::MaterialError;
 
 /// Prony series `g(t) = g_inf + sum_i g_i exp(-t / tau_i)` with `g_inf = 1 - sum_i g_i`: the fraction of a
 /// suddenly applied stress that remains after the time `t`. `g_i` is dimensionless, `tau_i` in seconds.
@@ -152,7 +152,8 @@ mod tests {
             let mut t = 0.0;
             for dt in steps {
                 let step = prony.step(dt).unwrap();
-                let (old, new) = (S * t, S * (t + dt));
+                let old = S * t;
+                let new = S * (t + dt);
                 t += dt;
                 let share = prony.relaxed() * t
                     + prony.terms().iter().map(|(g, tau)| g * tau * -(-t / tau).exp_m1()).sum::<f64>();

@@ -26,7 +26,8 @@ impl Separated {
 
     /// Builds `A = 1`, `U = kappa/2 (ln theta)^2`.
     pub fn logarithmic(bulk: f64, theta_minus_1: f64) -> Separated {
-        let (log, theta) = (theta_minus_1.ln_1p(), 1.0 + theta_minus_1);
+        let log = theta_minus_1.ln_1p();
+        let theta = 1.0 + theta_minus_1;
         let U = [0.5 * log * log, log / theta, (1.0 - log) / (theta * theta)].map(|u| bulk * u);
         Separated { A: WHOLE, U }
     }

@@ -3,7 +3,8 @@
 use shape::Matrix3;
 
 use super::kinematics::{Kinematics, add_right, tangent_of};
-use super::{Material, PronyStep, Tangent};
+use crate::material::{Material, Tangent};
+use crate::prony::PronyStep;
 
 /// Returns the deviatoric part of the second Piola-Kirchhoff stress, `S_dev = S - (S : C)/3 C^-1`, (3, 3),
 /// Pa, from `P = F S`. It is the pull-back of the deviator of the Kirchhoff stress, on which [`PronyStep`]

@@ -2,7 +2,8 @@
 
 use lanes::{LANES, LanePath, on_path};
 
-use crate::{Rows, Vector3};
+use crate::Vector3;
+use crate::rows::Rows;
 
 /// One number for each row of a block, in one cache line.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -121,7 +122,8 @@ impl RowBlocks {
                 [([ax, ay, az], first, rows), ([bx, by, bz], second, others)]
             {
                 for (&node, values) in nodes[both..].iter().zip(&values[both..]) {
-                    let (values, u) = (values.0, u[node as usize]);
+                    let values = values.0;
+                    let u = u[node as usize];
                     for axis in 0..3 {
                         for l in 0..LANES {
                             sums[axis][l] += values[l] * u[axis];

@@ -1,6 +1,6 @@
 //! A coarser mesh on the same body, for solvers with several levels.
 
-use crate::Rows;
+use crate::rows::Rows;
 
 /// Interpolation from the nodes of a coarser mesh, which are some of a method's nodes, to all nodes of the
 /// method. An example is the interpolation from the corners of a quadratic mesh to all of its nodes.

@@ -2,7 +2,9 @@
 //! is a second, small table, filled in the same way by finite elements (one group per element or per node)
 //! and by meshless clouds.
 
-use crate::{ShapeError, Vector3, VolumeRows};
+use crate::Vector3;
+use crate::rows::ShapeError;
+use crate::tables::VolumeRows;
 
 /// Number of nodes among which [`DilationGroups::near`] divides a point: in three dimensions the nodes of the
 /// surrounding tetrahedron.
@@ -154,7 +156,8 @@ impl DilationGroups {
         }
         let mut offsets = vec![0];
         for next in &mut next {
-            let (first, count) = (offsets[offsets.len() - 1], *next);
+            let first = offsets[offsets.len() - 1];
+            let count = *next;
             // A node without a share in any point has no group.
             if count > 0 {
                 offsets.push(first + count);

@@ -118,7 +118,8 @@ impl Rows {
                 return Err(ShapeError::BrokenOffsets { row, offset: pair[1], entries });
             }
         }
-        let (row, end) = (offsets.len() - 1, *offsets.last().unwrap());
+        let row = offsets.len() - 1;
+        let end = *offsets.last().unwrap();
         if end != entries {
             return Err(ShapeError::BrokenOffsets { row, offset: end, entries });
         }

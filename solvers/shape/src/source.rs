@@ -6,9 +6,12 @@ use catalogue::metric::Metric;
 use geometry::quadrature::Parts;
 use geometry::{Facet, Mesh};
 
-use crate::{
-    Coarser, DilationGroups, FluxRows, GradRows, Point3, PointRows, Rows, SurfaceRows, TraceRows, VolumeRows,
-};
+use crate::Point3;
+use crate::coarser::Coarser;
+use crate::dilation::DilationGroups;
+use crate::rows::Rows;
+use crate::tables::{FluxRows, GradRows, PointRows, SurfaceRows, VolumeRows};
+use crate::trace::TraceRows;
 
 /// Error of filling a table; each family has its own errors.
 pub type SourceError = Box<dyn Error + Send + Sync>;

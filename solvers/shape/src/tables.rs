@@ -2,7 +2,8 @@
 
 use rayon::prelude::*;
 
-use crate::{Matrix3, Point3, Rows, ShapeError, Vector3};
+use crate::rows::{Rows, ShapeError};
+use crate::{Matrix3, Point3, Vector3};
 
 fn check_len(what: &'static str, found: usize, expected: usize) -> Result<(), ShapeError> {
     if found == expected { Ok(()) } else { Err(ShapeError::Length { what, found, expected }) }
@@ -120,7 +121,9 @@ impl GradRows {
         assert_eq!(nodes.len(), self.rows.node_count(), "one position per node");
         let off = |q: usize| {
             let (near, grads) = self.row(q);
-            let (mut sum, mut slope, mut reach) = (Vector3::zeros(), -Matrix3::identity(), 0.0_f64);
+            let mut sum = Vector3::zeros();
+            let mut slope = -Matrix3::identity();
+            let mut reach = 0.0_f64;
             for (&node, grad) in near.iter().zip(grads) {
                 let r = nodes[node as usize] - self.points[q];
                 sum += grad;

@@ -1,6 +1,6 @@
 //! Traces: fields of a volume quadrature on a surface.
 
-use crate::ShapeError;
+use crate::rows::ShapeError;
 
 /// Fields on a surface as combinations of their values at points of the volume quadrature,
 /// `f(x_s) = sum_q c_sq f(x_q)`, with the lengths of a trace inequality. The inequality bounds the integral
@@ -43,7 +43,8 @@ impl TraceRows {
             return Err(ShapeError::Length { what: "trace coefficients", found, expected: entries });
         }
         if offsets.len() != lengths.len() + 1 {
-            let (found, expected) = (lengths.len(), offsets.len().saturating_sub(1));
+            let found = lengths.len();
+            let expected = offsets.len().saturating_sub(1);
             return Err(ShapeError::Length { what: "trace lengths", found, expected });
         }
         if offsets.first() != Some(&0) || offsets.last() != Some(&entries) {

@@ -10,7 +10,7 @@ use geometry::{CellKind, Cloud, Kidney};
 use material::LinearElastic;
 use shape::DilationGroups;
 use shape::FixedDof;
-use tissuebench_statics::{Body, LinearProblem, assemble};
+use tissuebench_statics::{LinearBody, LinearProblem, assemble};
 
 fn benches(c: &mut Criterion) {
     let mut group = c.benchmark_group("assemble");
@@ -45,7 +45,8 @@ fn benches(c: &mut Criterion) {
             .map(|k| FixedDof { node: k / 3, axis: (k % 3) as u8, value: 0.0 })
             .collect();
         for (name, dilation) in [("cloud", None), ("cloud nodal dilation", Some(&nodal))] {
-            let body = Body { nodes: &points, volume: &volume, materials: &material, region: &[], dilation };
+            let body =
+                LinearBody { nodes: &points, volume: &volume, materials: &material, region: &[], dilation };
             let problem = LinearProblem { body, loads: &[], fixed: &fixed, constraints: &[], weak: &[] };
             let entries = volume.rows().nodes().len() / volume.rows().len();
             group.bench_function(

@@ -1,14 +1,13 @@
 //! A body: a quadrature with a material at each point.
 
 use material::LinearElastic;
-use shape::Point3;
-use shape::{DilationGroups, VolumeRows};
+use shape::{DilationGroups, Point3, VolumeRows};
 
-use crate::SolveError;
+use crate::error::SolveError;
 
 /// A quadrature with its materials. All fields are borrowed, so one set of tables serves many problems.
 #[derive(Clone, Copy, Debug)]
-pub struct Body<'a> {
+pub struct LinearBody<'a> {
     /// Node positions, m. The rigid motions of the nodal parameters are built from these positions. The
     /// tables must therefore reproduce linear fields, as elements and moving least squares do.
     pub nodes: &'a [Point3],
@@ -24,7 +23,7 @@ pub struct Body<'a> {
     pub dilation: Option<&'a DilationGroups>,
 }
 
-impl<'a> Body<'a> {
+impl<'a> LinearBody<'a> {
     /// Returns the law at a quadrature point.
     pub fn material(&self, point: usize) -> &'a LinearElastic {
         &self.materials[region_of(self.region, point)]

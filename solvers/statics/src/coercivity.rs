@@ -11,7 +11,7 @@
 
 use shape::Vector3;
 
-use crate::SolveError;
+use crate::error::SolveError;
 use crate::problem::Pointwise;
 use crate::solve::Factored;
 

@@ -1,9 +1,9 @@
 //! Static condensation: the response of a few outputs to loads on a few nodes, as a dense matrix.
 
-use shape::Rows;
-use shape::Vector3;
+use shape::{Rows, Vector3};
 
-use crate::{Factored, SolveError};
+use crate::error::SolveError;
+use crate::solve::Factored;
 
 /// Displacement of a few points as a linear function of the forces on a few nodes. The operator consists of
 /// rows of the inverse stiffness, with one solve for each component of each output. It suits a simulator that

@@ -1,10 +1,9 @@
 //! General linear constraints `sum_k c_k u_k = g`, enforced by Lagrange multipliers or eliminated.
 
-use shape::Vector3;
-use shape::{Rows, SurfaceRows};
+use shape::{Rows, SurfaceRows, Vector3};
 
-use crate::SolveError;
 use crate::body::check_len;
+use crate::error::SolveError;
 
 /// One linear equation between nodal parameters.
 #[derive(Clone, Debug, PartialEq)]
@@ -91,7 +90,8 @@ pub(crate) fn sorted(rows: &[ConstraintRow], node_count: usize) -> Result<Vec<Ro
         let mut terms: Vec<(usize, f64)> = Vec::with_capacity(row.terms.len());
         for &(node, axis, c) in &row.terms {
             if node as usize >= node_count {
-                let (node, nodes) = (node as usize, node_count);
+                let node = node as usize;
+                let nodes = node_count;
                 return Err(SolveError::NodeOutOfRange { what: "a constraint row", node, nodes });
             }
             if axis > 2 {

@@ -4,7 +4,8 @@ use material::LinearElastic;
 use rayon::prelude::*;
 use shape::{DilationGroups, Vector3};
 
-use crate::{Body, SolveError};
+use crate::body::LinearBody;
+use crate::error::SolveError;
 
 /// Rows of the projected dilation at selected points.
 pub(crate) struct Projected {
@@ -15,7 +16,7 @@ pub(crate) struct Projected {
 
 impl Projected {
     /// Computes the rows at the given points (in any order); `None` without a projection.
-    pub fn new(body: &Body, points: impl Iterator<Item = u32>) -> Option<Projected> {
+    pub fn new(body: &LinearBody, points: impl Iterator<Item = u32>) -> Option<Projected> {
         let groups = body.dilation?;
         let mut wanted = vec![false; groups.point_count()];
         points.for_each(|p| wanted[p as usize] = true);
@@ -56,7 +57,7 @@ impl Projected {
 pub(crate) type Averaged = (f64, Vec<(u32, Vector3)>);
 
 /// Returns volume and averaged gradient of every group, or an error for a group without volume.
-pub(crate) fn averaged(body: &Body, groups: &DilationGroups) -> Result<Vec<Averaged>, SolveError> {
+pub(crate) fn averaged(body: &LinearBody, groups: &DilationGroups) -> Result<Vec<Averaged>, SolveError> {
     let scratch = || vec![Vector3::zeros(); body.nodes.len()];
     let averaged: Vec<Averaged> = (0..groups.len())
         .into_par_iter()
@@ -70,12 +71,12 @@ pub(crate) fn averaged(body: &Body, groups: &DilationGroups) -> Result<Vec<Avera
 }
 
 /// Returns the bulk modulus of a dilation group, Pa: the volume average over its points.
-pub(crate) fn group_bulk(body: &Body, group: usize) -> f64 {
+pub(crate) fn group_bulk(body: &LinearBody, group: usize) -> f64 {
     group_mean(body, group, LinearElastic::bulk)
 }
 
 /// Returns the volume average of a modulus over the points of a dilation group, Pa.
-pub(crate) fn group_mean(body: &Body, group: usize, modulus: impl Fn(&LinearElastic) -> f64) -> f64 {
+pub(crate) fn group_mean(body: &LinearBody, group: usize, modulus: impl Fn(&LinearElastic) -> f64) -> f64 {
     let (points, shares) = body.dilation.expect("a body with groups").group(group);
     let (mut volume, mut sum) = (0.0, 0.0);
     for (&q, share) in points.iter().zip(shares) {

@@ -6,8 +6,8 @@
 //! remaining coefficient. For rows at the nodes of a cloud this is the node's own parameter, and the entries
 //! of `W` stay of order one.
 
-use crate::SolveError;
 use crate::constraint::Row;
+use crate::error::SolveError;
 
 /// Remainder of a row, relative to its largest coefficient, below which the row counts as dependent on the
 /// others. Exact repetitions leave 1e-16; no row of the committed scenes falls below this limit.

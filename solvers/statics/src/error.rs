@@ -2,7 +2,7 @@
 
 use algebra::AlgebraError;
 
-use crate::RigidMode;
+use crate::rigid_mode::RigidMode;
 
 /// Reason why a problem has no (trustworthy) solution.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

@@ -7,15 +7,13 @@
 use std::ops::Range;
 
 use algebra::{Connectivity, Incidence};
-use lanes::LanePath;
-use lanes::on_path;
+use lanes::{LanePath, on_path};
 use rayon::prelude::*;
-use shape::locality_order;
-use shape::{Matrix3, Vector3};
+use shape::{Matrix3, Vector3, locality_order};
 
-use crate::body::region_of;
+use crate::body::{LinearBody, region_of};
 use crate::dilation::{Averaged, averaged, group_bulk};
-use crate::{Body, SolveError};
+use crate::error::SolveError;
 
 /// Bundles per task.
 const CHUNK: usize = 64;
@@ -62,7 +60,7 @@ struct Rows<R, W, L> {
 impl GradTable {
     /// Builds the table of the body's own quadrature. With a projection it contains the deviatoric part only,
     /// `lambda' = -2 mu / 3`.
-    pub fn points(body: &Body) -> GradTable {
+    pub fn points(body: &LinearBody) -> GradTable {
         let moduli = body.materials.iter().map(|m| match body.dilation {
             Some(_) => (-2.0 / 3.0 * m.mu(), m.mu()),
             None => (m.lambda(), m.mu()),
@@ -86,7 +84,7 @@ impl GradTable {
     /// row `b_a` (1/m) is the gradient of the group's mean dilation with respect to the nodal displacements,
     /// `V_a` (m^3) its volume and `kappa` (Pa) its mean bulk modulus. Returns `None` for a body without
     /// groups.
-    pub fn groups(body: &Body) -> Result<Option<GradTable>, SolveError> {
+    pub fn groups(body: &LinearBody) -> Result<Option<GradTable>, SolveError> {
         let Some(groups) = body.dilation else { return Ok(None) };
         let averaged = averaged(body, groups)?;
         let weight = |a: usize| group_bulk(body, a) * averaged[a].0;
@@ -162,7 +160,8 @@ impl GradTable {
                 laws.push((start..end, moduli));
             }
         }
-        let (seen_by, grads) = (vec![0; nodes.len()], vec![[0.0; 8]; nodes.len()]);
+        let seen_by = vec![0; nodes.len()];
+        let grads = vec![[0.0; 8]; nodes.len()];
         let mut table = GradTable { offsets, nodes, seen_by, grads, weights, laws };
         table.fill(&firsts, &row, node_count);
         table
@@ -325,7 +324,8 @@ fn add_force_in<const FMA: bool>(
 ) {
     for bundle in bundles {
         let range = table.offsets[bundle]..table.offsets[bundle + 1];
-        let (nodes, grads) = (&table.nodes[range.clone()], &table.grads[range]);
+        let nodes = &table.nodes[range.clone()];
+        let grads = &table.grads[range];
         let Some(&first) = nodes.first() else { continue };
         let base = u[first as usize];
         let mut H = [[0.0; 8]; 3];
@@ -387,7 +387,7 @@ impl Forces {
 /// Orders the points of a body along a space-filling curve, so that consecutive points have nearly the same
 /// nodes, independently of the order of cells. Points with identical nodes, such as those of an element, stay
 /// together.
-fn in_space(body: &Body) -> Vec<u32> {
+fn in_space(body: &LinearBody) -> Vec<u32> {
     let rows = body.volume.rows();
     let mut order: Vec<u32> = (0..rows.len() as u32).collect();
     if rows.nodes().len() < LONG * rows.len() {
@@ -424,8 +424,10 @@ mod tests {
 
     #[test]
     fn bundles_sum_what_their_points_do_by_law_on_every_path() {
-        let (rows, node_count) = (rows(), 6);
-        let (weight, law) = (|q: usize| 0.5 + q as f64, |q: usize| usize::from(q == 1 || q >= 4));
+        let rows = rows();
+        let node_count = 6;
+        let weight = |q: usize| 0.5 + q as f64;
+        let law = |q: usize| usize::from(q == 1 || q >= 4);
         let mut order: Vec<u32> = (0..rows.len() as u32).collect();
         order.sort_by_key(|&q| law(q as usize));
         let parts = Rows { order, row: |q: usize| rows[q].iter().copied(), weight, law };

@@ -1,7 +1,7 @@
 //! Statics, implicit dynamics and vibrations over shape tables: assembly, supports, constraints, Newton's
 //! method, recovery.
 //!
-//! This crate knows neither elements nor kernels. A [`Body`] is a quadrature with a material, and a
+//! This crate knows neither elements nor kernels. A [`LinearBody`] is a quadrature with a material, and a
 //! [`LinearProblem`] is a body with loads and supports. Each stage is a value of its own, which can be timed,
 //! kept and reused:
 //!
@@ -14,7 +14,7 @@
 //! One factorisation serves any number of load levels and load sets. Every solve ends with a check of its
 //! residual, and results have the same bits at any number of threads.
 //!
-//! Beyond small strain a [`Solid`] is the same quadrature with a [`material::Law`] and a [`Dilation`]
+//! Beyond small strain a [`Solid`] is the same quadrature with a [`material::Law`] and a [`SolidDilation`]
 //! (standard, by groups, or mixed with a pressure field of its own). Two procedures share its forces:
 //!
 //! ```text
@@ -28,15 +28,16 @@
 //! use geometry::{CellKind, generate::box_mesh};
 //! use material::LinearElastic;
 //! use shape::{FixedDof, Point3};
-//! use tissuebench_statics::{Body, LinearProblem, assemble};
+//! use tissuebench_statics::{LinearBody, LinearProblem, assemble};
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
 //! // A cube of 10 mm between frictionless walls, its top pressed down by 0.1 mm.
 //! let max = Point3::new(0.01, 0.01, 0.01);
 //! let mesh = box_mesh(CellKind::Hex8, Point3::origin(), max, [2; 3], [1.0; 3], None)?;
 //! let volume = fem::volume_rows(&mesh, &fem::VolumeRule::STANDARD)?;
 //! let materials = [LinearElastic::new(20e3, 0.3)?];
+//! let nodes = mesh.points();
 //! let body =
-//!     Body { nodes: mesh.points(), volume: &volume, materials: &materials, region: &[], dilation: None };
+//!     LinearBody { nodes, volume: &volume, materials: &materials, region: &[], dilation: None };
 //! let mut fixed = Vec::new();
 //! for (side, axis, value) in
 //!     [("x-min", 0, 0.0), ("y-min", 1, 0.0), ("z-min", 2, 0.0), ("z-max", 2, -1e-4)]
@@ -75,11 +76,12 @@ mod problem;
 mod recover;
 mod reduction;
 mod rigid;
+mod rigid_mode;
 mod solve;
 mod support;
 mod weak;
 
-pub use body::Body;
+pub use body::LinearBody;
 pub use condense::Condensed;
 pub use constraint::{ConstraintRow, multiplier_rows};
 pub use error::SolveError;
@@ -90,11 +92,11 @@ pub use implicit::{
 pub use load::{Load, nodal_forces};
 pub use modes::{ALL_MODES_LIMIT, Modes, lowest_modes, modes};
 pub use nonlinear::{
-    Dilation, Frames, Inverted, Iteration, NewtonParams, PenaltySurface, Rest, Solid, StaticError,
+    Frames, Inverted, Iteration, NewtonParams, PenaltySurface, Rest, Solid, SolidDilation, StaticError,
     StaticParams, StaticPath, StaticProblem, StaticWork, Step, Worst, solve_static,
 };
 pub use problem::{Assembled, LinearProblem, assemble};
 pub use recover::{body_stress, mean_pressure, strain_energy, stress};
-pub use rigid::RigidMode;
+pub use rigid_mode::RigidMode;
 pub use solve::{Factored, Iterated, Solution, SolveInfo};
 pub use weak::{Weak, WeakSupport};

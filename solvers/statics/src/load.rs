@@ -1,10 +1,9 @@
 //! Dead loads: tractions, pressure and body force, integrated into nodal forces (N).
 
-use shape::Vector3;
-use shape::{Rows, SurfaceRows, VolumeRows};
+use shape::{Rows, SurfaceRows, Vector3, VolumeRows};
 
-use crate::SolveError;
 use crate::body::check_len;
+use crate::error::SolveError;
 
 /// A load with one value per quadrature point. The caller evaluates a field at the points.
 #[derive(Clone, Debug)]

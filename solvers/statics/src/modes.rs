@@ -13,9 +13,10 @@ use algebra::{AlgebraError, FactorError, Symmetric, eigen};
 use shape::Vector3;
 
 use crate::body::check_len;
-use crate::problem::{Assembled, assemble_free};
+use crate::error::SolveError;
+use crate::implicit::Mass;
+use crate::problem::{Assembled, LinearProblem, assemble_free};
 use crate::reduction::Reduction;
-use crate::{LinearProblem, Mass, SolveError};
 
 /// Number of unknowns up to which a dense decomposition finds all modes (8 s at this limit). Larger systems
 /// are solved for the lowest modes only.

@@ -9,15 +9,16 @@ use material::Material as _;
 use nalgebra::DMatrix;
 use shape::{Matrix3, Vector3};
 
+use crate::body::LinearBody;
 use crate::dilation::group_bulk;
-use crate::{Body, Solid};
+use crate::nonlinear::Solid;
 
 /// Returns the stiffness `K_ij = sum_q (lambda g_i g_j^T + mu g_j g_i^T + mu (g_i . g_j) I) dv`,
 /// `g_i = grad N_i`.
 ///
 /// With a projection the points keep `lambda = -2 mu / 3`, and group a of volume `V` and mean gradients `b_i`
 /// adds `kappa V b_i b_j^T`.
-pub fn stiffness(body: &Body) -> DMatrix<f64> {
+pub fn stiffness(body: &LinearBody) -> DMatrix<f64> {
     let (I, mut K) = (Matrix3::identity(), zeros(body.nodes.len()));
     for (q, &dv) in body.volume.weights().iter().enumerate() {
         let mu = body.material(q).mu();

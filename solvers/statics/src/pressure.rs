@@ -6,8 +6,9 @@ use shape::Coarser;
 
 use crate::assembly::add_volume;
 use crate::dilation::{Averaged, averaged, group_mean};
+use crate::error::SolveError;
 use crate::grad_table::GradTable;
-use crate::{Assembled, SolveError};
+use crate::problem::Assembled;
 
 /// Ratio of bulk to shear modulus that stays with the displacements. A smaller ratio leaves more to the
 /// pressures, whose iterations depend on the element; a larger ratio slows the cycles. From 5 to 15 the

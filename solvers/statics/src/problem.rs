@@ -1,27 +1,25 @@
 //! A linear problem and its assembly.
 
-use algebra::Stiffness;
-use algebra::{BlockPattern, Connectivity, Incidence};
-use shape::FixedDof;
-use shape::Vector3;
+use algebra::{BlockPattern, Connectivity, Incidence, Stiffness};
+use shape::{FixedDof, Vector3};
 
 use crate::assembly::add_volume;
-use crate::body::check_len;
+use crate::body::{LinearBody, check_len};
 use crate::constraint::{self, ConstraintRow};
 use crate::dilation::Projected;
+use crate::error::SolveError;
 use crate::grad_table::GradTable;
 use crate::load::{Load, nodal_forces};
 use crate::rigid;
 use crate::support::prescribed;
 use crate::weak::{Weak, WeakSupport, WeakTable};
-use crate::{Body, SolveError};
 
 /// A body with its loads and supports. The three kinds of support can be mixed, provided no rigid motion is
 /// left free.
 #[derive(Clone, Copy, Debug)]
 pub struct LinearProblem<'a> {
     /// The body.
-    pub body: Body<'a>,
+    pub body: LinearBody<'a>,
     /// Loads, which are summed.
     pub loads: &'a [Load<'a>],
     /// Prescribed nodal parameters, eliminated exactly.
@@ -35,7 +33,7 @@ pub struct LinearProblem<'a> {
 
 /// Stiffness, forces and checked supports of a problem, ready to be factored.
 pub struct Assembled<'a> {
-    pub(crate) body: Body<'a>,
+    pub(crate) body: LinearBody<'a>,
     pub(crate) stiffness: Stiffness,
     /// Nodal forces of the loads, N.
     pub(crate) load: Vec<Vector3>,
@@ -106,8 +104,13 @@ pub(crate) fn assemble_free<'a>(problem: &LinearProblem<'a>) -> Result<Assembled
 }
 
 /// Check of the supports before assembly.
-type SupportCheck =
-    fn(&Body, Connectivity, &[Option<f64>], &[constraint::Row], &[WeakSupport]) -> Result<(), SolveError>;
+type SupportCheck = fn(
+    &LinearBody,
+    Connectivity,
+    &[Option<f64>],
+    &[constraint::Row],
+    &[WeakSupport],
+) -> Result<(), SolveError>;
 
 fn assemble_if<'a>(problem: &LinearProblem<'a>, holds: SupportCheck) -> Result<Assembled<'a>, SolveError> {
     let body = problem.body;

@@ -1,12 +1,11 @@
 //! Quantities recovered from nodal parameters: stress, mean pressure and strain energy.
 
 use material::LinearElastic;
-use shape::GradRows;
-use shape::{Matrix3, Vector3};
+use shape::{GradRows, Matrix3, Vector3};
 
-use crate::body::{check_len, check_regions, region_of};
+use crate::body::{LinearBody, check_len, check_regions, region_of};
 use crate::dilation::group_bulk;
-use crate::{Body, SolveError};
+use crate::error::SolveError;
 
 /// Computes the stress (3, 3), Pa, at any points by the plain law, `sigma = lambda tr(eps) I + 2 mu eps`,
 /// from nodal parameters `u` (m). `region` has one entry per point, or none if all points are in region 0.
@@ -25,7 +24,7 @@ pub fn stress(
 /// Computes the stress (3, 3), Pa, at the body's own quadrature points. With a volumetric projection the mean
 /// stress follows from the projected dilation, `sigma = 2 mu dev(eps) + kappa theta_q I`,
 /// `theta_q = sum_a share_aq theta_a`.
-pub fn body_stress(body: &Body, u: &[Vector3]) -> Result<Vec<Matrix3>, SolveError> {
+pub fn body_stress(body: &LinearBody, u: &[Vector3]) -> Result<Vec<Matrix3>, SolveError> {
     body.check()?;
     let plain = stress(body.volume.at(), u, body.materials, body.region)?;
     let Some(theta) = projected_dilation(body, u) else { return Ok(plain) };
@@ -34,14 +33,14 @@ pub fn body_stress(body: &Body, u: &[Vector3]) -> Result<Vec<Matrix3>, SolveErro
 }
 
 /// Returns the mean pressure `p = -tr(sigma) / 3` of [`body_stress`], Pa, at the body's quadrature points.
-pub fn mean_pressure(body: &Body, u: &[Vector3]) -> Result<Vec<f64>, SolveError> {
+pub fn mean_pressure(body: &LinearBody, u: &[Vector3]) -> Result<Vec<f64>, SolveError> {
     Ok(body_stress(body, u)?.iter().map(|s| -s.trace() / 3.0).collect())
 }
 
 /// Returns the strain energy, J: `sum_q w psi(H_q)`, or with a projection
 /// `sum_q w mu |dev eps|^2 + sum_a V_a kappa theta_a^2 / 2`. Without weak supports the energy equals
 /// `u . K u / 2`.
-pub fn strain_energy(body: &Body, u: &[Vector3]) -> Result<f64, SolveError> {
+pub fn strain_energy(body: &LinearBody, u: &[Vector3]) -> Result<f64, SolveError> {
     body.check()?;
     check_len("nodal parameters", u.len(), body.nodes.len())?;
     let gradients = body.volume.at().displacement_gradients(u);
@@ -59,7 +58,7 @@ pub fn strain_energy(body: &Body, u: &[Vector3]) -> Result<f64, SolveError> {
 }
 
 /// Returns volume (m^3) and mean dilation of each group; empty without groups.
-fn group_dilations(body: &Body, gradients: &[Matrix3]) -> Vec<(f64, f64)> {
+fn group_dilations(body: &LinearBody, gradients: &[Matrix3]) -> Vec<(f64, f64)> {
     let Some(groups) = body.dilation else { return Vec::new() };
     let mean = |a| {
         let (points, shares) = groups.group(a);
@@ -74,7 +73,7 @@ fn group_dilations(body: &Body, gradients: &[Matrix3]) -> Vec<(f64, f64)> {
     (0..groups.len()).map(mean).collect()
 }
 
-fn projected_dilation(body: &Body, u: &[Vector3]) -> Option<Vec<f64>> {
+fn projected_dilation(body: &LinearBody, u: &[Vector3]) -> Option<Vec<f64>> {
     let groups = body.dilation?;
     let gradients = body.volume.at().displacement_gradients(u);
     let mut theta = vec![0.0; gradients.len()];

@@ -1,14 +1,13 @@
 //! Mapping between nodal parameters and unknowns, `u = T v + g`. Parameters are prescribed, expressed by
 //! others through eliminated constraints, or unknowns themselves.
 
-use algebra::Stiffness;
-use algebra::Symmetric;
+use algebra::{Stiffness, Symmetric};
 use rayon::prelude::*;
 use shape::Vector3;
 
-use crate::SolveError;
 use crate::constraint::Row;
 use crate::eliminate::{Block, blocks};
+use crate::error::SolveError;
 
 /// `T` by rows, and `g`.
 pub(crate) struct Reduction {

@@ -9,34 +9,11 @@ use algebra::Connectivity;
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 use shape::{Point3, Rows, Vector3};
 
+use crate::body::LinearBody;
 use crate::constraint::Row;
-use crate::{Body, SolveError, WeakSupport};
-
-/// A rigid motion.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum RigidMode {
-    /// Translation along this unit vector.
-    Translation(Vector3),
-    /// Rotation about an axis along this unit vector (through some point).
-    Rotation(Vector3),
-}
-
-impl std::fmt::Display for RigidMode {
-    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
-        let (word, v) = match self {
-            RigidMode::Translation(v) => ("translation along", v),
-            RigidMode::Rotation(v) => ("rotation about", v),
-        };
-        match v.iter().position(|c| c.abs() > 1.0 - 1e-6) {
-            Some(axis) => write!(f, "{word} {}", ["x", "y", "z"][axis]),
-            None => {
-                // Avoids "-0.000".
-                let v = v.map(|c| if c.abs() < 5e-4 { 0.0 } else { c });
-                write!(f, "{word} ({:.3}, {:.3}, {:.3})", v.x, v.y, v.z)
-            }
-        }
-    }
-}
+use crate::error::SolveError;
+use crate::rigid_mode::RigidMode;
+use crate::weak::WeakSupport;
 
 /// Squared relative size below which a motion counts as free: supports resist motions from 1e-6 of their
 /// size.
@@ -89,7 +66,7 @@ pub(crate) type AddRow<'a> = &'a mut dyn FnMut(&mut dyn Iterator<Item = (usize, 
 
 /// Returns the free motions of the first cluster with free motions as an error.
 pub(crate) fn check(
-    body: &Body,
+    body: &LinearBody,
     points: Connectivity,
     prescribed: &[Option<f64>],
     rows: &[Row],

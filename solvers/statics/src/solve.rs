@@ -1,11 +1,10 @@
 //! Factorisation and solution of an assembled problem.
 
-use algebra::Stiffness;
-use algebra::{DENSE_LIMIT, FactorError, Factorization, Multigrid, Solved, SolverPath, Symmetric};
+use algebra::{DENSE_LIMIT, FactorError, Factorization, Multigrid, Solved, SolverPath, Stiffness, Symmetric};
 use shape::{Coarser, Vector3};
 
-use crate::SolveError;
 use crate::body::check_len;
+use crate::error::SolveError;
 use crate::load::Load;
 use crate::pressure::not_definite;
 use crate::problem::Assembled;

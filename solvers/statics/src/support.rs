@@ -3,7 +3,7 @@
 
 use shape::FixedDof;
 
-use crate::SolveError;
+use crate::error::SolveError;
 
 /// Returns the prescribed value of every degree of freedom `3 node + axis`, `None` if it is free.
 pub(crate) fn prescribed(node_count: usize, fixed: &[FixedDof]) -> Result<Vec<Option<f64>>, SolveError> {

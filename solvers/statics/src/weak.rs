@@ -2,15 +2,13 @@
 //! Weak supports: prescribed displacements by Nitsche's method or by penalty, for bases whose parameters are
 //! not displacements. Axes can be constrained individually (rollers).
 
-use algebra::Stiffness;
-use algebra::{Connectivity, Incidence};
+use algebra::{Connectivity, Incidence, Stiffness};
 use rayon::prelude::*;
-use shape::{FluxRows, TraceRows};
-use shape::{Matrix3, Vector3};
+use shape::{FluxRows, Matrix3, TraceRows, Vector3};
 
-use crate::body::{check_len, check_regions, region_of};
+use crate::body::{LinearBody, check_len, check_regions, region_of};
 use crate::dilation::Projected;
-use crate::{Body, SolveError};
+use crate::error::SolveError;
 
 /// Method of a weak support.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -58,7 +56,7 @@ pub struct WeakSupport<'a> {
 }
 
 impl WeakSupport<'_> {
-    pub(crate) fn check(&self, support: usize, body: &Body) -> Result<(), SolveError> {
+    pub(crate) fn check(&self, support: usize, body: &LinearBody) -> Result<(), SolveError> {
         let points = self.flux.weights().len();
         check_len("values of a weak support", self.values.len(), points)?;
         check_len("nodes of a weak support", self.flux.at().rows().node_count(), body.nodes.len())?;
@@ -114,7 +112,7 @@ struct Entry {
 }
 
 impl WeakTable {
-    pub fn new(support: &WeakSupport, body: &Body, projected: Option<&Projected>) -> WeakTable {
+    pub fn new(support: &WeakSupport, body: &LinearBody, projected: Option<&Projected>) -> WeakTable {
         let at = support.flux.at();
         let points = support.flux.weights().len();
         let constrained =
@@ -185,7 +183,8 @@ impl WeakTable {
         // Components are selected because `constrained * v` would spread an ignored NaN.
         let target =
             support.values.iter().map(|v| Vector3::from_fn(|a, _| if support.axes[a] { v[a] } else { 0.0 }));
-        let (weights, target) = (support.flux.weights().to_vec(), target.collect());
+        let weights = support.flux.weights().to_vec();
+        let target = target.collect();
         WeakTable { offsets, nodes, phi, traction, weights, beta, target, constrained }
     }
 

@@ -183,7 +183,7 @@ impl CloudKeys {
             Some(SourceKeys::Table(table)) => table.file.as_ref(),
             _ => None,
         };
-        self.size.is_some() || file.is_some_and(|file| geometry::files::is_mesh(file.as_ref()))
+        self.size.is_some() || file.is_some_and(|file| mesh_files::is_mesh(file.as_ref()))
     }
 
     pub fn read(self, report: &Report) -> Option<Cloud> {
@@ -195,7 +195,8 @@ impl CloudKeys {
         };
         let nodes = self.nodes.map(|n| count(n, report));
         let size = self.size.map(|size| size.read(&report.at("size")));
-        let (of_mesh, stray) = (size.is_some(), "does not belong to this cloud");
+        let of_mesh = size.is_some();
+        let stray = "does not belong to this cloud";
         let help = "jitter moves the nodes of a mesh: give size";
         report.require(of_mesh || jitter.is_none(), "jitter", stray, help);
         let given = of_mesh || matches!(source, Some(Source::File(_)));

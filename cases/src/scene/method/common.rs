@@ -50,7 +50,8 @@ pub enum Size {
 
 impl SizeKeys {
     pub fn read(self, report: &Report) -> Option<Size> {
-        let (grading, has_file) = (self.grading, self.file.is_some());
+        let grading = self.grading;
+        let has_file = self.file.is_some();
         let sound = grading.is_none() || self.cells.is_some();
         report.require(sound, "grading", "applies to cells only", "leave it out");
         report.require(self.unit.is_none() || has_file, "unit", "applies to file only", "leave it out");

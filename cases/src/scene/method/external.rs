@@ -67,7 +67,8 @@ impl ExternalKeys {
         let time_limit = self.time_limit.map_or(TIME_LIMIT, |q| report.positive("time_limit", q.0));
         let memory_limit =
             self.memory_limit.map_or(MEMORY_LIMIT, |q| report.positive("memory_limit", q.0) as u64);
-        let (element, dilation) = (self.element, Dilation::Standard);
+        let element = self.element;
+        let dilation = Dilation::Standard;
         let elements = Fem { element, dilation, reduced: false, size: size?, jitter };
         Some(External { adapter: self.adapter, elements, settings: self.settings, time_limit, memory_limit })
     }

@@ -60,7 +60,8 @@ impl Fem {
     /// stable with second-order elements only. In second-order elements the functions of the corners are
     /// negative in most of a cell, so nodal means would average over negative volumes.
     pub(super) fn demands(&self, report: &Report) {
-        let (name, linear) = (self.element.name(), self.element.order() == 1);
+        let name = self.element.name();
+        let linear = self.element.order() == 1;
         let (found, problem, help) = match self.dilation {
             Dilation::Mixed if linear => (
                 "mixed",

@@ -3,10 +3,9 @@
 use std::path::Path;
 use std::time::Duration;
 
-use crate::Failure;
 use crate::adapter::{self, Answered, Found, Question, npy};
 use crate::cli::text::digits;
-use crate::error::ForeignStatus;
+use crate::error::{Failure, ForeignStatus};
 use crate::procedure::external::problem::{TEXT, TOOLS, Text};
 use crate::process::Limits;
 

@@ -3,11 +3,12 @@
 
 use cases::scene;
 
-use crate::Failure;
 use crate::adapter::{self, Found};
 use crate::cli::text::digits;
+use crate::error::Failure;
+use crate::measure::Repeats;
 use crate::outcome::Outcome;
-use crate::run::{Group, Repeats, RunOptions};
+use crate::run::{Group, RunOptions};
 
 /// Bound of the relative error against an exact solution, for answers with all digits.
 const EXACT: f64 = 1e-8;

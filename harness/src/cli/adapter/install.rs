@@ -3,8 +3,8 @@
 use std::path::Path;
 use std::process::Command;
 
-use crate::Failure;
 use crate::adapter::{self, Found};
+use crate::error::Failure;
 
 /// Creates the virtual environment, installs the packages and returns the exit code.
 pub(super) fn install(adapter: &Found) -> Result<u8, Failure> {

@@ -10,7 +10,7 @@ use std::path::PathBuf;
 use clap::Subcommand;
 
 use crate::adapter::{self, All};
-use crate::cli::fail;
+use crate::cli::errors::fail;
 
 /// Actions on adapters.
 #[derive(Subcommand)]

@@ -6,7 +6,7 @@ use crate::cli::text;
 use crate::study::RunSummary;
 
 /// Returns the lines to print.
-pub(in crate::cli) fn annotate(runs: &[RunSummary]) -> String {
+pub(crate) fn annotate(runs: &[RunSummary]) -> String {
     let mut out = String::new();
     for run in runs {
         let title = property(&format!("{} {}", run.case, run.label));

@@ -8,7 +8,7 @@ use crate::cli::text;
 use crate::study::RunSummary;
 
 /// Returns the runs of a study as a JUnit file for continuous integration systems.
-pub(in crate::cli) fn junit(study: &str, runs: &[RunSummary]) -> String {
+pub(crate) fn junit(study: &str, runs: &[RunSummary]) -> String {
     let mut cases: Vec<&str> = Vec::new();
     for run in runs.iter().filter(|run| !cases.contains(&run.case.as_str())).collect::<Vec<_>>() {
         if !cases.contains(&run.case.as_str()) {

@@ -3,12 +3,12 @@
 use crate::study::Planned;
 
 /// Returns one line per run: its case and its name.
-pub(in crate::cli) fn names(planned: &[Planned]) -> String {
+pub(crate) fn names(planned: &[Planned]) -> String {
     planned.iter().map(|run| format!("{} {}\n", run.case, run.name)).collect()
 }
 
 /// Returns one line per run with its estimated cost, and the sum of the times.
-pub(in crate::cli) fn forecast(planned: &[Planned]) -> String {
+pub(crate) fn forecast(planned: &[Planned]) -> String {
     let rows: Vec<[String; 4]> = planned.iter().map(row).collect();
     let head = ["about", "nodes", "seconds", "memory"].map(String::from);
     let width = |column: usize| rows.iter().chain([&head]).map(|row| row[column].chars().count()).max();

@@ -8,8 +8,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use crate::study::{Events, Plan, RunSummary};
-
+use crate::study::{Events, RunSummary, StudyPlan};
 use annotations::annotate;
 use junit::junit;
 pub(super) use listing::{forecast, names};
@@ -35,7 +34,7 @@ pub struct CiArgs {
 }
 
 /// Opens the event stream and refuses output files that the study reads.
-pub(super) fn begin(args: &CiArgs, plan: &Plan) -> Result<Option<Events>, String> {
+pub(super) fn begin(args: &CiArgs, plan: &StudyPlan) -> Result<Option<Events>, String> {
     if args.events.is_some() || args.junit.is_some() {
         plan.note_inputs();
     }

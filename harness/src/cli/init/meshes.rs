@@ -6,8 +6,8 @@ use cases::scene::{Place, Reference, Scene};
 use geometry::{Mesh, Point3};
 
 use super::args::Side;
-use crate::Failure;
 use crate::discretise::place;
+use crate::error::Failure;
 use crate::scenario::Scenario;
 
 /// Number of constrained corners that hold a cell: three that are not collinear.

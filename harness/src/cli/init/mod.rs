@@ -12,15 +12,16 @@ use std::path::{Path, PathBuf};
 
 use cases::scene::{self, Place, Region, Scene, SceneError};
 use catalogue::Dimension;
-use geometry::{Mesh, files};
+use geometry::Mesh;
 
 pub use args::InitArgs;
 
 use super::args::{LengthUnit, length, length_unit};
-use super::mesh_files::{input, row};
-use super::mesh_info::guess;
-use crate::Failure;
+use super::errors::input;
+use super::mesh::info::guess;
+use super::text::row;
 use crate::discretise::place;
+use crate::error::Failure;
 use args::{Method, Side, Strain, choice, word};
 use filled::Filled;
 use meshes::Meshes;
@@ -72,7 +73,8 @@ pub fn init(args: &InitArgs) -> Result<(), Failure> {
     free(&out, &file, args.force)?;
     let (organ, unit) = sized(&file, args, &mut ask)?;
     let (wanted, meshes) = wanted(args, &mut ask, &file, &out, &organ, unit)?;
-    let (text, name) = (scene_text::text(&wanted), out.display().to_string());
+    let text = scene_text::text(&wanted);
+    let name = out.display().to_string();
     let found = parsed(&wanted, &out)?;
     let held = &found.supports[0].place;
     if let Place::Where(region) = held {
@@ -99,7 +101,7 @@ pub fn init(args: &InitArgs) -> Result<(), Failure> {
     if wanted.parts != FINENESS[0].0 {
         row("sizes", "finer than usual, so that every mesh reaches the plate and the constrained part");
     }
-    for (at, line) in files::summary(&model_of(&file)).iter().enumerate() {
+    for (at, line) in mesh_files::summary(&model_of(&file)).iter().enumerate() {
         row(if at == 0 { "left out" } else { "" }, line);
     }
     let results = out.with_extension("");
@@ -108,9 +110,9 @@ pub fn init(args: &InitArgs) -> Result<(), Failure> {
 }
 
 /// Returns the parts of a mesh file's model that the scene leaves out.
-fn model_of(file: &Path) -> Vec<files::LeftOut> {
-    let found = files::left_out(file).into_iter();
-    found.filter(|part| part.kind != files::Kind::Values).collect()
+fn model_of(file: &Path) -> Vec<mesh_files::LeftOut> {
+    let found = mesh_files::left_out(file).into_iter();
+    found.filter(|part| part.kind != mesh_files::Kind::Values).collect()
 }
 
 /// Refuses to overwrite the organ's file, or an existing scene unless `force` is set.
@@ -192,8 +194,7 @@ fn wanted(
     let best = word(*sides.iter().find(fits).unwrap_or(&sides[0]));
     let question = "Side from which the plate presses: top, bottom, left, right, front or back";
     let side = ask.value("press-from", args.press_from.as_deref(), question, &best, choice::<Side>)?;
-    let meshes = pressed(&mut wanted, side)?;
-    let Hold::Where(default) = wanted.hold.clone() else { unreachable!("comparisons so far") };
+    let (meshes, default) = pressed(&mut wanted, side)?;
     let question = "Constrained part: comparisons of x, y and z, or a surface of the mesh file";
     wanted.hold = ask.value("hold", args.hold.as_deref(), question, &default, |text| held(text, organ))?;
     let height = organ.extent(side.axis());
@@ -230,8 +231,14 @@ fn held_end(organ: &Organ, side: Side, part: f64, described: &dyn Fn(f64) -> Str
 }
 
 /// Refines sizes until every mesh reaches the plate and all its pieces reach the constrained part, which
-/// starts at `part` of the height. Stores sizes and constrained part in `wanted`.
-fn fine_enough(wanted: &mut Wanted, organ: &Organ, part: f64, out: &Path) -> Result<Meshes, Failure> {
+/// starts at `part` of the height. Stores sizes and constrained part in `wanted`. Returns the meshes and the
+/// comparisons of the constrained part.
+fn fine_enough(
+    wanted: &mut Wanted,
+    organ: &Organ,
+    part: f64,
+    out: &Path,
+) -> Result<(Meshes, String), Failure> {
     let (size, side, height) = (wanted.size, wanted.side, organ.extent(wanted.side.axis()));
     let unit = wanted.unit;
     let described = |metres: f64| scene_text::length(metres, unit, organ.largest_extent());
@@ -255,9 +262,10 @@ fn fine_enough(wanted: &mut Wanted, organ: &Organ, part: f64, out: &Path) -> Res
         };
         let more = (0..).map(|k| part + f64::from(k) * MORE);
         for held in more.take_while(|held| *held <= MOST.max(part)) {
-            wanted.hold = Hold::Where(held_end(organ, side, held, &described));
+            let comparisons = held_end(organ, side, held, &described);
+            wanted.hold = Hold::Where(comparisons.clone());
             match meshes.unheld(&parsed(wanted, out)?.supports[0].place)? {
-                None => return Ok(meshes),
+                None => return Ok((meshes, comparisons)),
                 Some((name, pieces)) => {
                     why = format!(
                         "the mesh of {name} has {pieces} pieces, and some do not reach the constrained part"

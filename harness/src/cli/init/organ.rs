@@ -3,13 +3,13 @@
 use std::path::Path;
 
 use geometry::surface::BoundaryFaces;
-use geometry::{Point3, Surface, files};
+use geometry::{Point3, Surface};
 
 use super::args::Side;
 use super::meshes::Meshes;
-use crate::Failure;
 use crate::cli::args::LengthUnit;
-use crate::cli::mesh_files::input;
+use crate::cli::errors::input;
+use crate::error::Failure;
 
 /// Number of grid points along each axis in the search for the middle of a bent body.
 const GRID: usize = 11;
@@ -32,12 +32,12 @@ pub(super) struct Organ {
 impl Organ {
     /// Reads a closed surface or a mesh.
     pub fn read(file: &Path, unit: LengthUnit) -> Result<Organ, Failure> {
-        let (surface, names) = if files::is_surface(file) {
-            let surface = files::read_surface(file, unit.metres).map_err(input)?;
+        let (surface, names) = if mesh_files::is_surface(file) {
+            let surface = mesh_files::read_surface(file, unit.metres).map_err(input)?;
             let names = surface.groups().names().to_vec();
             (surface, names)
         } else {
-            let mesh = files::read(file, unit.metres).map_err(input)?;
+            let mesh = mesh_files::read(file, unit.metres).map_err(input)?;
             let boundary = BoundaryFaces::new(&mesh);
             let boundary = boundary.map_err(|bad| input(format!("{}: {bad}", file.display())))?;
             (boundary.surface, mesh.group_names().map(String::from).collect())

@@ -2,8 +2,8 @@
 
 use std::io::{BufRead, Write};
 
-use crate::Failure;
-use crate::cli::mesh_files::input;
+use crate::cli::errors::input;
+use crate::error::Failure;
 
 /// Source of values without an option.
 pub(super) struct Questions {

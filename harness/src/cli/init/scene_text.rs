@@ -179,7 +179,8 @@ impl Wanted {
         let spans = |axis: usize| format!("{} to {}", self.length(low[axis]), self.length(high[axis]));
         // The outermost point on the side of the plate.
         let end = self.bounds[usize::from(sign > 0.0)][axis];
-        let (than, from) = (if sign > 0.0 { ">=" } else { "<=" }, end - sign * PRESSED * self.height());
+        let than = if sign > 0.0 { ">=" } else { "<=" };
+        let from = end - sign * PRESSED * self.height();
         let mut at = nalgebra::center(&low, &high);
         at[axis] = end + sign * self.gap;
         let along = [0, 1, 2].map(|other| if other == axis { format!("{}", -sign) } else { "0".into() });

@@ -15,9 +15,12 @@ use reports::Seconds;
 use serde::Serialize;
 
 use crate::cli::args::Format;
-use crate::cli::{choose, interrupt, refuse_scene, take, text, write_results};
+use crate::cli::results::{take, write_results};
+use crate::cli::scenes::{choose, refuse_scene};
+use crate::cli::{interrupt, text};
+use crate::measure::Repeats;
 use crate::outcome::provenance;
-use crate::run::{Group, Repeats, RunOptions, case_name};
+use crate::run::{Group, RunOptions, case_name};
 use crate::study::{self, folder};
 use ladder::ladders;
 use quantity::Quantity;

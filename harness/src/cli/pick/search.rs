@@ -8,7 +8,7 @@ use serde::Serialize;
 
 use super::ladder::Ladder;
 use super::quantity::Quantity;
-use crate::Failure;
+use crate::error::Failure;
 use crate::outcome::Outcome;
 use crate::outcome::timing::Timed;
 use crate::run::{Group, RunOptions};

@@ -9,7 +9,5 @@
 mod quadrature_points;
 mod recovered;
 
-use super::Solved;
-
 pub(super) use quadrature_points::own_stress;
 pub(crate) use recovered::Recovered;

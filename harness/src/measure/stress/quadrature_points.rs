@@ -4,11 +4,11 @@
 use shape::{Matrix3, Vector3};
 
 use super::super::mean_pressure::{self, cauchy, dilated, dilation, mean};
-use super::Solved;
+use crate::measure::solved::Solved;
 
 /// Cauchy stress (Pa) at every quadrature point from nodal parameters `u` (m) and, if there is a pressure
 /// field, its parameters (Pa).
-pub(in super::super) fn own_stress(run: &Solved, u: &[Vector3], parameters: &[f64]) -> Vec<Matrix3> {
+pub(crate) fn own_stress(run: &Solved, u: &[Vector3], parameters: &[f64]) -> Vec<Matrix3> {
     let (laws, volume) = (&run.setup.laws, &run.prepared.volume);
     let law = |q: usize| &laws[volume.region.get(q).map_or(0, |&r| usize::from(r))];
     let gradients = volume.rows.at().displacement_gradients(u);

@@ -12,8 +12,9 @@ use material::LinearElastic;
 use nalgebra::{SMatrix, SVector};
 use shape::{Matrix3, Point3, Vector3};
 
-use super::{Solved, own_stress};
+use super::quadrature_points::own_stress;
 use crate::discretise::place;
+use crate::measure::solved::Solved;
 
 /// Coefficients of the first `M` of the terms 1, x, y, z, xx, yy, zz, yz, zx, xy for the stress components
 /// `[xx, yy, zz, xy, yz, zx]`, a column for each term. Coordinates are relative to the patch size.

@@ -10,22 +10,15 @@ use catalogue::metric;
 use geometry::{Matrix3, Vector3};
 use material::{Law, Material as _};
 
-use super::{Problem, Solution, Stages, StepHistory};
-use crate::Failure;
+use super::problem::Problem;
+use super::solution::{OfProgram, Solution, StepHistory};
+use super::stages::Stages;
 use crate::adapter::{self, Answered, Folder, Outside, Question};
-use crate::error::{Foreign, ForeignStatus};
-use crate::outcome::{LoadStep, Meters, Metric};
+use crate::error::{Failure, Foreign, ForeignStatus};
+use crate::outcome::timing::Meters;
+use crate::outcome::{LoadStep, Metric};
 use crate::prepare::ConditionForces;
 use crate::scenario::setup::Setup;
-
-/// Properties of the external program that solved the problem.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct OfProgram {
-    /// Peak memory of all its processes together, bytes.
-    pub(crate) memory: u64,
-    /// Name and version, if the program reports them.
-    pub(crate) version: Option<String>,
-}
 
 /// Phases that a solver may report, with their names in records.
 const OWN_PHASES: [(&str, &str); 6] = [
@@ -135,7 +128,8 @@ pub(crate) fn steps(setup: &Setup) -> usize {
 /// Load steps of an answer, or only its end, with energies and volume ratios of this program's own elements.
 fn history(problem: &Problem, outer: &[Vector3], fields: &[Vec<Vector3>], end: f64) -> StepHistory {
     let count = fields.len() as f64;
-    let (plain, of_nodes) = (is_plain(problem), is_of_nodes(problem));
+    let plain = is_plain(problem);
+    let of_nodes = is_of_nodes(problem);
     let steps: Vec<LoadStep> = (1..)
         .zip(fields)
         .map(|(step, u)| {

@@ -6,15 +6,14 @@ use std::path::Path;
 
 use cases::scene::{Procedure, Setting};
 use contact::ToolShape;
-use geometry::{Point3, files};
+use geometry::Point3;
 use material::{Law, Material as _};
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
-use crate::Failure;
 use crate::adapter::{About, npy};
-use crate::error::{Foreign, ForeignStatus};
-use crate::procedure::Problem;
+use crate::error::{Failure, Foreign, ForeignStatus};
+use crate::procedure::problem::Problem;
 
 /// Version of the problem files. A reader refuses versions that it does not know.
 pub(crate) const SCHEMA: u32 = 1;
@@ -99,7 +98,8 @@ pub(crate) fn write(
             save(&folder.join(TOOLS), text.as_bytes())?;
         }
         for name in meshes {
-            files::write(problem.method.mesh(), &folder.join(name), 1.0).map_err(|bad| bad.to_string())?;
+            mesh_files::write(problem.method.mesh(), &folder.join(name), 1.0)
+                .map_err(|bad| bad.to_string())?;
         }
         let mut text = text(problem, about);
         text.id = id(&text, folder)?;
@@ -205,7 +205,8 @@ fn constants(law: &Law) -> Value {
 fn tools(problem: &Problem) -> Value {
     let one = |placed: &crate::scenario::PlacedTool| {
         let tool = &placed.tool;
-        let (law, at) = (tool.law(), tool.place(0.0));
+        let law = tool.law();
+        let at = tool.place(0.0);
         let drive = match placed.drive {
             contact::Drive::Closure(closure) => json!({ "closure": closure }),
             contact::Drive::Force(force) => json!({ "force": force }),

@@ -8,8 +8,8 @@
 //! Numerical Algorithms, 2nd ed. 2002, theorem 7.1). The number of correct digits follows from the backward
 //! error times the condition number. All norms are maximum norms.
 
-use super::{Factorization, Kind, Symmetric};
-use crate::AlgebraError;
+use super::symmetric::Symmetric;
+use crate::error::AlgebraError;
 
 /// Backward error above which a solution is refused. A stable solve of a million unknowns leaves less (2e-16
 /// times the square root of their number). Contradictory constraints leave at least a tenth of the
@@ -33,6 +33,12 @@ impl Solved {
     pub(super) fn new(residual: f64, rest: &[f64], x: &[f64], b: &[f64]) -> Solved {
         Solved { residual, norms: [largest(rest), largest(x), largest(b)] }
     }
+
+    /// Returns the normwise backward error of the solution of a system with this matrix.
+    pub(super) fn backward_error(&self, matrix: &Symmetric) -> f64 {
+        let [rest, x, b] = self.norms;
+        if rest == 0.0 { 0.0 } else { rest / (matrix.norm() * x + b) }
+    }
 }
 
 impl Symmetric {
@@ -52,51 +58,10 @@ impl Symmetric {
     }
 }
 
-impl Factorization {
-    /// Returns the normwise backward error of a solution.
-    pub fn backward_error(&self, solved: &Solved) -> f64 {
-        let [rest, x, b] = solved.norms;
-        if rest == 0.0 { 0.0 } else { rest / (self.matrix.norm() * x + b) }
-    }
-
-    /// Estimates the condition number `|A| |A^-1|` from below, as a rule within a factor of three.
-    ///
-    /// # Errors
-    ///
-    /// [`AlgebraError::TooLarge`] if there is no memory for a solve.
-    pub fn condition(&self) -> Result<f64, AlgebraError> {
-        let n = self.dim();
-        if n == 0 {
-            return Ok(1.0);
-        }
-        // The factor of a saddle matrix belongs to a regularised matrix nearby, so its solutions are refined.
-        let solve = |x: &mut [f64]| match self.kind {
-            Kind::Definite => self.solve_once(x),
-            _ => self.refine(x).map(|found| x.copy_from_slice(&found.x)),
-        };
-        Ok(self.matrix.norm() * inverse_norm(n, solve)?)
-    }
-
-    /// Estimates the correct decimal digits of the largest unknown of a solution,
-    /// `-log10(condition * backward error)`.
-    ///
-    /// This is a bound for the worst rounding; on beams and membranes two or three more digits are right. The
-    /// entries of the matrix are rounded themselves, so the backward error counts as at least half a unit in
-    /// the last place.
-    ///
-    /// # Errors
-    ///
-    /// [`AlgebraError::TooLarge`] if there is no memory for a solve.
-    pub fn digits(&self, solved: &Solved) -> Result<f64, AlgebraError> {
-        let error = self.backward_error(solved).max(0.5 * f64::EPSILON);
-        Ok(-(self.condition()? * error).log10())
-    }
-}
-
 /// Estimates the 1-norm of the inverse of a symmetric matrix from a few solves (Hager, SIAM J. Sci. Stat.
 /// Comput. 5 (1984) 311-316; Higham 2002, algorithm 15.1, with the alternating vector of LAPACK's `lacn2`,
 /// algorithm 15.5).
-fn inverse_norm(
+pub(super) fn inverse_norm(
     n: usize,
     solve: impl Fn(&mut [f64]) -> Result<(), AlgebraError>,
 ) -> Result<f64, AlgebraError> {

@@ -2,8 +2,10 @@
 
 use nalgebra::Matrix4;
 
-use super::{Factor, Symmetric, dot};
-use crate::AlgebraError;
+use super::Factor;
+use super::refine::dot;
+use super::symmetric::Symmetric;
+use crate::error::AlgebraError;
 
 /// Largest number of iterations of the search. A search with a warm start ends after two to four.
 const ROUNDS: usize = 8;

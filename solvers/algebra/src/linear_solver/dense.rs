@@ -4,8 +4,10 @@ use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::{ldlt, llt};
 use faer::{Conj, Mat, MatMut, Par};
 
-use super::{FactorError, Kind, Symmetric, check_pivots, zeroed};
-use crate::AlgebraError;
+use super::failure::{FactorError, check_pivots};
+use super::symmetric::{Kind, Symmetric};
+use super::workspace::zeroed;
+use crate::error::AlgebraError;
 
 /// Dense factor `L L^T`, or `L D L^T` (D on the diagonal of `lower`) if the matrix is not definite.
 pub struct Dense {
@@ -27,7 +29,8 @@ impl Dense {
                 lower[(j, matrix.rows[k])] = values[k];
             }
         }
-        let (par, params) = (Par::Seq, Default::default());
+        let par = Par::Seq;
+        let params = Default::default();
         if !definite {
             let scratch = ldlt::factor::cholesky_in_place_scratch::<f64>(n, par, params);
             let mut memory = zeroed(MemBuffer::new(scratch));

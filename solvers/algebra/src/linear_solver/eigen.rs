@@ -10,8 +10,10 @@ use faer::linalg::evd::{ComputeEigenvectors, self_adjoint_evd, self_adjoint_evd_
 use faer::linalg::triangular_solve::{solve_lower_triangular_in_place, solve_upper_triangular_in_place};
 use faer::{Mat, Par};
 
-use super::{FactorError, Symmetric, check_pivots, zeroed};
-use crate::AlgebraError;
+use super::failure::{FactorError, check_pivots};
+use super::symmetric::Symmetric;
+use super::workspace::zeroed;
+use crate::error::AlgebraError;
 
 pub use super::lanczos::largest;
 

@@ -5,7 +5,7 @@ use faer::linalg::cholesky::llt;
 use faer::linalg::triangular_solve::{solve_lower_triangular_in_place, solve_upper_triangular_in_place};
 use faer::{Mat, MatMut, MatRef, Par};
 
-use super::zeroed;
+use super::workspace::zeroed;
 
 /// Factor `L` of a full positive definite matrix.
 ///
@@ -21,7 +21,8 @@ impl Cholesky {
     pub fn new(n: usize, columns: &[f64]) -> Option<Cholesky> {
         let mut lower = Mat::zeros(n.next_multiple_of(8), n);
         lower.subrows_mut(0, n).copy_from(MatRef::from_column_major_slice(columns, n, n));
-        let (par, params) = (Par::Seq, Default::default());
+        let par = Par::Seq;
+        let params = Default::default();
         let scratch = llt::factor::cholesky_in_place_scratch::<f64>(n, par, params);
         let mut memory = zeroed(MemBuffer::new(scratch));
         let stack = MemStack::new(&mut memory);

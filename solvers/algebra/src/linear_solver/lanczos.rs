@@ -7,8 +7,12 @@ use faer::linalg::matmul::matmul;
 use faer::{Accum, Mat, Par};
 
 use super::eigen::Eigen;
-use super::{FactorError, Factorization, Symmetric, factor, zeroed};
-use crate::{AlgebraError, DENSE_LIMIT};
+use super::failure::FactorError;
+use super::refine::dot;
+use super::symmetric::Symmetric;
+use super::workspace::zeroed;
+use super::{DENSE_LIMIT, Factorization, factor};
+use crate::error::AlgebraError;
 
 /// Vectors per block. A block finds as many equal eigenvalues as it has vectors: symmetry gives at most
 /// three, and rigid motions are six. A block costs little more than a single vector, because the factor is
@@ -124,7 +128,7 @@ fn product(matrix: &Symmetric, v: &Mat<f64>) -> Mat<f64> {
 
 impl Block {
     fn length(&self, j: usize) -> f64 {
-        super::dot(self.v.col_as_slice(j), self.av.col_as_slice(j)).max(0.0).sqrt()
+        dot(self.v.col_as_slice(j), self.av.col_as_slice(j)).max(0.0).sqrt()
     }
 
     fn longest(&self) -> f64 {
@@ -156,7 +160,7 @@ fn normalised(mut block: Block, least: f64) -> (Block, Mat<f64>) {
     for j in 0..width {
         for _ in 0..2 {
             for k in 0..kept {
-                let along = super::dot(made.v.col_as_slice(k), block.av.col_as_slice(j));
+                let along = dot(made.v.col_as_slice(k), block.av.col_as_slice(j));
                 block.add(j, -along, &made, k);
                 r[(k, j)] += along;
             }
@@ -193,7 +197,8 @@ impl Basis {
     /// Adds the image of the last block under the operator to the projection. Returns the new part of the
     /// image as an orthonormal block, and the coupling of that block to the last.
     fn extend(&mut self, mut applied: Block, metric: &Symmetric) -> (Block, Mat<f64>) {
-        let (before, width) = (self.projected.nrows(), applied.v.ncols());
+        let before = self.projected.nrows();
+        let width = applied.v.ncols();
         let mut projected = Mat::zeros(before + width, before + width);
         projected.submatrix_mut(0, 0, before, before).copy_from(&self.projected);
         let longest = applied.longest();
@@ -235,13 +240,15 @@ impl Basis {
     /// last block.
     fn pairs(&self, coupling: &Mat<f64>) -> Result<Pairs, AlgebraError> {
         let m = self.projected.nrows();
-        let (mut values, mut vectors) = (Diag::<f64>::zeros(m), Mat::zeros(m, m));
+        let mut values = Diag::<f64>::zeros(m);
+        let mut vectors = Mat::zeros(m, m);
         let scratch =
             self_adjoint_evd_scratch::<f64>(m, ComputeEigenvectors::Yes, Par::Seq, Default::default());
         let mut memory = zeroed(MemBuffer::new(scratch));
         let stack = MemStack::new(&mut memory);
         let failed = |_| AlgebraError::NoEigenvalues { dofs: self.blocks[0].v.nrows() };
-        let (to, all) = (values.as_mut(), Some(vectors.as_mut()));
+        let to = values.as_mut();
+        let all = Some(vectors.as_mut());
         self_adjoint_evd(self.projected.as_ref(), to, all, Par::Seq, stack, Default::default())
             .map_err(failed)?;
         let coefficients = vectors.reverse_cols().to_owned();
@@ -346,7 +353,7 @@ mod tests {
             let mut ax = vec![0.0; n];
             metric.subtract_product(x, &mut ax);
             for (j, y) in found.vectors.iter().enumerate() {
-                let inner = -super::super::dot(y, &ax);
+                let inner = -super::super::refine::dot(y, &ax);
                 assert!((inner - f64::from(u8::from(i == j))).abs() < 1e-10, "{i} {j} {inner}");
             }
         }

@@ -7,8 +7,8 @@ use std::sync::Mutex;
 
 use metis_sys as metis;
 
-use super::Symmetric;
-use crate::AlgebraError;
+use super::symmetric::Symmetric;
+use crate::error::AlgebraError;
 
 /// METIS draws from the global random generator of the C library: concurrent orderings would change each
 /// other's bits.

@@ -12,8 +12,11 @@ use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
 use faer::traits::ComplexField;
 use faer::{Conj, MatMut, Par, Side};
 
-use super::{FactorError, Kind, Symmetric, check_pivots, ordering, zeroed};
-use crate::AlgebraError;
+use super::failure::{FactorError, check_pivots};
+use super::ordering;
+use super::symmetric::{Kind, Symmetric};
+use super::workspace::zeroed;
+use crate::error::AlgebraError;
 
 /// Number of multiplications above which a factorisation uses all threads; below, threads cost more than they
 /// save. Threads divide the blocks of dense products and split no sum, so the bits do not change (faer 0.24;
@@ -236,7 +239,8 @@ impl Single {
         values.resize(cholesky.len_val(), 0.0);
         let par = if symbolic.large() { Par::rayon(0) } else { Par::Seq };
         let rounded: Vec<f32> = matrix.values.iter().map(|v| *v as f32).collect();
-        let (a, side) = (SparseColMatRef::new(pattern(matrix), &rounded), Side::Upper);
+        let a = SparseColMatRef::new(pattern(matrix), &rounded);
+        let side = Side::Upper;
         let scratch = match definite {
             true => cholesky.factorize_numeric_llt_scratch::<f32>(par, Default::default()),
             false => cholesky.factorize_numeric_ldlt_scratch::<f32>(par, Default::default()),

@@ -1,6 +1,6 @@
 //! Symmetric matrices in the form that factorisations take: the upper triangle, column by column.
 
-use crate::Stiffness;
+use crate::stiffness::Stiffness;
 
 /// Static regularisation of a saddle matrix, added to or subtracted from the diagonal, relative to its
 /// largest entry.

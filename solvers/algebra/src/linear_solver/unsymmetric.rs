@@ -6,8 +6,10 @@ use faer::sparse::linalg::solvers::{Lu, SymbolicLu};
 use faer::sparse::{SparseColMat, Triplet};
 use nalgebra::{DMatrix, DVector, Dyn, LU};
 
-use super::{Factor, Factorization, Symmetric, dot, norm, refined};
-use crate::AlgebraError;
+use super::refine::{dot, norm, refined};
+use super::symmetric::Symmetric;
+use super::{Factor, Factorization};
+use crate::error::AlgebraError;
 
 /// Largest number of Krylov vectors. The rank of the skew part is at most that of the sliding points, and a
 /// coefficient of friction of 0.15 needs about 10 vectors.
@@ -309,7 +311,10 @@ mod tests {
 
     /// Membrane of SIDE x SIDE nodes on springs, whose stiffness varies from node to node by `uneven`.
     fn membrane(uneven: f64) -> Symmetric {
-        let (n, mut rows, mut values, mut offsets) = (SIDE * SIDE, Vec::new(), Vec::new(), vec![0]);
+        let n = SIDE * SIDE;
+        let mut rows = Vec::new();
+        let mut values = Vec::new();
+        let mut offsets = vec![0];
         for j in 0..n {
             for i in [j.checked_sub(SIDE), (j % SIDE > 0).then(|| j - 1)].into_iter().flatten() {
                 rows.push(i);

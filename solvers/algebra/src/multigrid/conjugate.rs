@@ -2,9 +2,11 @@
 
 use shape::Vector3;
 
+use super::hierarchy::Hierarchy;
 use super::level::Cycle;
-use super::{Entry, Multigrid};
-use crate::{AlgebraError, Stiffness};
+use super::operator::Entry;
+use crate::error::AlgebraError;
+use crate::stiffness::Stiffness;
 
 /// Outcome of an iterative solve.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,38 +22,18 @@ const MOST: usize = 500;
 /// Residual relative to `|K| |x| + |b|` that is taken as rounding (Higham 2002, section 7.1).
 const ROUNDING: f64 = 1e-15;
 
-impl Multigrid {
-    /// Solves `K x = b` in place, to a residual of `tolerance |b|` or of rounding. Entries of `b` at
-    /// constrained degrees of freedom are ignored. With pressures ([`Multigrid::with_pressures`]), these and
-    /// the displacements are iterated together.
+impl Hierarchy {
+    /// Solves `K x = b` in place, to a residual of `tolerance |b|` or of rounding. On failure, `b` changes
+    /// only at constrained degrees of freedom.
     ///
     /// The preconditioner is in single precision and therefore symmetric to rounding only. The flexible
     /// formula for the next direction (Polak and Ribiere) allows this, at the cost of one more product of
     /// vectors.
     ///
-    /// A W-cycle computes a residual on a coarse level from a solution there. If the softest motions have
-    /// 1e-8 of the stiffness, as in a slender beam, this residual is all rounding in single precision, and
-    /// the cycle is not positive. The solve is then repeated with V-cycles.
-    ///
     /// # Errors
     ///
     /// [`AlgebraError::Residual`] if the iteration does not reach the tolerance.
-    pub fn solve(
-        &self,
-        stiffness: &Stiffness,
-        b: &mut [Vector3],
-        tolerance: f64,
-    ) -> Result<Iterations, AlgebraError> {
-        if let Some(pressures) = &self.pressures {
-            self.release(b);
-            return pressures.solve(self, stiffness, b, tolerance);
-        }
-        self.iterate(stiffness, b, tolerance, Cycle::W)
-            .or_else(|_| self.iterate(stiffness, b, tolerance, Cycle::V))
-    }
-
-    /// Iterates as [`Multigrid::solve`]. On failure, `b` changes only at constrained degrees of freedom.
-    fn iterate(
+    pub(super) fn iterate(
         &self,
         stiffness: &Stiffness,
         b: &mut [Vector3],
@@ -121,15 +103,6 @@ impl Multigrid {
         b.copy_from_slice(&x);
         Ok(Iterations { count, residual })
     }
-
-    /// Sets the entries of constrained degrees of freedom to zero.
-    pub(super) fn release(&self, x: &mut [Vector3]) {
-        for (x, held) in x.iter_mut().zip(self.held.chunks_exact(3)) {
-            for a in (0..3).filter(|&a| held[a]) {
-                x[a] = 0.0;
-            }
-        }
-    }
 }
 
 /// Preconditioner: a cycle between vectors in double precision.
@@ -150,12 +123,12 @@ impl Precondition {
 
     /// Applies one cycle. The residual is scaled to a largest entry of one, because it falls below the range
     /// of single precision.
-    pub fn apply(&mut self, multigrid: &Multigrid, rest: &[Vector3], cycle: Cycle) -> &[Vector3] {
+    pub fn apply(&mut self, hierarchy: &Hierarchy, rest: &[Vector3], cycle: Cycle) -> &[Vector3] {
         let largest = rest.iter().fold(0.0f64, |l, r| l.max(r.amax()));
         for (b, r) in self.b.iter_mut().zip(rest) {
             *b = std::array::from_fn(|a| (r[a] / largest) as f32);
         }
-        multigrid.finest.solve(&self.b, &mut self.x, cycle);
+        hierarchy.finest.solve(&self.b, &mut self.x, cycle);
         for (out, x) in self.out.iter_mut().zip(&self.x) {
             *out = Vector3::from_fn(|a, _| f64::from(x[a]) * largest);
         }

@@ -102,7 +102,8 @@ fn folded<const C: usize>(pattern: &Sets, sums: &[[[f64; C]; C]], unit: f64) -> 
     for i in 0..count {
         for at in 0..lower.offsets[i + 1] - lower.offsets[i] {
             let j = lower.columns[lower.offsets[i] + at] as usize;
-            let (own, other) = (&sums[pattern.offsets[i] + at], &sums[next[j]]);
+            let own = &sums[pattern.offsets[i] + at];
+            let other = &sums[next[j]];
             next[j] += 1;
             let block = &mut lower.blocks[lower.offsets[i] + at];
             for b in 0..C {

@@ -1,6 +1,6 @@
 //! Lower triangle of a symmetric matrix of B x B blocks, from which every level of the hierarchy is built.
 
-use crate::Stiffness;
+use crate::stiffness::Stiffness;
 
 /// Block, stored by columns.
 pub(super) type Block<const B: usize> = [[f64; B]; B];

@@ -14,6 +14,7 @@ mod aggregate;
 mod conjugate;
 mod galerkin;
 mod graph;
+mod hierarchy;
 mod level;
 mod lower_triangle;
 mod operator;
@@ -24,30 +25,21 @@ mod sweep;
 mod tests;
 mod transfer;
 
-use shape::{Coarser, Point3};
+use shape::{Coarser, Point3, Vector3};
 
-use crate::linear_solver::FactorError;
-use crate::{SolverPath, Stiffness};
-use aggregate::Modes;
-use level::Level;
-use lower_triangle::{Held, LowerRows};
-use operator::Entry;
+use crate::error::AlgebraError;
+use crate::linear_solver::{FactorError, SolverPath};
+use crate::stiffness::Stiffness;
+use hierarchy::Hierarchy;
+use level::Cycle;
 use pressure::Pressures;
-use transfer::Transfer;
 
 pub use conjugate::Iterations;
 pub use pressure::PressureGroup;
 
 /// Multigrid hierarchy of a stiffness, for any number of right-hand sides.
 pub struct Multigrid {
-    finest: Box<dyn Level<3>>,
-    /// Whether each degree of freedom `3 node + axis` is constrained.
-    held: Vec<bool>,
-    /// Number of unconstrained degrees of freedom.
-    free: usize,
-    levels: Vec<(usize, usize)>,
-    /// Factor on the finest matrix.
-    scale: f64,
+    hierarchy: Hierarchy,
     pressures: Option<Box<Pressures>>,
 }
 
@@ -66,20 +58,8 @@ impl Multigrid {
         held: Vec<bool>,
         linear: Option<&Coarser>,
     ) -> Result<Multigrid, FactorError> {
-        let lower = Held::new(stiffness, &held);
-        let scale = if lower.unit() > 0.0 { 1.0 / lower.unit() } else { 1.0 };
-        let modes = rigid_motions(nodes, &held);
-        let finest = match linear {
-            Some(linear) => {
-                let modes: Vec<Modes<3>> = linear.places.iter().map(|&i| modes[i as usize]).collect();
-                level::nested(&lower, Transfer::nested(linear, &held), &modes, scale)?
-            }
-            None => level::by_aggregates(&lower, &modes, scale)?,
-        };
-        let mut levels = Vec::new();
-        finest.sizes(&mut levels);
-        let free = held.iter().filter(|held| !**held).count();
-        Ok(Multigrid { finest, held, free, levels, scale, pressures: None })
+        let hierarchy = Hierarchy::new(stiffness, nodes, held, linear)?;
+        Ok(Multigrid { hierarchy, pressures: None })
     }
 
     /// Adds pressures as unknowns, for a nearly incompressible stiffness.
@@ -88,7 +68,7 @@ impl Multigrid {
     /// `excess / volume row row^T` for every group. The pressures of the groups are iterated with the
     /// displacements.
     pub fn with_pressures(self, without: Stiffness, groups: &[PressureGroup]) -> Multigrid {
-        let pressures = Pressures::new(without, groups, &self.held);
+        let pressures = Pressures::new(without, groups, &self.hierarchy.held);
         Multigrid { pressures: Some(Box::new(pressures)), ..self }
     }
 
@@ -99,39 +79,42 @@ impl Multigrid {
 
     /// Number of unknowns.
     pub fn dim(&self) -> usize {
-        self.free
+        self.hierarchy.free
     }
 
     /// Degrees of freedom and matrix entries of each level, finest first.
     pub fn levels(&self) -> &[(usize, usize)] {
-        &self.levels
+        &self.hierarchy.levels
     }
 
     /// Operator complexity: matrix entries of all levels over those of the finest.
     pub fn complexity(&self) -> f64 {
-        self.levels.iter().map(|level| level.1 as f64).sum::<f64>() / self.levels[0].1 as f64
+        self.levels().iter().map(|level| level.1 as f64).sum::<f64>() / self.levels()[0].1 as f64
     }
-}
 
-/// Returns the translations and the rotations about the centre of the nodes. Lengths are relative to the
-/// largest distance from the centre. Entries of constrained degrees of freedom are zero.
-fn rigid_motions(nodes: &[Point3], held: &[bool]) -> Vec<Modes<3>> {
-    let centre = nodes.iter().fold(nalgebra::Vector3::zeros(), |sum, x| sum + x.coords) / nodes.len() as f64;
-    let reach = nodes.iter().map(|x| (x.coords - centre).norm()).fold(0.0, f64::max);
-    let over = if reach > 0.0 { 1.0 / reach } else { 1.0 };
-    let of_node = |(i, x): (usize, &Point3)| {
-        let d = (x.coords - centre) * over;
-        let mut rows = [
-            [1.0, 0.0, 0.0, 0.0, d.z, -d.y],
-            [0.0, 1.0, 0.0, -d.z, 0.0, d.x],
-            [0.0, 0.0, 1.0, d.y, -d.x, 0.0],
-        ];
-        for (row, held) in rows.iter_mut().zip(&held[3 * i..]) {
-            if *held {
-                *row = [0.0; 6];
-            }
+    /// Solves `K x = b` in place, to a residual of `tolerance |b|` or of rounding. Entries of `b` at
+    /// constrained degrees of freedom are ignored. With pressures ([`Multigrid::with_pressures`]), these and
+    /// the displacements are iterated together.
+    ///
+    /// A W-cycle computes a residual on a coarse level from a solution there. If the softest motions have
+    /// 1e-8 of the stiffness, as in a slender beam, this residual is all rounding in single precision, and
+    /// the cycle is not positive. The solve is then repeated with V-cycles.
+    ///
+    /// # Errors
+    ///
+    /// [`AlgebraError::Residual`] if the iteration does not reach the tolerance.
+    pub fn solve(
+        &self,
+        stiffness: &Stiffness,
+        b: &mut [Vector3],
+        tolerance: f64,
+    ) -> Result<Iterations, AlgebraError> {
+        if let Some(pressures) = &self.pressures {
+            self.hierarchy.release(b);
+            return pressures.solve(&self.hierarchy, stiffness, b, tolerance);
         }
-        rows
-    };
-    nodes.iter().enumerate().map(of_node).collect()
+        self.hierarchy
+            .iterate(stiffness, b, tolerance, Cycle::W)
+            .or_else(|_| self.hierarchy.iterate(stiffness, b, tolerance, Cycle::V))
+    }
 }

@@ -12,7 +12,6 @@ use nalgebra::SMatrix;
 use rayon::prelude::*;
 
 use super::lower_triangle::LowerRows;
-use super::sweep::times;
 
 /// Vector entry of a node.
 pub(super) type Entry<const B: usize> = [f32; B];
@@ -89,7 +88,8 @@ impl<const B: usize> Operator<B> {
         let (mut inside, mut outside) = (Rows::zeros(within.into_iter()), Rows::zeros(beyond.into_iter()));
         let mut diagonals = vec![[[0.0; B]; B]; nodes];
         // Rows come in order, so the couplings of a row to later chunks fill in ascending order too.
-        let (mut next, mut next_outside) = (0, outside.offsets.clone());
+        let mut next = 0;
+        let mut next_outside = outside.offsets.clone();
         for chunk in &chunks {
             for i in chunk.clone() {
                 for (at, &j) in lower.columns(i).iter().enumerate() {
@@ -286,4 +286,16 @@ fn inverse<const B: usize>(matrix: &SMatrix<f64, B, B>) -> [[f32; B]; B] {
         }
     }
     std::array::from_fn(|b| std::array::from_fn(|a| right[(a, b)] as f32))
+}
+
+/// Returns `block x`.
+#[inline(always)]
+pub(super) fn times<const B: usize>(block: &[[f32; B]; B], x: &Entry<B>) -> Entry<B> {
+    let mut sum = [0.0; B];
+    for (column, x) in block.iter().zip(x) {
+        for (s, a) in sum.iter_mut().zip(column) {
+            *s += a * x;
+        }
+    }
+    sum
 }

@@ -19,10 +19,11 @@ use std::collections::VecDeque;
 
 use shape::Vector3;
 
-use super::Multigrid;
 use super::conjugate::{Iterations, Precondition, dot, is_rounding, norm};
+use super::hierarchy::Hierarchy;
 use super::level::Cycle;
-use crate::{AlgebraError, Stiffness};
+use crate::error::AlgebraError;
+use crate::stiffness::Stiffness;
 
 /// Group of elements whose pressure is an unknown.
 #[derive(Clone, Debug, PartialEq)]
@@ -135,7 +136,7 @@ impl Pressures {
     /// [`AlgebraError::Residual`] if the iteration does not reach the tolerance.
     pub fn solve(
         &self,
-        multigrid: &Multigrid,
+        hierarchy: &Hierarchy,
         stiffness: &Stiffness,
         b: &mut [Vector3],
         tolerance: f64,
@@ -153,9 +154,9 @@ impl Pressures {
         // The recursive residual drifts from the true residual. A restart takes the true residual, with the
         // pressures that belong to the displacements.
         for _ in 0..3 {
-            self.descend(multigrid, &mut cycles, (&mut x, &mut rest), tolerance * size, &mut count);
+            self.descend(hierarchy, &mut cycles, (&mut x, &mut rest), tolerance * size, &mut count);
             stiffness.multiply_into(&x, &mut image);
-            multigrid.release(&mut image);
+            hierarchy.release(&mut image);
             for i in 0..nodes {
                 rest.u[i] = b[i] - image[i];
             }
@@ -176,7 +177,7 @@ impl Pressures {
     /// Iterates until `|f - K u|` is at most `limit`, or up to the largest number of iterations.
     fn descend(
         &self,
-        multigrid: &Multigrid,
+        hierarchy: &Hierarchy,
         cycles: &mut Precondition,
         (x, rest): (&mut [Vector3], &mut Pair),
         limit: f64,
@@ -194,7 +195,7 @@ impl Pressures {
             // Every entry of a new direction is overwritten.
             let mut next =
                 oldest.unwrap_or_else(|| Direction { way: rest.clone(), image: rest.clone(), square: 0.0 });
-            self.direct(multigrid, cycles, rest, &mut next);
+            self.direct(hierarchy, cycles, rest, &mut next);
             let mut parts = self.dots(&next.image, &kept);
             parts.iter_mut().zip(&kept).for_each(|(part, before)| *part /= -before.square);
             next.way.add(&parts, kept.iter().map(|before| &before.way));
@@ -213,10 +214,10 @@ impl Pressures {
 
     /// Computes a direction for a residual, `u = C r_u` by a cycle C and `p = (B u - r_p) / schur`, and its
     /// image `[A u + B^T p, B u - (V / k) p]`.
-    fn direct(&self, multigrid: &Multigrid, cycles: &mut Precondition, rest: &Pair, out: &mut Direction) {
+    fn direct(&self, hierarchy: &Hierarchy, cycles: &mut Precondition, rest: &Pair, out: &mut Direction) {
         let Direction { way, image, .. } = out;
-        let cycle = cycles.apply(multigrid, &rest.u, Cycle::V);
-        let larger = LARGER * multigrid.scale;
+        let cycle = cycles.apply(hierarchy, &rest.u, Cycle::V);
+        let larger = LARGER * hierarchy.scale;
         way.u.iter_mut().zip(cycle).for_each(|(u, cycle)| *u = cycle * larger);
         for (g, change) in self.changes(&way.u).enumerate() {
             way.p[g] = (change - rest.p[g]) / self.schur[g];
@@ -224,7 +225,7 @@ impl Pressures {
         }
         self.without.multiply_into(&way.u, &mut image.u);
         self.add_forces(way.p.iter().copied(), &mut image.u);
-        multigrid.release(&mut image.u);
+        hierarchy.release(&mut image.u);
     }
 
     /// Returns the products of a vector with the images of all kept directions.

@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use lanes::{LanePath, madd_f32, on_path};
 
-use super::operator::{Entry, Operator, Part};
+use super::operator::{Entry, Operator, Part, times};
 
 impl<const B: usize> Operator<B> {
     /// Computes `out = b - A x`.
@@ -111,7 +111,8 @@ fn forward_lanes<const FMA: bool, const B: usize>(
     rest: &mut [Entry<B>],
 ) {
     for i in chunk.clone() {
-        let (here, row) = (i - chunk.start, matrix.inside(i));
+        let here = i - chunk.start;
+        let row = matrix.inside(i);
         let mut sum = Sum::<FMA, B>::new();
         sum.add_all(row, x, chunk.start);
         let own = times(matrix.inverse(i), &sum.from(&b[i]));
@@ -130,7 +131,8 @@ fn backward_lanes<const FMA: bool, const B: usize>(
     rest: &mut [Entry<B>],
 ) {
     for i in chunk.clone().rev() {
-        let (here, row) = (i - chunk.start, matrix.inside(i));
+        let here = i - chunk.start;
+        let row = matrix.inside(i);
         let mut sum = Sum::<FMA, B>::new();
         sum.add_all_from_last(row, x, chunk.start);
         let own = times(matrix.inverse(i), &sum.from(&rest[here]));
@@ -224,16 +226,4 @@ impl<const FMA: bool, const B: usize> Sum<FMA, B> {
         let shift = if B == 3 { 1 } else { 0 };
         std::array::from_fn(|a| b[a] - (first[a] + second[a] + third[a + shift]))
     }
-}
-
-/// Returns `block x`.
-#[inline(always)]
-pub(super) fn times<const B: usize>(block: &[[f32; B]; B], x: &Entry<B>) -> Entry<B> {
-    let mut sum = [0.0; B];
-    for (column, x) in block.iter().zip(x) {
-        for (s, a) in sum.iter_mut().zip(column) {
-            *s += a * x;
-        }
-    }
-    sum
 }

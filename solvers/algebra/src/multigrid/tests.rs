@@ -86,7 +86,8 @@ fn column<const B: usize>(transfer: &Transfer<Dense<B>>, nodes: usize, c: usize)
 #[test]
 fn a_coarse_matrix_is_the_triple_product() {
     let (lower, modes) = grid(6);
-    let (matrix, graph) = (Operator::new(&lower, 0.1), Graph::new(&lower));
+    let matrix = Operator::new(&lower, 0.1);
+    let graph = Graph::new(&lower);
     let (functions, _) = orthonormal(&aggregates(&matrix, &graph), &modes);
     let transfer = Transfer::smoothed(&matrix, &graph, &aggregates(&matrix, &graph), &functions);
     let coarse = dense(&galerkin::<3, MODES, Dense<3>>(&lower, &graph, &transfer));
@@ -106,7 +107,8 @@ fn a_coarse_matrix_is_the_triple_product() {
 #[test]
 fn rigid_motions_are_prolonged_exactly_away_from_supports() {
     let (lower, modes) = grid(8);
-    let (matrix, graph) = (Operator::new(&lower, 0.1), Graph::new(&lower));
+    let matrix = Operator::new(&lower, 0.1);
+    let graph = Graph::new(&lower);
     let aggregates = aggregates(&matrix, &graph);
     let (functions, coarse) = orthonormal(&aggregates, &modes);
     let transfer = Transfer::smoothed(&matrix, &graph, &aggregates, &functions);
@@ -165,7 +167,8 @@ fn a_cycle_is_symmetric_and_positive() {
     assert!((left - right).abs() < 1e-5 * size, "{left} and {right} of {size}");
     // Cycles approximate the inverse from below, and a W-cycle is closer to it.
     let smooth: Vec<[f32; 3]> = modes.iter().map(|rows| std::array::from_fn(|a| rows[a][0] as f32)).collect();
-    let (once, twice) = (inner(&cycle(&smooth, Cycle::V), &smooth), inner(&solve(&smooth), &smooth));
+    let once = inner(&cycle(&smooth, Cycle::V), &smooth);
+    let twice = inner(&solve(&smooth), &smooth);
     assert!(once > 0.0 && twice > 1.01 * once, "{once} and {twice}");
 }
 
@@ -193,7 +196,8 @@ fn sweeps_leave_the_residual_and_are_transposes() {
     let mut exact = b.clone();
     for i in 0..nodes {
         for (at, &j) in lower.columns(i).iter().enumerate() {
-            let (j, block) = (j as usize, lower.block(i, at));
+            let j = j as usize;
+            let block = lower.block(i, at);
             for c in 0..3 {
                 for r in 0..3 {
                     exact[i][r] -= block[c][r] as f32 * x[j][c];

@@ -278,7 +278,8 @@ fn smooth_rows_lanes<const FMA: bool, const B: usize>(
 /// Calls `run` for parts of the rows with their entries, concurrently.
 fn in_rows<T: Send>(offsets: &[usize], entries: &mut [T], run: impl Fn(Range<usize>, &mut [T]) + Sync) {
     const PART: usize = 512;
-    let (rows, mut rest) = (offsets.len() - 1, entries);
+    let rows = offsets.len() - 1;
+    let mut rest = entries;
     let mut parts = Vec::with_capacity(rows.div_ceil(PART));
     for start in (0..rows).step_by(PART) {
         let end = rows.min(start + PART);

@@ -3,7 +3,8 @@
 
 use std::fmt;
 
-use super::{METRICS, Metric, Shape};
+use super::definition::{Metric, Shape};
+use super::entries::METRICS;
 use crate::names::nearest;
 use crate::problem::Problem;
 

@@ -1,7 +1,7 @@
 //! Definitions of the metrics.
 
-use super::{Kind, Metric, Needs, Shape};
-use crate::Dimension;
+use super::definition::{Kind, Metric, Needs, Shape};
+use crate::dimension::Dimension;
 
 /// Declares each metric as a separate static and lists them all.
 macro_rules! metrics {

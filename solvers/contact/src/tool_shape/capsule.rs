@@ -2,10 +2,12 @@
 //! is that of a cylinder, `H = (I - z z^T - n n^T) / rho`; beyond the ends that of a ball. On the segment the
 //! gradient is +x.
 
+use catalogue::{Build, Entry};
 use shape::{Matrix3, Vector3};
 
-use super::{AXIS, Entry, LENGTH, MEDIAL, RADIUS, Shape, ToolShapeEntry, cylinder, outline, size, sphere};
-use crate::ContactError;
+use super::signed_distance::{AXIS, LENGTH, MEDIAL, RADIUS, Shape, size};
+use super::{cylinder, outline, sphere};
+use crate::error::ContactError;
 
 /// Capsule: the points within `radius` of a segment of the z axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -16,15 +18,16 @@ pub struct Capsule {
     pub half_length: f64,
 }
 
-pub(super) const ENTRY: ToolShapeEntry = Entry {
+pub(super) const ENTRY: Entry<Build<Capsule>> = Entry {
     name: "capsule",
     meaning: "a cylinder with hemispherical ends; the length is the distance between the centres of the \
               hemispheres",
     source: "",
     parameters: &[RADIUS, LENGTH, AXIS],
     build: |values| {
-        let (radius, half_length) = (values.number("radius")?, 0.5 * values.number("length")?);
-        Ok(Capsule { radius, half_length }.into())
+        let radius = values.number("radius")?;
+        let half_length = 0.5 * values.number("length")?;
+        Ok(Capsule { radius, half_length })
     },
 };
 

@@ -4,10 +4,12 @@
 //! If side and end are equally near inside, the side is taken. On the axis the side's normal is +x. Halfway
 //! between the ends the upper end is taken.
 
+use catalogue::{Build, Entry};
 use shape::{Matrix3, Vector3};
 
-use super::{AXIS, Entry, LENGTH, MEDIAL, RADIUS, Shape, ToolShapeEntry, outline, size};
-use crate::ContactError;
+use super::outline;
+use super::signed_distance::{AXIS, LENGTH, MEDIAL, RADIUS, Shape, size};
+use crate::error::ContactError;
 
 /// Cylinder about the z axis with flat ends and sharp rims. If `half_length` is far larger than the body, it
 /// is a roller.
@@ -19,14 +21,15 @@ pub struct Cylinder {
     pub half_length: f64,
 }
 
-pub(super) const ENTRY: ToolShapeEntry = Entry {
+pub(super) const ENTRY: Entry<Build<Cylinder>> = Entry {
     name: "cylinder",
     meaning: "a cylinder with flat ends and sharp rims; a roller if it is longer than the body",
     source: "",
     parameters: &[RADIUS, LENGTH, AXIS],
     build: |values| {
-        let (radius, half_length) = (values.number("radius")?, 0.5 * values.number("length")?);
-        Ok(Cylinder { radius, half_length }.into())
+        let radius = values.number("radius")?;
+        let half_length = 0.5 * values.number("length")?;
+        Ok(Cylinder { radius, half_length })
     },
 };
 
@@ -79,7 +82,8 @@ fn end(p: &Vector3) -> Vector3 {
 #[inline]
 fn foot(radius: f64, half_length: f64, p: &Vector3) -> (f64, Vector3) {
     let (rho, outward) = radial(radius, p);
-    let (side, flat) = (rho - radius, p.z.abs() - half_length);
+    let side = rho - radius;
+    let flat = p.z.abs() - half_length;
     if side > 0.0 && flat > 0.0 {
         let value = side.hypot(flat);
         (value, (outward * side + end(p) * flat) / value)
@@ -104,7 +108,8 @@ pub(super) fn side_hessian(radius: f64, p: &Vector3) -> Matrix3 {
 #[inline]
 fn hessian(radius: f64, half_length: f64, p: &Vector3) -> Matrix3 {
     let (rho, outward) = radial(radius, p);
-    let (side, flat) = (rho - radius, p.z.abs() - half_length);
+    let side = rho - radius;
+    let flat = p.z.abs() - half_length;
     if side > 0.0 && flat > 0.0 {
         // Distance to the rim: a circle in the half plane, with `1 / value` across the rim and `n_r / rho`
         // along it.

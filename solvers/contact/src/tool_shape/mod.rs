@@ -1,58 +1,22 @@
 //! Rigid tools as signed distances, each in its own frame: negative inside, gradient a unit vector pointing
 //! out.
 //!
-//! Each shape has a file with its distance and its [`ToolShapeEntry`], and a line in the list below. Outside
-//! and near the surface the distances are exact. On the medial axis the nearest point is not unique. One of
-//! the nearest points is taken there (each file states which), and the infinite part of the Hessian is left
-//! out, so that no value is NaN.
+//! Each shape has a file with its distance and its [`Entry`], and a line in the list below. Outside and near
+//! the surface the distances are exact. On the medial axis the nearest point is not unique. One of the
+//! nearest points is taken there (each file states which), and the infinite part of the Hessian is left out,
+//! so that no value is NaN.
 
 mod outline;
+mod signed_distance;
 
-use catalogue::{Dimension, Entry, Kind, Parameter, Problem, Range, Values};
+use catalogue::{Build, Entry};
 use shape::{Matrix3, Point3, Vector3};
 
-use crate::ContactError;
+use self::signed_distance::Shape;
+use crate::error::ContactError;
 
 /// Shape of tools that scene files can name.
-pub type ToolShapeEntry = Entry<fn(&Values) -> Result<ToolShape, Problem>>;
-
-/// Part of the tool's size within which a point counts as lying on a centre, an axis or a core: the direction
-/// to it is noise.
-const MEDIAL: f64 = 1e-12;
-
-/// Shape of a tool, in its own frame. Lengths are in metres.
-trait Shape {
-    /// Returns the signed distance and its gradient.
-    fn foot(&self, p: &Vector3) -> (f64, Vector3);
-
-    /// Returns the Hessian of the distance (3, 3), 1/m.
-    fn hessian(&self, p: &Vector3) -> Matrix3;
-
-    /// Returns the half extents of a box about the origin that contains the shape; infinite for an unbounded
-    /// shape.
-    fn half_extents(&self) -> Vector3;
-
-    /// Returns the radius of the largest ball inside.
-    fn inradius(&self) -> f64;
-
-    /// Returns points whose convex hull is the shape, for pictures of it next to a body of size `body`.
-    fn outline(&self, body: f64) -> Vec<Vector3>;
-
-    /// Returns the default direction of the z axis of the tool's frame; `None` if the frame has the axes of
-    /// the scene by default.
-    fn axis(&self, _along: Vector3) -> Option<Vector3> {
-        None
-    }
-
-    /// Returns the area of the face that presses if the tool moves along a direction, m^2; `None` if it has
-    /// no such face.
-    fn face_area(&self, _along: &Vector3) -> Option<f64> {
-        None
-    }
-
-    /// Checks the lengths.
-    fn check(&self) -> Result<(), ContactError>;
-}
+pub type ToolShapeEntry = Entry<Build<ToolShape>>;
 
 /// Declares the modules of the shapes, the enum that dispatches to them without a call through a pointer, and
 /// the slice of their entries.
@@ -76,7 +40,8 @@ macro_rules! tool_shapes {
         }
 
         /// Every shape, in the order of tables.
-        pub static TOOL_SHAPES: &[ToolShapeEntry] = &[$($file::ENTRY),*];
+        pub static TOOL_SHAPES: &[ToolShapeEntry] =
+            &[$($file::ENTRY.built_by(|values| Ok(($file::ENTRY.build)(values)?.into()))),*];
 
         impl ToolShape {
             /// Returns the name used in scene files and tables.
@@ -119,11 +84,6 @@ tool_shapes! {
     cylinder::Cylinder,
     capsule::Capsule,
 }
-
-const RADIUS: Parameter = Parameter::required("radius", Dimension::Length, "radius").within(Range::Positive);
-const LENGTH: Parameter = Parameter::required("length", Dimension::Length, "length").within(Range::Positive);
-const AXIS: Parameter =
-    Parameter::optional("axis", Dimension::None, "axis; along z unless given").of(Kind::Vector);
 
 /// Signed distance with its derivatives at one point.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -174,7 +134,8 @@ impl ToolShape {
         let outline = self.outline(body);
         let low = outline.iter().fold(Vector3::repeat(f64::INFINITY), |low, p| low.inf(p));
         let high = outline.iter().fold(Vector3::repeat(f64::NEG_INFINITY), |high, p| high.sup(p));
-        let (middle, half) = ((low + high) / 2.0, (high - low) / 2.0);
+        let middle = (low + high) / 2.0;
+        let half = (high - low) / 2.0;
         let (mut points, quads) = outline::cube();
         for point in &mut points {
             let way = point.component_mul(&half);
@@ -208,11 +169,6 @@ impl ToolShape {
     pub(super) fn check(&self) -> Result<(), ContactError> {
         self.shape().check()
     }
-}
-
-/// Checks that a length is positive and finite; written so that a NaN fails.
-fn size(what: &'static str, value: f64) -> Result<(), ContactError> {
-    if value > 0.0 && value.is_finite() { Ok(()) } else { Err(ContactError::Size { what, value }) }
 }
 
 #[cfg(test)]

@@ -1,9 +1,11 @@
 //! Half space `z <= 0`, with the distance `sd = z`.
 
+use catalogue::{Build, Dimension, Entry, Kind, Parameter};
 use shape::{Matrix3, Vector3};
 
-use super::{Dimension, Entry, Kind, Parameter, Shape, ToolShapeEntry, outline};
-use crate::ContactError;
+use super::outline;
+use super::signed_distance::Shape;
+use crate::error::ContactError;
 
 /// Half space `z <= 0`: a plate of unlimited extent and thickness, whose face points along +z.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -16,12 +18,12 @@ const AXIS: Parameter = Parameter::optional(
 )
 .of(Kind::Vector);
 
-pub(super) const ENTRY: ToolShapeEntry = Entry {
+pub(super) const ENTRY: Entry<Build<Plate>> = Entry {
     name: "plate",
     meaning: "a half space, bounded by an infinite flat face",
     source: "",
     parameters: &[AXIS],
-    build: |_| Ok(Plate.into()),
+    build: |_| Ok(Plate),
 };
 
 impl Shape for Plate {

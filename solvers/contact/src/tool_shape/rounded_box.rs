@@ -3,12 +3,12 @@
 //! Deeper than `r` (in the core `q <= 0`) the nearest face pushes. Of equally near faces the first of x, y, z
 //! is taken, and the positive face of a pair.
 
+use catalogue::{Build, Dimension, Entry, Kind, Parameter, Problem, Range};
 use shape::{Matrix3, Vector3};
 
-use super::{
-    Dimension, Entry, Kind, MEDIAL, Parameter, Problem, RADIUS, Range, Shape, ToolShapeEntry, outline, size,
-};
-use crate::ContactError;
+use super::outline;
+use super::signed_distance::{MEDIAL, RADIUS, Shape, size};
+use crate::error::ContactError;
 
 /// Box about the origin with all edges and corners rounded.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -19,11 +19,12 @@ pub struct RoundedBox {
     pub radius: f64,
 }
 
-const HALF: Parameter = Parameter::required("half", Dimension::Length, "half extents, including the rounding")
-    .of(Kind::Vector)
-    .within(Range::Positive);
+const HALF: Parameter =
+    Parameter::required("half", Dimension::Length, "half extents, including the rounding")
+        .of(Kind::Vector)
+        .within(Range::Positive);
 
-pub(super) const ENTRY: ToolShapeEntry = Entry {
+pub(super) const ENTRY: Entry<Build<RoundedBox>> = Entry {
     name: "rounded-box",
     meaning: "an axis-parallel box with rounded edges and corners",
     source: "",
@@ -34,7 +35,7 @@ pub(super) const ENTRY: ToolShapeEntry = Entry {
         };
         let shape = RoundedBox { half: [x, y, z], radius: values.number("radius")? };
         shape.check().map_err(|bad| Problem::new(bad.to_string()).of("radius"))?;
-        Ok(shape.into())
+        Ok(shape)
     },
 };
 
@@ -70,7 +71,8 @@ impl Shape for RoundedBox {
 
     fn check(&self) -> Result<(), ContactError> {
         self.half.iter().try_for_each(|&h| size("a half extent", h))?;
-        let (radius, half) = (self.radius, self.inradius());
+        let radius = self.radius;
+        let half = self.inradius();
         // Written so that a NaN fails.
         if radius >= 0.0 && radius <= half { Ok(()) } else { Err(ContactError::Rounding { radius, half }) }
     }

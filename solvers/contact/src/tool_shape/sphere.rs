@@ -1,9 +1,11 @@
 //! Ball: `sd = |p| - r`, Hessian `(I - n n^T) / |p|`. At the centre the gradient is +z and the Hessian zero.
 
+use catalogue::{Build, Entry};
 use shape::{Matrix3, Vector3};
 
-use super::{Entry, MEDIAL, RADIUS, Shape, ToolShapeEntry, outline, size};
-use crate::ContactError;
+use super::outline;
+use super::signed_distance::{MEDIAL, RADIUS, Shape, size};
+use crate::error::ContactError;
 
 /// Ball about the origin.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -12,12 +14,12 @@ pub struct Sphere {
     pub radius: f64,
 }
 
-pub(super) const ENTRY: ToolShapeEntry = Entry {
+pub(super) const ENTRY: Entry<Build<Sphere>> = Entry {
     name: "sphere",
     meaning: "a ball",
     source: "",
     parameters: &[RADIUS],
-    build: |values| Ok(Sphere { radius: values.number("radius")? }.into()),
+    build: |values| Ok(Sphere { radius: values.number("radius")? }),
 };
 
 impl Shape for Sphere {

@@ -6,11 +6,12 @@ use lanes::{LANES, LanePath, on_path};
 use shape::{Point3, Vector3};
 
 use super::{Approximation, Chunk, Functions, LeastSquares};
+use crate::basis::Basis;
 use crate::coupling::{Layer, joined};
+use crate::error::EfgError;
 use crate::info::Outcome;
 use crate::max_entropy::NoPoint;
 use crate::mls::Group;
-use crate::{Basis, EfgError};
 
 /// Condition number above which supports next to finite elements are enlarged. The nodes on the other side of
 /// such a point are removed. Up to this number, the sum of a row is one within 1e-10. Elsewhere medians are
@@ -29,7 +30,7 @@ impl Approximation {
         coupling.layers(points, &mut chunk.layers)?;
         self.fill_own::<GRAD>(points, chunk)?;
         let Chunk { rows, outcomes, layers, .. } = chunk;
-        *rows = joined::<GRAD>(rows, layers, self.balls.len());
+        *rows = joined::<GRAD>(rows, layers, self.supports.balls.len());
         outcomes.iter_mut().enumerate().for_each(|(q, of)| of.neighbours = rows.range(q).len() as u32);
         Ok(())
     }
@@ -81,7 +82,7 @@ impl Approximation {
         for together in order.chunks(LANES) {
             let nodes = |q: usize| &rows.nodes[rows.range(q)];
             let together_with = together.iter().map(|&q| (&points[q as usize], nodes(q as usize)));
-            group.load(together_with, &self.balls, &self.ellipsoids, 1.0);
+            group.load(together_with, &self.supports.balls, &self.supports.ellipsoids, 1.0);
             if !detours.is_empty() {
                 group.bend(together.iter().map(|&q| &detours[rows.range(q as usize)]));
             }
@@ -121,10 +122,11 @@ impl Approximation {
         for (q, x) in points.iter().enumerate() {
             let range = rows.range(q);
             let nodes = &rows.nodes[range.clone()];
-            let near = nodes.iter().map(|&n| (Vector3::from(self.balls[n as usize].at), beta[n as usize]));
+            let near =
+                nodes.iter().map(|&n| (Vector3::from(self.supports.balls[n as usize].at), beta[n as usize]));
             let grads = if GRAD { &mut rows.grads[range.clone()] } else { &mut [] };
             neighbours.bend(detours.get(range.clone()).unwrap_or_default(), |k| {
-                self.balls[nodes[k] as usize].radius
+                self.supports.balls[nodes[k] as usize].radius
             });
             let condition = neighbours
                 .evaluate::<GRAD>(x, near, &mut rows.values[range.clone()], grads)

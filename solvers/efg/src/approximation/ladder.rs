@@ -3,12 +3,13 @@
 use shape::{Point3, Vector3};
 
 use super::{Approximation, Chunk, LeastSquares};
+use crate::basis::Basis;
 use crate::coupling::Layer;
-use crate::gaps::Detour;
+use crate::detour::Detour;
+use crate::error::EfgError;
 use crate::info::Outcome;
 use crate::mls::{Group, Moments};
 use crate::row_list::RowList;
-use crate::{Basis, EfgError};
 
 /// Ratio of an enlarged support to the distance of the neighbour whose number is twice that of the basis
 /// terms.
@@ -43,7 +44,8 @@ impl Approximation {
                 rows.grads.extend_from_slice(if GRAD { &plain.grads[range] } else { &[] });
                 rows.close();
             } else {
-                let (layer, cell) = (chunk.layers.get(q), chunk.cells.get(q).copied());
+                let layer = chunk.layers.get(q);
+                let cell = chunk.cells.get(q).copied();
                 chunk.outcomes[q] = self.climb::<GRAD>(x, layer, cell, fit, &mut chunk.group, rows)?;
             }
         }
@@ -67,14 +69,20 @@ impl Approximation {
             Some(longer) => self.relative(node, x) + longer / self.radius(node as usize),
             None => self.relative(node, x),
         };
-        let enlargement = enlargement(relative, (0..self.balls.len() as u32).filter(counts), 2 * needed);
-        let covers = |&node: &u32| match self.ellipsoids.is_empty() && detours.is_empty() {
-            true => self.balls[node as usize].covers(x, enlargement),
+        let enlargement =
+            enlargement(relative, (0..self.supports.balls.len() as u32).filter(counts), 2 * needed);
+        let covers = |&node: &u32| match self.supports.ellipsoids.is_empty() && detours.is_empty() {
+            true => self.supports.balls[node as usize].covers(x, enlargement),
             false => relative(node) < enlargement,
         };
-        let nodes: Vec<u32> = (0..self.balls.len() as u32).filter(counts).filter(covers).collect();
+        let nodes: Vec<u32> = (0..self.supports.balls.len() as u32).filter(counts).filter(covers).collect();
         let found = nodes.len();
-        group.load(std::iter::once((x, &nodes[..])), &self.balls, &self.ellipsoids, enlargement);
+        group.load(
+            std::iter::once((x, &nodes[..])),
+            &self.supports.balls,
+            &self.supports.ellipsoids,
+            enlargement,
+        );
         if !detours.is_empty() {
             let longer = |&node: &u32| detours[node as usize] / (self.radius(node as usize) * enlargement);
             let detour = |node| Detour { longer: longer(node), slope: Vector3::zeros() };
@@ -132,7 +140,7 @@ impl Approximation {
         let mut scale = 0.0_f64;
         for (&node, value) in nodes.iter().zip(&values) {
             let e = self.nodes[node as usize] - x;
-            scale = scale.max(self.balls[node as usize].radius);
+            scale = scale.max(self.supports.balls[node as usize].radius);
             left.iter_mut().zip([1.0, e.x, e.y, e.z]).for_each(|(left, p)| *left -= value * p);
         }
         left[0].abs().max(left[1..].iter().fold(0.0, |most, l| l.abs().max(most)) / scale)
@@ -141,7 +149,12 @@ impl Approximation {
     /// Returns the detours from a point to all nodes, m. The list is empty for a body without gaps.
     fn detours(&self, x: &Point3, cell: Option<u32>) -> Vec<f64> {
         let (Some(gaps), Some(cell)) = (&self.gaps, cell) else { return Vec::new() };
-        gaps.detours(x, cell, &self.nodes[..self.balls.len()], MOST_ENLARGEMENT * self.widest())
+        gaps.detours(
+            x,
+            cell,
+            &self.nodes[..self.supports.balls.len()],
+            MOST_ENLARGEMENT * self.supports.widest(),
+        )
     }
 }
 

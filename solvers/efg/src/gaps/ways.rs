@@ -41,7 +41,8 @@ impl Graph {
         let mut offsets = vec![0; points.len() + 1];
         links.iter().flat_map(|&(a, b)| [a, b]).for_each(|vertex| offsets[vertex as usize + 1] += 1);
         (0..points.len()).for_each(|vertex| offsets[vertex + 1] += offsets[vertex]);
-        let (mut next, mut ends) = (offsets.clone(), vec![0; 2 * links.len()]);
+        let mut next = offsets.clone();
+        let mut ends = vec![0; 2 * links.len()];
         for (a, b) in links.iter().flat_map(|&(a, b)| [(a, b), (b, a)]) {
             ends[next[a as usize]] = b;
             next[a as usize] += 1;

@@ -1,18 +1,20 @@
 //! The cubic spline.
 
-use super::{Entry, KernelEntry, Problem, Values, Weight};
+use catalogue::{Build, Entry};
+
+use super::weight::Weight;
 
 /// Cubic spline: 3/2 times `2/3 - 4q^2 + 4q^3` up to `q = 1/2` and `4/3 (1 - q)^3` beyond, with `q` the
 /// distance from the node over the support radius. C2.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CubicSpline;
 
-pub(super) const ENTRY: KernelEntry = Entry {
+pub(super) const ENTRY: Entry<Build<CubicSpline>> = Entry {
     name: "cubic-spline",
     meaning: "2/3 - 4q^2 + 4q^3 up to 1/2, then 4/3 (1 - q)^3, times 3/2; C2",
     source: "Dolbow and Belytschko (1998)",
     parameters: &[],
-    build: |_: &Values| -> Result<_, Problem> { Ok(CubicSpline.into()) },
+    build: |_| Ok(CubicSpline),
 };
 
 impl Weight for CubicSpline {

@@ -1,6 +1,8 @@
 //! The exponential weight with a free power.
 
-use super::{Dimension, Entry, KernelEntry, Kind, Parameter, Problem, Range, Values, Weight, gaussian};
+use catalogue::{Build, Dimension, Entry, Kind, Parameter, Range};
+
+use super::weight::Weight;
 
 /// Exponential weight `(e^{-(q/alpha)^{2k}} - e^{-(1/alpha)^{2k}}) / (1 - e^{-(1/alpha)^{2k}})`, with `q` the
 /// distance from the node over the support radius and `alpha` the width over the support radius. The weight
@@ -11,18 +13,25 @@ pub struct Exponential {
     power: u32,
 }
 
+/// Parameter `alpha`, the relative width. Below 0.05 the kernel is zero to rounding at the nearest neighbour;
+/// above 10 it has no shape.
+pub(super) const fn width(default: f64) -> Parameter {
+    Parameter::default("alpha", Dimension::None, default, "width relative to the support radius")
+        .within(Range::Within(0.05, 10.0))
+}
+
 const POWER: Parameter = Parameter::default("power", Dimension::None, 2.0, "exponent k; flat-topped above 1")
     .of(Kind::Count)
     .within(Range::Within(1.0, 8.0));
 
-pub(super) const ENTRY: KernelEntry = Entry {
+pub(super) const ENTRY: Entry<Build<Exponential>> = Entry {
     name: "exponential",
     meaning: "(e^-(q/alpha)^2k - e^-(1/alpha)^2k) / (1 - e^-(1/alpha)^2k)",
     source: "Belytschko, Lu and Gu (1994), with a free power k",
-    parameters: &[gaussian::width(0.5), POWER],
-    build: |values: &Values| -> Result<_, Problem> {
+    parameters: &[width(0.5), POWER],
+    build: |values| {
         let (alpha, power) = (values.number("alpha")?, values.number("power")?);
-        Ok(Exponential { alpha, power: power as u32 }.into())
+        Ok(Exponential { alpha, power: power as u32 })
     },
 };
 

@@ -1,8 +1,9 @@
 //! The Gaussian.
 
-use super::{
-    Dimension, Entry, KernelEntry, Parameter, Problem, Range, Values, Weight, exponential::exponential,
-};
+use catalogue::{Build, Entry};
+
+use super::exponential::{exponential, width};
+use super::weight::Weight;
 
 /// Gaussian weight `(e^{-(q/alpha)^2} - e^{-(1/alpha)^2}) / (1 - e^{-(1/alpha)^2})`, with `q` the distance
 /// from the node over the support radius and `alpha` the width over the support radius.
@@ -11,19 +12,12 @@ pub struct Gaussian {
     alpha: f64,
 }
 
-/// Parameter `alpha`, the relative width. Below 0.05 the kernel is zero to rounding at the nearest neighbour;
-/// above 10 it has no shape.
-pub(super) const fn width(default: f64) -> Parameter {
-    Parameter::default("alpha", Dimension::None, default, "width relative to the support radius")
-        .within(Range::Within(0.05, 10.0))
-}
-
-pub(super) const ENTRY: KernelEntry = Entry {
+pub(super) const ENTRY: Entry<Build<Gaussian>> = Entry {
     name: "gaussian",
     meaning: "(e^-(q/alpha)^2 - e^-(1/alpha)^2) / (1 - e^-(1/alpha)^2)",
     source: "Belytschko, Lu and Gu (1994)",
     parameters: &[width(0.4)],
-    build: |values: &Values| -> Result<_, Problem> { Ok(Gaussian { alpha: values.number("alpha")? }.into()) },
+    build: |values| Ok(Gaussian { alpha: values.number("alpha")? }),
 };
 
 impl Weight for Gaussian {

@@ -1,18 +1,16 @@
 //! Kernels (weight functions) of moving least squares: radial, with compact support, one at the centre.
 //!
-//! Each kernel is a file with its function and its [`KernelEntry`], and a line in the list below. Parameters
+//! Each kernel is a file with its function and its [`Entry`], and a line in the list below. Parameters
 //! are checked when a kernel is built, so every [`Kernel`] is valid.
 
-use catalogue::{Dimension, Entry, Kind, Parameter, Problem, Range, Values};
+mod weight;
+
+use catalogue::{Build, Entry, Values};
+
+use self::weight::Weight;
 
 /// A kernel that scene files can name.
-pub type KernelEntry = Entry<fn(&Values) -> Result<Kernel, Problem>>;
-
-/// Weight function of a kernel: `q < 1` gives `(w, dw/dq)`. All terms that do not depend on `q` are computed
-/// beforehand.
-trait Weight: Copy {
-    fn weight(self) -> impl Fn(f64) -> (f64, f64);
-}
+pub type KernelEntry = Entry<Build<Kernel>>;
 
 /// Declares the files of the kernels, the enum that dispatches to them without a call through a pointer, and
 /// the slice of their entries.
@@ -37,7 +35,8 @@ macro_rules! kernels {
         }
 
         /// Entries of all kernels, in the order of tables.
-        pub static KERNELS: &[KernelEntry] = &[$($file::ENTRY),*];
+        pub static KERNELS: &[KernelEntry] =
+            &[$($file::ENTRY.built_by(|values| Ok(($file::ENTRY.build)(values)?.into()))),*];
 
         impl Kernel {
             /// Returns the name used in scene files and tables.

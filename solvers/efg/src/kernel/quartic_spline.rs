@@ -1,17 +1,19 @@
 //! The quartic spline.
 
-use super::{Entry, KernelEntry, Problem, Values, Weight};
+use catalogue::{Build, Entry};
+
+use super::weight::Weight;
 
 /// Quartic spline `1 - 6q^2 + 8q^3 - 3q^4`, with `q` the distance from the node over the support radius. C2.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct QuarticSpline;
 
-pub(super) const ENTRY: KernelEntry = Entry {
+pub(super) const ENTRY: Entry<Build<QuarticSpline>> = Entry {
     name: "quartic-spline",
     meaning: "1 - 6q^2 + 8q^3 - 3q^4; C2",
     source: "Belytschko et al. (1996)",
     parameters: &[],
-    build: |_: &Values| -> Result<_, Problem> { Ok(QuarticSpline.into()) },
+    build: |_| Ok(QuarticSpline),
 };
 
 impl Weight for QuarticSpline {

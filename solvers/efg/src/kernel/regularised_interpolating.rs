@@ -1,6 +1,8 @@
 //! The regularised interpolating weight.
 
-use super::{Dimension, Entry, KernelEntry, Parameter, Problem, Range, Values, Weight};
+use catalogue::{Build, Dimension, Entry, Parameter, Range};
+
+use super::weight::Weight;
 
 /// Regularised interpolating weight `((q^2 + eps)^-2 - (1 + eps)^-2) / (eps^-2 - (1 + eps)^-2)`, with `q` the
 /// distance from the node over the support radius. Shape functions almost interpolate for small `eps`.
@@ -13,14 +15,12 @@ const EPS: Parameter =
     Parameter::default("eps", Dimension::None, 1e-5, "regularisation parameter, which keeps the peak finite")
         .within(Range::Within(1e-8, 1.0));
 
-pub(super) const ENTRY: KernelEntry = Entry {
+pub(super) const ENTRY: Entry<Build<RegularisedInterpolating>> = Entry {
     name: "regularised-interpolating",
     meaning: "((q^2 + eps)^-2 - (1 + eps)^-2) / (eps^-2 - (1 + eps)^-2); nearly interpolating",
     source: "Most and Bucher (2005)",
     parameters: &[EPS],
-    build: |values: &Values| -> Result<_, Problem> {
-        Ok(RegularisedInterpolating { eps: values.number("eps")? }.into())
-    },
+    build: |values| Ok(RegularisedInterpolating { eps: values.number("eps")? }),
 };
 
 impl Weight for RegularisedInterpolating {

@@ -1,17 +1,19 @@
 //! Wendland's function, C2.
 
-use super::{Entry, KernelEntry, Problem, Values, Weight};
+use catalogue::{Build, Entry};
+
+use super::weight::Weight;
 
 /// Wendland's weight `(1 - q)^4 (4q + 1)`, with `q` the distance from the node over the support radius. C2.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WendlandC2;
 
-pub(super) const ENTRY: KernelEntry = Entry {
+pub(super) const ENTRY: Entry<Build<WendlandC2>> = Entry {
     name: "wendland-c2",
     meaning: "(1 - q)^4 (4q + 1); C2",
     source: "Wendland (1995)",
     parameters: &[],
-    build: |_: &Values| -> Result<_, Problem> { Ok(WendlandC2.into()) },
+    build: |_| Ok(WendlandC2),
 };
 
 impl Weight for WendlandC2 {

@@ -1,18 +1,20 @@
 //! Wendland's function, C4.
 
-use super::{Entry, KernelEntry, Problem, Values, Weight};
+use catalogue::{Build, Entry};
+
+use super::weight::Weight;
 
 /// Wendland's weight `(1 - q)^6 (35q^2 + 18q + 3) / 3`, with `q` the distance from the node over the support
 /// radius. C4.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WendlandC4;
 
-pub(super) const ENTRY: KernelEntry = Entry {
+pub(super) const ENTRY: Entry<Build<WendlandC4>> = Entry {
     name: "wendland-c4",
     meaning: "(1 - q)^6 (35q^2 + 18q + 3) / 3; C4",
     source: "Wendland (1995)",
     parameters: &[],
-    build: |_: &Values| -> Result<_, Problem> { Ok(WendlandC4.into()) },
+    build: |_| Ok(WendlandC4),
 };
 
 impl Weight for WendlandC4 {

@@ -1,18 +1,20 @@
 //! Wendland's function, C6.
 
-use super::{Entry, KernelEntry, Problem, Values, Weight};
+use catalogue::{Build, Entry};
+
+use super::weight::Weight;
 
 /// Wendland's weight `(1 - q)^8 (32q^3 + 25q^2 + 8q + 1)`, with `q` the distance from the node over the
 /// support radius. C6.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WendlandC6;
 
-pub(super) const ENTRY: KernelEntry = Entry {
+pub(super) const ENTRY: Entry<Build<WendlandC6>> = Entry {
     name: "wendland-c6",
     meaning: "(1 - q)^8 (32q^3 + 25q^2 + 8q + 1); C6",
     source: "Wendland (1995)",
     parameters: &[],
-    build: |_: &Values| -> Result<_, Problem> { Ok(WendlandC6.into()) },
+    build: |_| Ok(WendlandC6),
 };
 
 impl Weight for WendlandC6 {

@@ -4,8 +4,8 @@ use lanes::LANES;
 use shape::Point3;
 
 use super::Group;
-use crate::Ellipsoid;
-use crate::gaps::Detour;
+use crate::detour::Detour;
+use crate::ellipsoid::Ellipsoid;
 
 impl Group {
     /// Computes relative distances and their directions in the metrics of ellipsoids.
@@ -52,7 +52,8 @@ impl Group {
         }
         for (l, of_point) in detours.enumerate() {
             for (k, detour) in of_point.iter().enumerate().filter(|(_, detour)| detour.longer > 0.0) {
-                let (chain, q) = (self.chain[k][l], (self.relative[k][l] + detour.longer).min(1.0));
+                let chain = self.chain[k][l];
+                let q = (self.relative[k][l] + detour.longer).min(1.0);
                 for (axis, normal) in self.normal[k].iter_mut().enumerate() {
                     normal[l] = q * (normal[l] * chain - detour.slope[axis]);
                 }

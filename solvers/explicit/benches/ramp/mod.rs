@@ -28,7 +28,7 @@ pub struct Body {
 impl Body {
     pub fn new() -> Body {
         let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../cases/scenes/kidney/kidney-1331.msh");
-        let mesh = geometry::files::read(&file, 1e-3).unwrap();
+        let mesh = mesh_files::read(&file, 1e-3).unwrap();
         let volume = fem::volume_rows(&mesh, &VolumeRule::STANDARD).unwrap();
         let surface = fem::surface_rows(&mesh, &mesh.boundary(), &SurfaceRule::STANDARD).unwrap();
         let mass = lumped_mass(&volume, &[1000.0], &[], Lumping::RowSum).unwrap();

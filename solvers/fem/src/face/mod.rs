@@ -1,29 +1,19 @@
 //! Faces of the elements: shape functions of two coordinates, on the triangle (0,0), (1,0), (0,1) or the
 //! square `[-1, 1]^2`. The restriction of an element to a face is the face element.
 
+mod lagrange;
 mod quad4;
 mod quad8;
 mod tri3;
 mod tri6;
 
+pub(crate) use lagrange::Face;
 pub(crate) use quad4::Quad4;
 pub(crate) use quad8::Quad8;
 pub(crate) use tri3::Tri3;
 pub(crate) use tri6::Tri6;
 
 use geometry::CellKind;
-
-/// Lagrange element of `N` nodes on a reference face.
-pub(crate) trait Face<const N: usize> {
-    /// Reference coordinates of the nodes, corners first.
-    const NODES: [[f64; 2]; N];
-
-    /// Returns the shape functions at `s`.
-    fn shape(s: [f64; 2]) -> [f64; N];
-
-    /// Returns the gradients of the shape functions with respect to `s`.
-    fn shape_grad(s: [f64; 2]) -> [[f64; 2]; N];
-}
 
 /// Runs `$body` with `$F` as the face type of a face kind and `$N` as its number of nodes.
 macro_rules! with_face {

@@ -1,4 +1,4 @@
-use super::Face;
+use super::lagrange::Face;
 
 /// 4-node quadrilateral, the face of a hex8: `N_a = (1 + x x_a)(1 + y y_a) / 4`.
 pub(crate) struct Quad4;

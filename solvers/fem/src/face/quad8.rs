@@ -1,4 +1,4 @@
-use super::Face;
+use super::lagrange::Face;
 
 /// 8-node serendipity quadrilateral, the face of a hex20: corners, then mid-edges 01, 12, 23, 30.
 ///

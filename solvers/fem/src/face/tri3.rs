@@ -1,4 +1,4 @@
-use super::Face;
+use super::lagrange::Face;
 
 /// 3-node triangle, the face of a tet4: `N = (1 - x - y, x, y)`.
 pub(crate) struct Tri3;

@@ -1,4 +1,5 @@
-use super::{Face, Tri3};
+use super::lagrange::Face;
+use super::tri3::Tri3;
 
 /// 6-node triangle, the face of a tet10: corners `L_a (2 L_a - 1)`, mid-edges 01, 12, 20 `4 L_a L_b`.
 pub(crate) struct Tri6;

@@ -154,7 +154,8 @@ fn header(values: &[&str]) -> Result<Columns, (usize, PointProblem)> {
 }
 
 fn position(values: &[&str], columns: &Columns) -> Result<Point3, (usize, PointProblem)> {
-    let (found, expected) = (values.len(), columns.count);
+    let found = values.len();
+    let expected = columns.count;
     if found < expected {
         return Err((found, PointProblem::Missing { found, expected }));
     }

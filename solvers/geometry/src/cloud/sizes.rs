@@ -1,6 +1,8 @@
 //! Graded spacing of nodes that concentrates them in regions of large error.
 
-use crate::{Cloud, Point3, Search, SearchError};
+use super::Cloud;
+use crate::Point3;
+use crate::search::{Search, SearchError};
 
 /// Largest growth of the spacing per distance. Over a support of three spacings the spacing at most doubles.
 const GROWTH: f64 = 0.3;

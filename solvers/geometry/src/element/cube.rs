@@ -1,10 +1,23 @@
 //! The cube `[-1, 1]^3`.
 
-use super::ReferenceCell;
+use super::entry::ReferenceCell;
 use crate::quadrature::{self, Rule};
 
 /// Largest number of Gauss points along an axis; a larger number is taken for a typing error.
 const MOST_PER_AXIS: usize = 16;
+
+/// Corners of the reference cube in VTK order, which is the node order of hex8: bottom counter-clockwise,
+/// then top.
+pub const HEX_CORNERS: [[f64; 3]; 8] = [
+    [-1.0, -1.0, -1.0],
+    [1.0, -1.0, -1.0],
+    [1.0, 1.0, -1.0],
+    [-1.0, 1.0, -1.0],
+    [-1.0, -1.0, 1.0],
+    [1.0, -1.0, 1.0],
+    [1.0, 1.0, 1.0],
+    [-1.0, 1.0, 1.0],
+];
 
 pub(super) static CUBE: ReferenceCell = ReferenceCell {
     edges: &[[0, 1], [1, 2], [2, 3], [3, 0], [4, 5], [5, 6], [6, 7], [7, 4], [0, 4], [1, 5], [2, 6], [3, 7]],

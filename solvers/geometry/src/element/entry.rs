@@ -1,7 +1,22 @@
-//! Facts of an element beyond its shape functions. All other code asks the entry of a kind for them.
+//! An element: its shape functions, and the entry of all other facts.
 
-use crate::CellKind;
 use crate::quadrature::Rule;
+
+/// A Lagrange element of `N` nodes on its reference cell: the tetrahedron (0,0,0), (1,0,0), (0,1,0), (0,0,1),
+/// the cube `[-1, 1]^3`, or the triangle (0,0), (1,0), (0,1) between z = -1 and z = 1. The same functions map
+/// the reference cell to space: `x(xi) = sum_a N_a(xi) x_a`.
+pub trait Element<const N: usize> {
+    /// Facts of the element.
+    const ENTRY: Entry;
+    /// Reference coordinates of the nodes, (N, 3).
+    const NODES: [[f64; 3]; N];
+
+    /// Shape functions at `xi`, (N), dimensionless.
+    fn shape(xi: [f64; 3]) -> [f64; N];
+
+    /// Gradients of the shape functions with respect to `xi`, (N, 3), dimensionless.
+    fn shape_grad(xi: [f64; 3]) -> [[f64; 3]; N];
+}
 
 /// Facts of one kind of cell, next to its shape functions.
 pub struct Entry {
@@ -81,52 +96,13 @@ pub struct ReferenceCell {
     pub bulge: f64,
 }
 
-impl CellKind {
-    /// The name used in scene files and tables.
-    pub fn name(self) -> &'static str {
-        self.entry().listed.name
+/// The node order of a file that lists the nodes as the cell does.
+pub(super) const fn in_order<const N: usize>() -> [usize; N] {
+    let mut order = [0; N];
+    let mut at = 0;
+    while at < N {
+        order[at] = at;
+        at += 1;
     }
-
-    /// Polynomial order of the kind's complete basis: 1 or 2.
-    pub fn order(self) -> usize {
-        self.entry().listed.degree
-    }
-
-    /// Number of nodes.
-    pub fn node_count(self) -> usize {
-        self.entry().nodes.len()
-    }
-
-    /// Number of corner nodes; they come first in the cell's node list.
-    pub fn corner_count(self) -> usize {
-        self.entry().cell.corners
-    }
-
-    /// Corner pairs of the edges. The mid-edge nodes of the quadratic kinds follow this order.
-    pub fn edges(self) -> &'static [[usize; 2]] {
-        self.entry().cell.edges
-    }
-
-    /// Local node indices of each face, corners first, seen counter-clockwise from outside.
-    pub fn faces(self) -> &'static [&'static [usize]] {
-        self.entry().faces
-    }
-
-    /// Kind of the same shape with a basis of another order; `None` if there is none.
-    pub fn of_order(self, order: usize) -> Option<CellKind> {
-        let alike = |kind: &CellKind| std::ptr::eq(kind.entry().cell, self.entry().cell);
-        CellKind::ALL.into_iter().find(|kind| kind.order() == order && alike(kind))
-    }
-
-    /// Node order that mirrors a cell: every mid-edge node keeps its edge.
-    pub fn mirrored(self) -> Vec<usize> {
-        let corners = self.entry().cell.mirrored;
-        let middle = |&[a, b]: &[usize; 2]| {
-            let ends = [corners[a], corners[b]];
-            let edge = self.edges().iter().position(|edge| ends.iter().all(|end| edge.contains(end)));
-            self.corner_count() + edge.expect("a mirrored cell has the same edges")
-        };
-        let middles = self.edges().iter().map(middle).take(self.node_count() - self.corner_count());
-        corners.iter().copied().chain(middles).collect()
-    }
+    order
 }

@@ -1,8 +1,7 @@
 use catalogue::element as listed;
 
 use super::cube::CUBE;
-use super::{Element, Entry, FileCodes, Points, in_order};
-use crate::CellKind;
+use super::entry::{Element, Entry, FileCodes, Points, in_order};
 
 /// 20-node serendipity hexahedron on the cube `[-1, 1]^3`: the corners of [`super::Hex8`], then mid-edges
 /// 01 12 23 30, 45 56 67 74, 04 15 26 37.
@@ -17,7 +16,6 @@ use crate::CellKind;
 pub struct Hex20;
 
 impl Element<20> for Hex20 {
-    const KIND: CellKind = CellKind::Hex20;
     const ENTRY: Entry = Entry {
         listed: &listed::HEX20,
         cell: &CUBE,

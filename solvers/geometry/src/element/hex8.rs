@@ -1,8 +1,7 @@
 use catalogue::element as listed;
 
-use super::cube::CUBE;
-use super::{Element, Entry, FileCodes, Points, in_order};
-use crate::CellKind;
+use super::cube::{CUBE, HEX_CORNERS};
+use super::entry::{Element, Entry, FileCodes, Points, in_order};
 
 /// 8-node trilinear hexahedron on the cube `[-1, 1]^3`: bottom 0123 counter-clockwise seen from above, 4567
 /// above.
@@ -11,7 +10,6 @@ use crate::CellKind;
 pub struct Hex8;
 
 impl Element<8> for Hex8 {
-    const KIND: CellKind = CellKind::Hex8;
     const ENTRY: Entry = Entry {
         listed: &listed::HEX8,
         cell: &CUBE,
@@ -27,7 +25,7 @@ impl Element<8> for Hex8 {
             vtk_order: &in_order::<8>(),
         },
     };
-    const NODES: [[f64; 3]; 8] = super::HEX_CORNERS;
+    const NODES: [[f64; 3]; 8] = HEX_CORNERS;
 
     #[inline]
     fn shape([x, y, z]: [f64; 3]) -> [f64; 8] {

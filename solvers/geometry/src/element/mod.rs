@@ -13,7 +13,8 @@ mod tetrahedron;
 mod wedge15;
 mod wedge6;
 
-pub use entry::{Entry, FileCodes, Points, ReferenceCell};
+pub use cube::HEX_CORNERS;
+pub use entry::{Element, Entry, FileCodes, Points, ReferenceCell};
 pub use hex8::Hex8;
 pub use hex20::Hex20;
 pub use tet4::Tet4;
@@ -61,36 +62,55 @@ elements! {
     Wedge15 = 15,
 }
 
-/// A Lagrange element of `N` nodes on its reference cell: the tetrahedron (0,0,0), (1,0,0), (0,1,0), (0,0,1),
-/// the cube `[-1, 1]^3`, or the triangle (0,0), (1,0), (0,1) between z = -1 and z = 1. The same functions map
-/// the reference cell to space: `x(xi) = sum_a N_a(xi) x_a`.
-pub trait Element<const N: usize> {
-    /// Kind of mesh cell, which also defines the node order.
-    const KIND: CellKind;
-    /// Facts of the element.
-    const ENTRY: Entry;
-    /// Reference coordinates of the nodes, (N, 3).
-    const NODES: [[f64; 3]; N];
+impl CellKind {
+    /// The name used in scene files and tables.
+    pub fn name(self) -> &'static str {
+        self.entry().listed.name
+    }
 
-    /// Shape functions at `xi`, (N), dimensionless.
-    fn shape(xi: [f64; 3]) -> [f64; N];
+    /// Polynomial order of the kind's complete basis: 1 or 2.
+    pub fn order(self) -> usize {
+        self.entry().listed.degree
+    }
 
-    /// Gradients of the shape functions with respect to `xi`, (N, 3), dimensionless.
-    fn shape_grad(xi: [f64; 3]) -> [[f64; 3]; N];
+    /// Number of nodes.
+    pub fn node_count(self) -> usize {
+        self.entry().nodes.len()
+    }
+
+    /// Number of corner nodes; they come first in the cell's node list.
+    pub fn corner_count(self) -> usize {
+        self.entry().cell.corners
+    }
+
+    /// Corner pairs of the edges. The mid-edge nodes of the quadratic kinds follow this order.
+    pub fn edges(self) -> &'static [[usize; 2]] {
+        self.entry().cell.edges
+    }
+
+    /// Local node indices of each face, corners first, seen counter-clockwise from outside.
+    pub fn faces(self) -> &'static [&'static [usize]] {
+        self.entry().faces
+    }
+
+    /// Kind of the same shape with a basis of another order; `None` if there is none.
+    pub fn of_order(self, order: usize) -> Option<CellKind> {
+        let alike = |kind: &CellKind| std::ptr::eq(kind.entry().cell, self.entry().cell);
+        CellKind::ALL.into_iter().find(|kind| kind.order() == order && alike(kind))
+    }
+
+    /// Node order that mirrors a cell: every mid-edge node keeps its edge.
+    pub fn mirrored(self) -> Vec<usize> {
+        let corners = self.entry().cell.mirrored;
+        let middle = |&[a, b]: &[usize; 2]| {
+            let ends = [corners[a], corners[b]];
+            let edge = self.edges().iter().position(|edge| ends.iter().all(|end| edge.contains(end)));
+            self.corner_count() + edge.expect("a mirrored cell has the same edges")
+        };
+        let middles = self.edges().iter().map(middle).take(self.node_count() - self.corner_count());
+        corners.iter().copied().chain(middles).collect()
+    }
 }
-
-/// Corners of the reference cube in VTK order, which is the node order of hex8: bottom counter-clockwise,
-/// then top.
-pub const HEX_CORNERS: [[f64; 3]; 8] = [
-    [-1.0, -1.0, -1.0],
-    [1.0, -1.0, -1.0],
-    [1.0, 1.0, -1.0],
-    [-1.0, 1.0, -1.0],
-    [-1.0, -1.0, 1.0],
-    [1.0, -1.0, 1.0],
-    [1.0, 1.0, 1.0],
-    [-1.0, 1.0, 1.0],
-];
 
 /// Runs `$body` with `$E` bound to the element type of a cell kind and `$N` to its number of nodes.
 #[macro_export]
@@ -115,20 +135,9 @@ macro_rules! with_element {
 }
 pub use crate::with_element;
 
-/// The node order of a file that lists the nodes as the cell does.
-const fn in_order<const N: usize>() -> [usize; N] {
-    let mut order = [0; N];
-    let mut at = 0;
-    while at < N {
-        order[at] = at;
-        at += 1;
-    }
-    order
-}
-
 /// Position of the reference point `xi` and Jacobian `J_ij = dx_i / dxi_j` (m), for a cell with the given
 /// nodes (m).
-pub(crate) fn map(kind: CellKind, nodes: &[Point3], xi: [f64; 3]) -> (Point3, Matrix3) {
+pub fn map(kind: CellKind, nodes: &[Point3], xi: [f64; 3]) -> (Point3, Matrix3) {
     with_element!(kind, E, N => {
         let (values, grads) = (<E as Element<N>>::shape(xi), <E as Element<N>>::shape_grad(xi));
         let mut position = Point3::origin();

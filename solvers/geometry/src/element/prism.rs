@@ -1,6 +1,6 @@
 //! The triangle (0,0), (1,0), (0,1) between z = -1 and z = 1.
 
-use super::ReferenceCell;
+use super::entry::ReferenceCell;
 use crate::quadrature;
 
 pub(super) static PRISM: ReferenceCell = ReferenceCell {

@@ -1,8 +1,8 @@
 use catalogue::element as listed;
 
+use super::entry::{Element, Entry, FileCodes, Points, in_order};
+use super::tet4::Tet4;
 use super::tetrahedron::TETRAHEDRON;
-use super::{Element, Entry, FileCodes, Points, Tet4, in_order};
-use crate::CellKind;
 
 /// 10-node quadratic tetrahedron: the corners of [`Tet4`], then mid-edges 01, 12, 20, 03, 13, 23.
 ///
@@ -11,7 +11,6 @@ use crate::CellKind;
 pub struct Tet10;
 
 impl Element<10> for Tet10 {
-    const KIND: CellKind = CellKind::Tet10;
     const ENTRY: Entry = Entry {
         listed: &listed::TET10,
         cell: &TETRAHEDRON,

@@ -1,8 +1,7 @@
 use catalogue::element as listed;
 
+use super::entry::{Element, Entry, FileCodes, Points, in_order};
 use super::tetrahedron::TETRAHEDRON;
-use super::{Element, Entry, FileCodes, Points, in_order};
-use crate::CellKind;
 
 /// 4-node linear tetrahedron: corners (0,0,0), (1,0,0), (0,1,0), (0,0,1).
 ///
@@ -11,7 +10,6 @@ use crate::CellKind;
 pub struct Tet4;
 
 impl Element<4> for Tet4 {
-    const KIND: CellKind = CellKind::Tet4;
     const ENTRY: Entry = Entry {
         listed: &listed::TET4,
         cell: &TETRAHEDRON,

@@ -1,6 +1,6 @@
 //! The tetrahedron (0,0,0), (1,0,0), (0,1,0), (0,0,1).
 
-use super::ReferenceCell;
+use super::entry::ReferenceCell;
 use crate::quadrature;
 
 pub(super) static TETRAHEDRON: ReferenceCell = ReferenceCell {

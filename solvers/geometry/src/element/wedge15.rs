@@ -1,9 +1,8 @@
 use catalogue::element as listed;
 
+use super::entry::{Element, Entry, FileCodes, Points, in_order};
 use super::prism::PRISM;
 use super::wedge6::SLOPES;
-use super::{Element, Entry, FileCodes, Points, in_order};
-use crate::CellKind;
 
 /// 15-node serendipity wedge: the corners of [`super::Wedge6`], then mid-edges 01 12 20, 34 45 53, 03 14 25.
 ///
@@ -18,7 +17,6 @@ use crate::CellKind;
 pub struct Wedge15;
 
 impl Element<15> for Wedge15 {
-    const KIND: CellKind = CellKind::Wedge15;
     const ENTRY: Entry = Entry {
         listed: &listed::WEDGE15,
         cell: &PRISM,
@@ -62,9 +60,12 @@ impl Element<15> for Wedge15 {
 
     #[inline]
     fn shape([x, y, z]: [f64; 3]) -> [f64; 15] {
-        let (l, bubble) = ([1.0 - x - y, x, y], 1.0 - z * z);
+        let l = [1.0 - x - y, x, y];
+        let bubble = 1.0 - z * z;
         std::array::from_fn(|node| {
-            let (k, next, height) = (node % 3, (node + 1) % 3, 1.0 + side(node) * z);
+            let k = node % 3;
+            let next = (node + 1) % 3;
+            let height = 1.0 + side(node) * z;
             match node {
                 0..6 => 0.5 * l[k] * ((2.0 * l[k] - 1.0) * height - bubble),
                 6..12 => 2.0 * l[k] * l[next] * height,
@@ -75,9 +76,12 @@ impl Element<15> for Wedge15 {
 
     #[inline]
     fn shape_grad([x, y, z]: [f64; 3]) -> [[f64; 3]; 15] {
-        let (l, bubble) = ([1.0 - x - y, x, y], 1.0 - z * z);
+        let l = [1.0 - x - y, x, y];
+        let bubble = 1.0 - z * z;
         std::array::from_fn(|node| {
-            let (k, next, s) = (node % 3, (node + 1) % 3, side(node));
+            let k = node % 3;
+            let next = (node + 1) % 3;
+            let s = side(node);
             let height = 1.0 + s * z;
             // Derivatives with respect to L_k, L_next and z.
             let [a, b, along] = match node {

@@ -1,8 +1,7 @@
 use catalogue::element as listed;
 
+use super::entry::{Element, Entry, FileCodes, Points, in_order};
 use super::prism::PRISM;
-use super::{Element, Entry, FileCodes, Points, in_order};
-use crate::CellKind;
 
 /// 6-node wedge on the triangle (0,0), (1,0), (0,1) between z = -1 and z = 1: bottom 012 counter-clockwise
 /// seen from above, 345 above.
@@ -12,7 +11,6 @@ use crate::CellKind;
 pub struct Wedge6;
 
 impl Element<6> for Wedge6 {
-    const KIND: CellKind = CellKind::Wedge6;
     const ENTRY: Entry = Entry {
         listed: &listed::WEDGE6,
         cell: &PRISM,
@@ -40,7 +38,9 @@ impl Element<6> for Wedge6 {
 
     #[inline]
     fn shape([x, y, z]: [f64; 3]) -> [f64; 6] {
-        let (l, below, above) = ([1.0 - x - y, x, y], 0.5 * (1.0 - z), 0.5 * (1.0 + z));
+        let l = [1.0 - x - y, x, y];
+        let below = 0.5 * (1.0 - z);
+        let above = 0.5 * (1.0 + z);
         [l[0] * below, l[1] * below, l[2] * below, l[0] * above, l[1] * above, l[2] * above]
     }
 
@@ -48,7 +48,8 @@ impl Element<6> for Wedge6 {
     fn shape_grad([x, y, z]: [f64; 3]) -> [[f64; 3]; 6] {
         let l = [1.0 - x - y, x, y];
         std::array::from_fn(|a| {
-            let (k, side) = (a % 3, if a < 3 { -1.0 } else { 1.0 });
+            let k = a % 3;
+            let side = if a < 3 { -1.0 } else { 1.0 };
             let height = 0.5 * (1.0 + side * z);
             [SLOPES[k][0] * height, SLOPES[k][1] * height, 0.5 * side * l[k]]
         })

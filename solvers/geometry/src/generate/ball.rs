@@ -2,7 +2,10 @@
 //! around it.
 
 use super::{GenerateError, check_cells, check_positive, check_total, into_kind, lattice, surfaces};
-use crate::{CellKind, Mesh, Point3, Vector3, quality, shapes::Kidney};
+use crate::element::CellKind;
+use crate::mesh::Mesh;
+use crate::shapes::Kidney;
+use crate::{Point3, Vector3, quality};
 
 /// Half side of the inner cube in the parameter space, in which the whole ball is the cube [-1, 1]^3.
 const INNER: f64 = 0.5;

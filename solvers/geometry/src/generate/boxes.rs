@@ -1,7 +1,10 @@
 //! Axis-parallel boxes, graded and jittered.
 
 use super::{GenerateError, check_cells, check_total, graded, into_kind};
-use crate::{CellKind, Facet, Mesh, Point3, quality, random::Uniform};
+use crate::element::CellKind;
+use crate::mesh::{Facet, Mesh};
+use crate::random::Uniform;
+use crate::{Point3, quality};
 
 /// A seeded random shift of inner nodes.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -2,8 +2,10 @@
 
 use std::collections::HashMap;
 
+use super::parts::{divided, rebuilt};
 use super::wedges::to_wedges;
-use crate::{CellKind, Facet, Mesh};
+use crate::element::CellKind;
+use crate::mesh::{Facet, Mesh};
 
 const TET: CellKind = CellKind::Tet4;
 const WEDGE: CellKind = CellKind::Wedge6;
@@ -48,40 +50,6 @@ pub fn to_tets(mesh: &Mesh) -> Mesh {
     divided(mesh, TET, nodes, &first)
 }
 
-/// Mesh of the parts of the cells of a mesh, all of one kind. `nodes` has the nodes of all parts; cell `c`
-/// has the parts `first[c]..first[c + 1]`. Regions and groups are kept, unused nodes are dropped.
-pub(super) fn divided(mesh: &Mesh, kind: CellKind, mut nodes: Vec<u32>, first: &[usize]) -> Mesh {
-    let parts = nodes.len() / kind.node_count();
-    let mut regions = Vec::with_capacity(parts);
-    for cell in 0..mesh.cell_count() {
-        regions.resize(first[cell + 1], mesh.region(cell));
-    }
-    let groups: Vec<(String, Vec<Facet>)> = mesh
-        .group_names()
-        .map(|name| {
-            let facets = mesh.group(name).unwrap_or_default();
-            let within = facets.iter().flat_map(|&f| facets_within(mesh, f, kind, &nodes, first)).collect();
-            (name.to_string(), within)
-        })
-        .collect();
-
-    let mut number = vec![u32::MAX; mesh.points().len()];
-    for &node in &nodes {
-        number[node as usize] = 0;
-    }
-    let mut points = Vec::new();
-    for (node, slot) in number.iter_mut().enumerate().filter(|(_, slot)| **slot == 0) {
-        *slot = points.len() as u32;
-        points.push(mesh.points()[node]);
-    }
-    nodes.iter_mut().for_each(|node| *node = number[*node as usize]);
-    let whole = rebuilt(mesh, points, vec![kind; parts], nodes, regions, groups);
-    mesh.cell_groups().fold(whole, |whole, (name, of)| {
-        let parts = of.iter().flat_map(|&cell| first[cell as usize] as u32..first[cell as usize + 1] as u32);
-        whole.with_cell_group(name, parts.collect())
-    })
-}
-
 fn cut(kind: CellKind, nodes: &[u32], tets: &mut Vec<u32>) {
     let corners = &nodes[..kind.corner_count()];
     if corners.len() == 4 {
@@ -100,22 +68,6 @@ fn cut(kind: CellKind, nodes: &[u32], tets: &mut Vec<u32>) {
         // reversed face gives a positive volume.
         tets.extend((2..n.len()).flat_map(|i| [around(0), around(i), around(i - 1), lowest]));
     }
-}
-
-/// The faces of a cell's parts that lie in one face of the cell.
-fn facets_within(mesh: &Mesh, facet: Facet, kind: CellKind, nodes: &[u32], first: &[usize]) -> Vec<Facet> {
-    let corners: Vec<u32> = mesh.facet_corners(facet).collect();
-    let cell = facet.cell as usize;
-    let mut found = Vec::new();
-    for part in first[cell]..first[cell + 1] {
-        let own = &nodes[part * kind.node_count()..];
-        for (face, local) in kind.faces().iter().enumerate() {
-            if local.iter().all(|&l| corners.contains(&own[l])) {
-                found.push(Facet { cell: part as u32, face: face as u8 });
-            }
-        }
-    }
-    found
 }
 
 /// Raises cells to the quadratic kind of the same shape; quadratic cells are unchanged. New nodes lie halfway
@@ -193,22 +145,4 @@ pub fn turned(mesh: &Mesh) -> Mesh {
 
 fn ordered(a: u32, b: u32) -> (u32, u32) {
     (a.min(b), a.max(b))
-}
-
-/// Builds a mesh with the region names of `source`. The mesh is valid because `source` is.
-fn rebuilt(
-    source: &Mesh,
-    points: Vec<crate::Point3>,
-    kinds: Vec<CellKind>,
-    nodes: Vec<u32>,
-    regions: Vec<u16>,
-    groups: Vec<(String, Vec<Facet>)>,
-) -> Mesh {
-    let mut mesh = Mesh::from_flat(points, kinds, nodes)
-        .expect("cells of a valid mesh stay valid")
-        .with_regions(regions, source.region_names().to_vec());
-    for (name, facets) in groups {
-        mesh = mesh.with_group(&name, facets).expect("facets of a valid mesh stay valid");
-    }
-    mesh
 }

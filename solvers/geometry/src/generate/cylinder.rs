@@ -1,7 +1,9 @@
 //! Upright cylinders in five blocks: a square core and four sectors around it.
 
 use super::{GenerateError, check_cells, check_positive, check_total, graded, into_kind, lattice, surfaces};
-use crate::{CellKind, Mesh, Point3};
+use crate::Point3;
+use crate::element::CellKind;
+use crate::mesh::Mesh;
 
 /// Half side of the inner square in the parameter space, in which the section is the square [-1, 1]^2.
 const INNER: f64 = 0.5;

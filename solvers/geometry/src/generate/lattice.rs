@@ -2,7 +2,9 @@
 
 use std::collections::HashMap;
 
-use crate::{CellKind, Facet, Mesh, MeshError, Point3};
+use crate::Point3;
+use crate::element::CellKind;
+use crate::mesh::{Facet, Mesh, MeshError};
 
 /// Lattice offsets of a hexahedron's corners, in node order.
 pub(super) const CORNERS: [(usize, usize, usize); 8] =

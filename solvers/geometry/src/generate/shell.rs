@@ -1,7 +1,9 @@
 //! Thick spheres, whole or one octant.
 
 use super::{GenerateError, check_cells, check_positive, check_total, graded, into_kind, lattice, surfaces};
-use crate::{CellKind, Mesh, Point3};
+use crate::Point3;
+use crate::element::CellKind;
+use crate::mesh::Mesh;
 
 /// Part of a sphere shell to mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

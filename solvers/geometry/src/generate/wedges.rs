@@ -7,8 +7,9 @@
 
 use std::collections::HashMap;
 
-use super::convert::divided;
-use crate::{CellKind, Mesh};
+use super::parts::divided;
+use crate::element::CellKind;
+use crate::mesh::Mesh;
 
 const HEX: CellKind = CellKind::Hex8;
 const WEDGE: CellKind = CellKind::Wedge6;

@@ -1,6 +1,8 @@
 //! Rules on the prism: a triangle rule times a Gauss-Legendre rule along z.
 
-use super::{Rule, gauss_legendre, tri};
+use super::Rule;
+use super::gauss::gauss_legendre;
+use super::simplex::tri;
 
 /// (Points, points across the triangle, points along z) of every prism rule.
 pub const PRISM_RULES: [(usize, usize, usize); 6] =
@@ -11,7 +13,8 @@ pub const PRISM_RULES: [(usize, usize, usize); 6] =
 /// `None` if [`PRISM_RULES`] has no such rule. The weights sum to 1; the points of one triangle are adjacent.
 pub fn prism(points: usize) -> Option<Rule<3>> {
     let (_, across, along) = PRISM_RULES.into_iter().find(|rule| rule.0 == points)?;
-    let (flat, (heights, weights)) = (tri(across)?, gauss_legendre(along));
+    let flat = tri(across)?;
+    let (heights, weights) = gauss_legendre(along);
     let mut rule = Rule { points: Vec::new(), weights: Vec::new() };
     for (z, w) in heights.into_iter().zip(weights) {
         rule.points.extend(flat.points.iter().map(|&[x, y]| [x, y, z]));

@@ -54,7 +54,9 @@ impl Shape for Cylinder {
         if self.level(p) > 0.0 {
             return if r > self.radius { self.at(p, self.radius, z) } else { Point3::new(p.x, p.y, z) };
         }
-        let (side, bottom, top) = (self.radius - r, p.z, self.height - p.z);
+        let side = self.radius - r;
+        let bottom = p.z;
+        let top = self.height - p.z;
         if side <= bottom.min(top) {
             self.at(p, self.radius, p.z)
         } else {

@@ -5,7 +5,8 @@ use std::collections::HashMap;
 use rayon::prelude::*;
 
 use super::stencil::Side;
-use crate::{Point3, Surface};
+use crate::Point3;
+use crate::surface::Surface;
 
 /// Fraction of a long or short edge within which a point is moved to the cut. These values give the best
 /// angles (Labelle and Shewchuk 2007, table 1).

@@ -126,7 +126,8 @@ impl Lattice {
     /// halved here too.
     fn equal(&mut self, octree: &Octree, face: Face) {
         let across = face.across();
-        let (own, other) = (middle(face.cube, face.level), middle(across, face.level));
+        let own = middle(face.cube, face.level);
+        let other = middle(across, face.level);
         let corners = face.corners();
         for edge in 0..4 {
             let step = face.beyond(edge);

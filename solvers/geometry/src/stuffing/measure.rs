@@ -2,8 +2,9 @@
 
 use rayon::prelude::*;
 
-use crate::surface::{Tree, triangles_of};
-use crate::{Mesh, Point3, Surface, Vector3, quality};
+use crate::mesh::Mesh;
+use crate::surface::{Surface, Tree, triangles_of};
+use crate::{Point3, Vector3, quality};
 
 /// Smallest number of points per parallel task.
 const CHUNK: usize = 64;

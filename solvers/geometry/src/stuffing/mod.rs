@@ -17,7 +17,10 @@ mod stencil;
 
 use rayon::prelude::*;
 
-use crate::{CellKind, Facet, Mesh, Point3, Surface};
+use crate::Point3;
+use crate::element::CellKind;
+use crate::mesh::{Facet, Mesh};
+use crate::surface::Surface;
 use cuts::Cuts;
 use lattice::Lattice;
 use names::named;

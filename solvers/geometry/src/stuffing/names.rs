@@ -2,8 +2,12 @@
 
 use rayon::prelude::*;
 
-use super::CHUNK;
-use crate::{Facet, Mesh, Point3, Surface, Vector3};
+use crate::mesh::{Facet, Mesh};
+use crate::surface::Surface;
+use crate::{Point3, Vector3};
+
+/// Smallest number of facets per parallel task.
+const CHUNK: usize = 64;
 
 /// Adds each boundary facet to the groups of the surface triangle closest to its centre.
 pub(super) fn named(surface: &Surface, mut mesh: Mesh) -> Mesh {

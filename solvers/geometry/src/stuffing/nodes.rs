@@ -8,7 +8,9 @@
 //! never gives fewer nodes.
 
 use super::{MEAN_EDGE, Stuffed, Stuffing, StuffingError, expected_nodes, stuff};
-use crate::{Mesh, Surface, quality};
+use crate::mesh::Mesh;
+use crate::quality;
+use crate::surface::Surface;
 
 /// Number of steps that halve the spacing. Each step increases the number of nodes by a factor of about 1.4.
 const STEPS: f64 = 6.0;

@@ -5,7 +5,8 @@ use std::collections::HashMap;
 
 use rayon::prelude::*;
 
-use crate::{Point3, Surface, Vector3};
+use crate::surface::Surface;
+use crate::{Point3, Vector3};
 
 /// Distance from the surface, over the edge of the smallest cube, within which cubes have the smallest size.
 /// A node that may be moved is at most 0.36 from the surface. All tetrahedra at such a node lie between cubes

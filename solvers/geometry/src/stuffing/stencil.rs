@@ -40,6 +40,7 @@ impl Tet {
         }
         let node = |i: usize| self.corners[i];
         let cut = |a: usize, b: usize| cut(self.corners[a], self.corners[b]);
+        // There are four corners, so each `..` stands for none.
         match (&ins[..], &outs[..]) {
             ([], _) => {}
             (_, []) => add(self.corners),
@@ -49,7 +50,9 @@ impl Tet {
                 add([0, 1, 2, 3].map(end));
             }
             (&[a, b], &[d]) => {
-                let (at_a, at_b, on) = (cut(a, d), cut(b, d), node(on));
+                let at_a = cut(a, d);
+                let at_b = cut(b, d);
+                let on = node(on);
                 if self.halved_from(a, b, d) {
                     add([on, node(a), node(b), at_b]);
                     add([on, node(a), at_b, at_a]);
@@ -58,7 +61,7 @@ impl Tet {
                     add([on, node(b), at_b, at_a]);
                 }
             }
-            (&[a, b], &[c, d]) if long(a, b) => {
+            (&[a, b], &[c, d, ..]) if long(a, b) => {
                 let (a, b) = if self.halved_from(a, b, c) { (a, b) } else { (b, a) };
                 let [ac, ad, bc, bd] = [cut(a, c), cut(a, d), cut(b, c), cut(b, d)];
                 add([node(a), node(b), bc, bd]);
@@ -72,14 +75,14 @@ impl Tet {
                     add([node(a), ad, bc, bd]);
                 }
             }
-            (&[a, b], &[c, d]) => {
+            (&[a, b], &[c, d, ..]) => {
                 let (c, d) = if long(a, c) { (c, d) } else { (d, c) };
                 let [ac, ad, bc, bd] = [cut(a, c), cut(a, d), cut(b, c), cut(b, d)];
                 add([bd, node(a), ac, ad]);
                 add([ac, node(b), bc, bd]);
                 add([node(a), node(b), ac, bd]);
             }
-            (&[x, y, z], &[d]) => {
+            (&[x, y, z, ..], &[d, ..]) => {
                 let [a, b, c] = match (long(x, d), long(y, d)) {
                     (true, _) => [x, y, z],
                     (_, true) => [y, z, x],
@@ -92,7 +95,6 @@ impl Tet {
                 add([at_a, node(b), node(c), at_c]);
                 add([at_a, node(b), at_c, at_b]);
             }
-            _ => unreachable!("of four corners"),
         }
     }
 

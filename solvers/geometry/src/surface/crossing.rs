@@ -5,8 +5,9 @@ use std::cmp::Ordering;
 use rayon::prelude::*;
 use robust::{Coord, Coord3D, orient2d, orient3d};
 
+use super::error::SurfaceProblem;
+use super::soup::Soup;
 use super::tree::{Tree, bounds};
-use super::{Soup, SurfaceProblem};
 use crate::Point3;
 
 /// Smallest number of triangles per parallel task.

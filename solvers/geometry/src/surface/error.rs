@@ -1,26 +1,8 @@
 //! Errors of surfaces that are not closed, with their positions.
 
 use std::fmt;
-use std::path::PathBuf;
 
 use crate::Point3;
-use crate::files::FileError;
-
-/// Error of reading a surface file.
-#[derive(Debug, thiserror::Error)]
-pub enum SurfaceError {
-    /// A file that cannot be read.
-    #[error(transparent)]
-    File(#[from] FileError),
-    /// A file whose triangles do not form a closed surface.
-    #[error("{file}: {problem}", file = file.display())]
-    Surface {
-        /// The file.
-        file: PathBuf,
-        /// Problem of the surface.
-        problem: Box<SurfaceProblem>,
-    },
-}
 
 /// Problem of triangles that do not form a closed surface. Triangles have the numbers of their faces in the
 /// file, from 1; positions are in the unit of the file.
@@ -162,15 +144,10 @@ impl fmt::Display for SurfaceProblem {
                     list(triangles),
                     line(ends)
                 )?;
-                if !orientable {
-                    return write!(f, "no reversal achieves this, so the surface has no outside");
+                match orientable {
+                    true => reversible(f, turned, *all),
+                    false => write!(f, "no reversal achieves this, so the surface has no outside"),
                 }
-                let (count, numbers) = (turned.len(), list(turned));
-                write!(
-                    f,
-                    "{count} of {all} are clockwise ({numbers}); this program does not reverse triangles \
-                     yet: {EDITOR}"
-                )
             }
             SurfaceProblem::Crossing { triangles, at, places } => {
                 let more = if *places > 1 { format!(" ({places} such places)") } else { String::new() };
@@ -189,29 +166,13 @@ impl fmt::Display for SurfaceProblem {
                 point(at)
             ),
             SurfaceProblem::InsideOut { triangle, at, within, .. } => {
-                let at = point(at);
-                write!(
-                    f,
-                    "the part with triangle {triangle}, {at}, lies within {within} others and has the wrong \
-                     orientation: triangles of a cavity have to be clockwise seen from outside the cavity, all \
-                     other triangles counter-clockwise"
-                )?;
-                if within.is_multiple_of(2) {
-                    return Ok(());
-                }
-                write!(
-                    f,
-                    "; if the part is a body within a body, such as a tumour in an organ, this program does \
-                     not make two regions of them yet: {REGIONS}"
-                )
+                within_others(f, *triangle, at, *within)
             }
-            SurfaceProblem::Tangled { triangles, pairs } => {
-                write!(
-                    f,
-                    "{triangles} triangles lie so close together that {pairs} pairs may cross: they do not \
-                     form the surface of a body"
-                )
-            }
+            SurfaceProblem::Tangled { triangles, pairs } => write!(
+                f,
+                "{triangles} triangles lie so close together that {pairs} pairs may cross: they do not form \
+                 the surface of a body"
+            ),
             SurfaceProblem::Parts { parts, most } => {
                 write!(f, "the surface has {parts} unconnected parts; at most {most} are supported")
             }
@@ -222,13 +183,43 @@ impl fmt::Display for SurfaceProblem {
 
 impl std::error::Error for SurfaceProblem {}
 
+/// Writes which triangles have to be reversed.
+fn reversible(f: &mut fmt::Formatter<'_>, turned: &[u32], all: usize) -> fmt::Result {
+    let numbers = list(turned);
+    write!(
+        f,
+        "{} of {all} are clockwise ({numbers}); this program does not reverse triangles yet: {EDITOR}",
+        turned.len()
+    )
+}
+
+/// Writes that a part within others has the wrong orientation.
+fn within_others(f: &mut fmt::Formatter<'_>, triangle: u32, at: &Point3, within: usize) -> fmt::Result {
+    let at = point(at);
+    write!(
+        f,
+        "the part with triangle {triangle}, {at}, lies within {within} others and has the wrong orientation: \
+         triangles of a cavity have to be clockwise seen from outside the cavity, all other triangles \
+         counter-clockwise"
+    )?;
+    if within.is_multiple_of(2) {
+        return Ok(());
+    }
+    write!(
+        f,
+        "; if the part is a body within a body, such as a tumour in an organ, this program does not make two \
+         regions of them yet: {REGIONS}"
+    )
+}
+
 fn branched(
     f: &mut fmt::Formatter<'_>,
     triangles: &[u32],
     ends: &[Point3; 2],
     twice: Option<&[u32; 2]>,
 ) -> fmt::Result {
-    let (all, ends) = (list(triangles), line(ends));
+    let all = list(triangles);
+    let ends = line(ends);
     write!(
         f,
         "triangles {all} meet at one edge, {ends}; in a closed surface two triangles meet at each \

@@ -2,8 +2,9 @@
 
 use std::collections::HashMap;
 
-use super::closed::{Side, WELD};
-use super::{Soup, SurfaceProblem};
+use super::error::SurfaceProblem;
+use super::sides::Side;
+use super::soup::{Soup, WELD};
 use crate::{Point3, Vector3};
 
 /// Largest number of edges of a hole that are searched for corners on them.

@@ -19,7 +19,7 @@ const NONE: u32 = u32::MAX;
 
 /// Set of groups for added triangles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Set(u32);
+pub struct Set(u32);
 
 impl Default for Set {
     fn default() -> Set {
@@ -30,7 +30,7 @@ impl Default for Set {
 impl Groups {
     /// Set of these names, created if it is new. Blanks around a name are removed, and empty names are
     /// ignored.
-    pub(crate) fn set<'a>(&mut self, names: impl IntoIterator<Item = &'a str>) -> Set {
+    pub fn set<'a>(&mut self, names: impl IntoIterator<Item = &'a str>) -> Set {
         let names = names.into_iter().map(kept).filter(|name| !name.is_empty());
         let mut set: Vec<u32> = names.map(|name| self.name(name)).collect();
         set.sort_unstable();
@@ -56,7 +56,7 @@ impl Groups {
     }
 
     /// Assigns a set to the triangles added since the last call; `triangles` is their current number.
-    pub(crate) fn fill(&mut self, triangles: usize, Set(set): Set) {
+    pub fn fill(&mut self, triangles: usize, Set(set): Set) {
         self.of.resize(triangles, set);
     }
 

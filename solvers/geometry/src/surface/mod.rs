@@ -14,14 +14,14 @@ mod nested;
 mod of_mesh;
 mod polygon;
 mod shape;
+mod sides;
 mod soup;
 mod tree;
 
-pub use error::{SurfaceError, SurfaceProblem};
-pub use groups::Groups;
-pub(crate) use groups::Set;
+pub use error::SurfaceProblem;
+pub use groups::{Groups, Set};
 pub use of_mesh::{BoundaryFaces, triangles_of};
-pub(crate) use polygon::PolygonFault;
+pub use polygon::PolygonFault;
 pub use soup::Soup;
 pub(crate) use tree::Tree;
 
@@ -143,7 +143,8 @@ impl Surface {
             Feature::Edge(edge) => self.normals.edges[triangle][edge],
             Feature::Corner(corner) => self.normals.corners[self.triangles[triangle][corner] as usize],
         };
-        let (distance, away) = (closest.square.sqrt(), (p - closest.at).dot(&normal));
+        let distance = closest.square.sqrt();
+        let away = (p - closest.at).dot(&normal);
         // The offset from the closest point is along the normal, unless the surface has triangles without
         // area.
         let doubtful = away.abs() <= 1e-6 * distance * normal.norm();

@@ -4,8 +4,9 @@
 //! third corner. The two triangles form a quadrilateral. Divided along its other diagonal, it is the same
 //! surface, and the third corner is a corner of both parts.
 
-use super::closed::{self, WELD};
-use super::{Soup, SurfaceProblem};
+use super::closed;
+use super::error::SurfaceProblem;
+use super::soup::{Soup, WELD};
 
 /// Neighbours of each triangle across its edges.
 type Across = Vec<[u32; 3]>;
@@ -15,7 +16,8 @@ pub(super) fn cut(soup: &Soup, across: &Across) -> Option<Result<(Soup, Across),
     let tolerance = WELD * soup.diagonal();
     let (mut soup, mut across) = (soup.clone(), across.clone());
     let mut open: Vec<usize> = (0..soup.triangles.len()).rev().collect();
-    let (mut cut, most) = (0, 2 * open.len());
+    let mut cut = 0;
+    let most = 2 * open.len();
     while let Some(needle) = open.pop().filter(|_| cut < most) {
         let Some(edge) = long_edge(&soup, needle, tolerance) else { continue };
         let other = exchange(&mut soup, &mut across, needle, edge);

@@ -1,7 +1,8 @@
 //! Checks the orientation of the parts of a surface: a body is counter-clockwise as seen from outside, a
 //! cavity clockwise.
 
-use super::{Soup, SurfaceProblem};
+use super::error::SurfaceProblem;
+use super::soup::Soup;
 use crate::Point3;
 
 /// Volume, relative to the area to the power 3/2, below which the volume is rounding.

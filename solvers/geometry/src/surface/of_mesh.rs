@@ -1,7 +1,10 @@
 //! The boundary of a mesh as a surface.
 
-use super::{Soup, Surface, SurfaceProblem};
-use crate::{FaceKind, Facet, Mesh};
+use super::Surface;
+use super::error::SurfaceProblem;
+use super::soup::Soup;
+use crate::cell::FaceKind;
+use crate::mesh::{Facet, Mesh};
 
 /// The boundary of a mesh as a surface, with the mesh face of each triangle.
 pub struct BoundaryFaces {

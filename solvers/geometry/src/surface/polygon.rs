@@ -12,7 +12,7 @@ const CANCELLED: f64 = 1e-9;
 
 /// Reason for which a polygon cannot be triangulated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum PolygonFault {
+pub enum PolygonFault {
     /// Two edges cross or touch away from a common corner; edges are numbered from 1 by their first corners.
     Crosses([usize; 2]),
     /// The polygon is concave and has too many corners.

@@ -2,9 +2,13 @@
 
 use std::collections::HashMap;
 
-use super::Groups;
+use super::groups::Groups;
 use super::polygon::{self, PolygonFault};
 use crate::{Point3, Vector3};
+
+/// Fraction of the surface's diagonal below which corners of a file coincide, from the rounding of single
+/// precision.
+pub(super) const WELD: f64 = 1e-6;
 
 /// Triangles, each of which may have its own copies of the corners, as in STL.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -21,7 +25,10 @@ pub struct Soup {
 
 impl Soup {
     /// Adds a face with any number of corners as triangles.
-    pub(crate) fn face(&mut self, number: usize, corners: &[u32]) -> Result<(), PolygonFault> {
+    ///
+    /// # Errors
+    /// A face that crosses itself or has too many corners.
+    pub fn face(&mut self, number: usize, corners: &[u32]) -> Result<(), PolygonFault> {
         let points: Vec<Point3> = corners.iter().map(|&corner| self.points[corner as usize]).collect();
         for triangle in polygon::cut(&points)? {
             self.triangle(number, triangle.map(|place| corners[place]));
@@ -30,7 +37,7 @@ impl Soup {
     }
 
     /// Adds a triangle.
-    pub(crate) fn triangle(&mut self, number: usize, corners: [u32; 3]) {
+    pub fn triangle(&mut self, number: usize, corners: [u32; 3]) {
         self.triangles.push(corners);
         self.faces.push(number as u32);
     }

@@ -6,9 +6,7 @@ pub mod math;
 pub(super) mod series;
 pub(super) mod stretch;
 
-use super::Material;
 use invariants::{Invariants, Minors};
-use shape::Matrix3;
 
 pub use lanes::LANES;
 
@@ -74,16 +72,4 @@ impl LaneStrain {
 #[inline(always)]
 pub(super) fn of_lane(h: &[Lanes; 9], l: usize) -> [f64; 9] {
     [h[0][l], h[1][l], h[2][l], h[3][l], h[4][l], h[5][l], h[6][l], h[7][l], h[8][l]]
-}
-
-/// Evaluates the scalar law lane by lane, for a law without vectorised code and beyond the range of its
-/// series.
-#[inline(always)]
-pub(super) fn one_by_one(law: &impl Material, x: &LaneStrain, p: &mut [Lanes; 9]) {
-    for l in 0..LANES {
-        let P = law.stress(&Matrix3::from_row_slice(&x.lane(l)));
-        for k in 0..9 {
-            p[k][l] = P[(k / 3, k % 3)];
-        }
-    }
 }

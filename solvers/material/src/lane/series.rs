@@ -6,9 +6,9 @@
 
 use std::sync::LazyLock;
 
-use lanes::madd;
+use lanes::{LANES, madd};
 
-use super::{LANES, Lanes};
+use super::Lanes;
 
 /// Bounds of the eigenvalues of `X` for which there is a series, each with a separate length.
 pub(crate) const BOUNDS: [f64; 4] = [0.05, 0.15, 0.35, 0.6];
@@ -123,7 +123,8 @@ mod tests {
     fn every_length_has_code_of_its_own() {
         const FMA: bool = false;
         for expected in LENGTHS {
-            let (power, mut found) = (Power::new(vec![1.0; expected - 1]).unwrap(), 0);
+            let power = Power::new(vec![1.0; expected - 1]).unwrap();
+            let mut found = 0;
             unrolled!(power, length::<FMA>(&mut found));
             assert_eq!(found, expected);
         }

@@ -3,10 +3,10 @@
 //! Each law traverses the lanes once with a long straight-line body. With many short loops over lanes the
 //! compiler disassembles and reassembles the vectors between loops (Ogden's law: 1.4 times the time).
 
-use lanes::madd;
+use lanes::{LANES, madd};
 
 use super::series::horner;
-use super::{LANES, LaneStrain, Lanes};
+use super::{LaneStrain, Lanes};
 
 /// `C = c (I + X)` with `tr X = 0`. Functions of `X` are three numbers each, `x0 I + x1 X + x2 X^2`.
 #[repr(align(64))]
@@ -89,7 +89,8 @@ fn deviator<const FMA: bool>(strain: &LaneStrain, out: &mut Stretch) {
         let J = 1.0 + (strain.invariants[0][l] + strain.invariants[1][l]);
         // A single division gives both reciprocals.
         let per = 1.0 / (c * J);
-        let (per_c, c_over_j) = (per * J, per * c * c);
+        let per_c = per * J;
+        let c_over_j = per * c * c;
         let (xx, yy, zz) = ((xx - mean) * per_c, (yy - mean) * per_c, (zz - mean) * per_c);
         let (xy, xz, yz) = (xy * per_c, xz * per_c, yz * per_c);
         let (axx, axy, axz) = (m(yy, zz, -(yz * yz)), m(xz, yz, -(xy * zz)), m(xy, yz, -(xz * yy)));
@@ -124,7 +125,8 @@ fn in_powers_of_x<const FMA: bool>(e: &[f64; 3], square: &[f64; 3], [g0, g1, g2]
 pub(crate) fn squared<const FMA: bool>(a: f64, b: f64, [e0, e1, e2]: [f64; 3]) -> ([f64; 3], [f64; 2]) {
     let m = madd::<FMA>;
     // X^3 = a X + b I, X^4 = a X^2 + b X.
-    let (cube, fourth) = (2.0 * e1 * e2, e2 * e2);
+    let cube = 2.0 * e1 * e2;
+    let fourth = e2 * e2;
     let s0 = m(e0, e0, cube * b);
     let s1 = m(2.0 * e0, e1, m(cube, a, fourth * b));
     let s2 = m(2.0 * e0, e2, m(e1, e1, fourth * a));

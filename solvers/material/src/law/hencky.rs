@@ -1,15 +1,21 @@
 //! Hencky's law: Hooke's law between logarithmic strain and Kirchhoff stress.
 
-use super::{Entry, LawEntry, LinearElastic, MODULI, moduli};
+use std::slice::{from_mut, from_ref};
+
+use catalogue::{Build, Entry};
+use lanes::{LANES, madd};
+use shape::Matrix3;
+
+use super::linear::LinearElastic;
+use super::moduli::{MODULI, moduli};
+use crate::error::MaterialError;
 use crate::lane::math::ln_1p;
 use crate::lane::series::{self, unrolled};
 use crate::lane::stretch::{Stretch, pair_of, pairs};
-use crate::lane::{LANES, LaneStrain, Lanes, of_lane, one_by_one};
+use crate::lane::{LaneStrain, Lanes, of_lane};
+use crate::material::{Material, Tangent, Volumetric, one_by_one};
 use crate::principal::{Principal, Slopes};
-use crate::{Material, MaterialError, Separated, Tangent, Volumetric};
-use lanes::madd;
-use shape::Matrix3;
-use std::slice::{from_mut, from_ref};
+use crate::separated::Separated;
 
 /// Hencky's law `W = mu e : e + lambda/2 (tr e)^2` with `e = ln V` (`V^2 = F F^T`) and
 /// `tau = 2 mu e + lambda tr(e) I`; moduli in Pa.
@@ -24,14 +30,14 @@ pub struct Hencky {
     lambda: f64,
 }
 
-pub(super) const ENTRY: LawEntry = Entry {
+pub(super) const ENTRY: Entry<Build<Hencky>> = Entry {
     name: "hencky",
     meaning: "mu e : e + lambda/2 (tr e)^2, e = ln V: logarithmic strain",
     source: "Hencky (1928); Xiao and Chen, Acta Mechanica 157 (2002)",
     parameters: MODULI,
     build: |values| {
         let (young, poisson) = moduli(values)?;
-        Ok(Hencky::new(young, poisson)?.into())
+        Ok(Hencky::new(young, poisson)?)
     },
 };
 
@@ -90,7 +96,8 @@ impl Material for Hencky {
         for pair in pairs(strains.len()) {
             let stretch = pair_of::<FMA>(strains, pair);
             for (&k, stretch) in pair.iter().zip(&stretch) {
-                let (strain, p) = (&strains[k], &mut p[k]);
+                let strain = &strains[k];
+                let p = &mut p[k];
                 match series::rung(&stretch.a).and_then(series::of_logarithm) {
                     Some(series) => {
                         let log_j = if bulk == 0.0 { [0.0; LANES] } else { logarithm::<FMA>(strain) };

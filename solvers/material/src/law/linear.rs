@@ -1,11 +1,15 @@
 //! Small-strain isotropic linear elasticity (Hooke).
 
+use catalogue::{Build, Entry};
+use lanes::LANES;
 use shape::Matrix3;
 
-use super::{Entry, LawEntry, MODULI, moduli};
+use super::moduli::{MODULI, moduli};
+use crate::error::MaterialError;
 use crate::kinematics::tangent_of;
-use crate::lane::{LANES, LaneStrain, Lanes};
-use crate::{Material, MaterialError, Separated, Tangent};
+use crate::lane::{LaneStrain, Lanes};
+use crate::material::{Material, Tangent};
+use crate::separated::Separated;
 
 /// Hooke's law `sigma = lambda tr(eps) I + 2 mu eps`, `eps = sym grad u`; moduli in Pa.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -14,14 +18,14 @@ pub struct LinearElastic {
     poisson: f64,
 }
 
-pub(super) const ENTRY: LawEntry = Entry {
+pub(super) const ENTRY: Entry<Build<LinearElastic>> = Entry {
     name: "linear",
     meaning: "lambda/2 (tr eps)^2 + mu eps : eps, eps = sym grad u: for small strain and rotation",
     source: "Hooke",
     parameters: MODULI,
     build: |values| {
         let (young, poisson) = moduli(values)?;
-        Ok(LinearElastic::new(young, poisson)?.into())
+        Ok(LinearElastic::new(young, poisson)?)
     },
 };
 
@@ -92,7 +96,8 @@ impl Material for LinearElastic {
     }
 
     fn tangent(&self, _: &Matrix3) -> Tangent {
-        let (mu, lambda) = (LinearElastic::mu(self), LinearElastic::lambda(self));
+        let mu = LinearElastic::mu(self);
+        let lambda = LinearElastic::lambda(self);
         let delta = Matrix3::identity();
         tangent_of(|i, j, k, l| {
             lambda * delta[(i, j)] * delta[(k, l)]
@@ -102,7 +107,8 @@ impl Material for LinearElastic {
 
     #[inline(always)]
     fn stress_lanes<const FMA: bool>(&self, strain: &LaneStrain, p: &mut [Lanes; 9]) {
-        let (mu, lambda) = (LinearElastic::mu(self), LinearElastic::lambda(self));
+        let mu = LinearElastic::mu(self);
+        let lambda = LinearElastic::lambda(self);
         for l in 0..LANES {
             let h = strain.lane(l);
             let volume = lambda * strain.invariants[0][l];

@@ -1,17 +1,20 @@
 //! The laws that a scene can name.
 //!
-//! Each law is a file with its energy, its derivatives and its [`LawEntry`], and a line in the list below.
+//! Each law is a file with its energy, its derivatives and its [`Entry`], and a line in the list below.
 //! Optional capabilities (lanes, a split into shape and volume) have defaults in [`Material`] that are
 //! correct for any law but slower.
 
-use catalogue::{Dimension, Entry, Kind, Parameter, Problem, Range, Value, Values};
+mod moduli;
+
+use catalogue::{Build, Entry, Problem, Value, Values};
 use shape::Matrix3;
 
 use crate::lane::{LaneStrain, Lanes};
-use crate::{Material, Separated, Tangent, Volumetric};
+use crate::material::{Material, Tangent, Volumetric};
+use crate::separated::Separated;
 
 /// A law that scene files can name.
-pub type LawEntry = Entry<fn(&Values) -> Result<Law, Problem>>;
+pub type LawEntry = Entry<Build<Law>>;
 
 /// Declares the files of the laws, the enum that dispatches to them without a call through a pointer, and the
 /// slice of their entries.
@@ -35,7 +38,8 @@ macro_rules! laws {
         }
 
         /// Entries of all laws, in the order of tables.
-        pub static LAWS: &[LawEntry] = &[$($file::ENTRY),*];
+        pub static LAWS: &[LawEntry] =
+            &[$($file::ENTRY.built_by(|values| Ok(($file::ENTRY.build)(values)?.into()))),*];
 
         impl Law {
             /// Returns the name in scene files and tables.
@@ -126,26 +130,6 @@ laws! {
     hencky::Hencky,
     mooney_rivlin::MooneyRivlin,
     ogden::Ogden,
-}
-
-const YOUNG: Parameter =
-    Parameter::required("young", Dimension::Pressure, "Young's modulus; soft tissue has 1 to 100 kPa")
-        .within(Range::Positive);
-const POISSON: Parameter = Parameter::required(
-    "poisson",
-    Dimension::None,
-    "Poisson's ratio; nearly incompressible tissue has 0.49 to 0.4999",
-)
-.within(Range::Between(-1.0, 0.5));
-const BULK: Parameter =
-    Parameter::required("bulk", Dimension::Pressure, "bulk modulus").within(Range::Positive);
-
-/// Parameters of a law that is defined by its moduli at small strain.
-const MODULI: &[Parameter] = &[YOUNG, POISSON];
-
-/// Returns Young's modulus (Pa) and Poisson's ratio.
-fn moduli(values: &Values) -> Result<(f64, f64), Problem> {
-    Ok((values.number("young")?, values.number("poisson")?))
 }
 
 /// Shares of the shear modulus and exponents of a rubber in Ogden's law, for [`Law::all`].

@@ -1,14 +1,18 @@
 //! Mooney-Rivlin law, split into shape and volume.
 
-use super::{BULK, Dimension, Entry, LawEntry, LinearElastic, POISSON, Parameter, Problem, Range, YOUNG};
+use catalogue::{Build, Dimension, Entry, Parameter, Problem, Range, Values};
+use lanes::{LANES, madd};
+use shape::Matrix3;
+
+use super::linear::LinearElastic;
+use super::moduli::{BULK, POISSON, YOUNG};
+use crate::error::MaterialError;
 use crate::kinematics::{Kinematics, add_left, add_right, cofactor, green_lagrange, tangent_of};
 use crate::lane::invariants::piola;
 use crate::lane::math::inverse_cbrt_less_1;
-use crate::lane::{LANES, LaneStrain, Lanes};
-use crate::{Material, MaterialError, Separated, Tangent, Volumetric};
-use catalogue::Values;
-use lanes::madd;
-use shape::Matrix3;
+use crate::lane::{LaneStrain, Lanes};
+use crate::material::{Material, Tangent, Volumetric};
+use crate::separated::Separated;
 
 /// Mooney-Rivlin law `W = C10 (J^(-2/3) I1 - 3) + C01 (J^(-4/3) I2 - 3) + (J - 1)^2 / D1` with
 /// `2 (C10 + C01) = mu` and `D1 = 2 / kappa`; constants in Pa.
@@ -26,7 +30,7 @@ const SHARE: Parameter =
     Parameter::optional("share", Dimension::None, "fraction of the second constant, c01 / (c10 + c01)")
         .within(Range::Within(0.0, 1.0));
 
-pub(super) const ENTRY: LawEntry = Entry {
+pub(super) const ENTRY: Entry<Build<MooneyRivlin>> = Entry {
     name: "mooney-rivlin",
     meaning: "C10 (J^(-2/3) I1 - 3) + C01 (J^(-4/3) I2 - 3) + (J - 1)^2 / D1: takes c10, c01 and bulk, or young, poisson and share",
     source: "Mooney (1940), Rivlin (1948); Abaqus Theory Guide, Hyperelastic material behavior",
@@ -41,7 +45,7 @@ pub(super) const ENTRY: LawEntry = Entry {
     build,
 };
 
-fn build(values: &Values) -> Result<super::Law, Problem> {
+fn build(values: &Values) -> Result<MooneyRivlin, Problem> {
     let [c10, c01, bulk] = ["c10", "c01", "bulk"].map(|name| values.get(name));
     let law = match ((c10, c01, bulk), ["young", "poisson", "share"].map(|name| values.get(name))) {
         ((Some(c10), Some(c01), Some(bulk)), [None, None, None]) => MooneyRivlin::new(c10, c01, bulk),
@@ -53,7 +57,7 @@ fn build(values: &Values) -> Result<super::Law, Problem> {
             return Err(Problem::new("does not have the constants of this law").help(help));
         }
     };
-    law.map(Into::into).map_err(|bad| match bad {
+    law.map_err(|bad| match bad {
         MaterialError::Shear { .. } => Problem::new("does not give a positive shear modulus")
             .help("c10 + c01, which is half the shear modulus, must be positive")
             .of("c10"),

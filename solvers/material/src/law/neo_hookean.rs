@@ -1,12 +1,17 @@
 //! Compressible neo-Hookean law in `I1` and `ln J`.
 
+use catalogue::{Build, Entry};
+use lanes::LANES;
 use shape::Matrix3;
 
-use super::{Entry, LawEntry, LinearElastic, MODULI, moduli};
+use super::linear::LinearElastic;
+use super::moduli::{MODULI, moduli};
+use crate::error::MaterialError;
 use crate::kinematics::{Kinematics, less_ln_1p, tangent_of};
 use crate::lane::invariants::piola;
-use crate::lane::{LANES, LaneStrain, Lanes};
-use crate::{Material, MaterialError, Separated, Tangent};
+use crate::lane::{LaneStrain, Lanes};
+use crate::material::{Material, Tangent};
+use crate::separated::Separated;
 
 /// Compressible neo-Hookean law `W = mu/2 (I1 - 3 - 2 ln J) + lambda/2 (ln J)^2` with `I1 = tr(F^T F)`;
 /// moduli in Pa.
@@ -22,14 +27,14 @@ pub struct NeoHookean {
     lambda: f64,
 }
 
-pub(super) const ENTRY: LawEntry = Entry {
+pub(super) const ENTRY: Entry<Build<NeoHookean>> = Entry {
     name: "neo-hookean",
     meaning: "mu/2 (I1 - 3 - 2 ln J) + lambda/2 (ln J)^2",
     source: "Bonet and Wood, Nonlinear Continuum Mechanics for Finite Element Analysis, 2nd ed., section 6.4.3",
     parameters: MODULI,
     build: |values| {
         let (young, poisson) = moduli(values)?;
-        Ok(NeoHookean::new(young, poisson)?.into())
+        Ok(NeoHookean::new(young, poisson)?)
     },
 };
 
@@ -95,7 +100,9 @@ impl Material for NeoHookean {
     /// Returns `mu/2 theta^(2/3) I1_bar`, and the part of the energy in addition to `psi(F, 1)`:
     /// `3 mu/2 (theta^(2/3) - 1) - mu ln theta + lambda/2 (ln theta)^2`.
     fn separated(&self, theta_minus_1: f64) -> Option<Separated> {
-        let (mu, lambda, theta) = (self.mu, self.lambda, 1.0 + theta_minus_1);
+        let mu = self.mu;
+        let lambda = self.lambda;
+        let theta = 1.0 + theta_minus_1;
         let log = theta_minus_1.ln_1p();
         let grown = (2.0 / 3.0 * log).exp_m1();
         let A = 1.0 + grown;

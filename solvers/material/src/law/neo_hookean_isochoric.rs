@@ -1,11 +1,17 @@
 //! Neo-Hookean law, split into shape and volume as in Abaqus and CalculiX.
 
-use super::{Entry, LawEntry, LinearElastic, MODULI, moduli};
+use catalogue::{Build, Entry};
+use lanes::LANES;
+use shape::Matrix3;
+
+use super::linear::LinearElastic;
+use super::moduli::{MODULI, moduli};
+use crate::error::MaterialError;
 use crate::kinematics::{Kinematics, tangent_of};
 use crate::lane::invariants::{piola, pressed};
-use crate::lane::{LANES, LaneStrain, Lanes};
-use crate::{Material, MaterialError, Separated, Tangent, Volumetric};
-use shape::Matrix3;
+use crate::lane::{LaneStrain, Lanes};
+use crate::material::{Material, Tangent, Volumetric};
+use crate::separated::Separated;
 
 /// Isochoric neo-Hookean law `W = C10 (J^(-2/3) I1 - 3) + (J - 1)^2 / D1` with `C10 = mu / 2` and
 /// `D1 = 2 / kappa`; moduli in Pa.
@@ -20,14 +26,14 @@ pub struct NeoHookeanIsochoric {
     bulk: f64,
 }
 
-pub(super) const ENTRY: LawEntry = Entry {
+pub(super) const ENTRY: Entry<Build<NeoHookeanIsochoric>> = Entry {
     name: "neo-hookean-isochoric",
     meaning: "C10 (J^(-2/3) I1 - 3) + (J - 1)^2 / D1, as in Abaqus and CalculiX",
     source: "Abaqus Theory Guide, Hyperelastic material behavior",
     parameters: MODULI,
     build: |values| {
         let (young, poisson) = moduli(values)?;
-        Ok(NeoHookeanIsochoric::new(young, poisson)?.into())
+        Ok(NeoHookeanIsochoric::new(young, poisson)?)
     },
 };
 

@@ -1,16 +1,20 @@
 //! Ogden's law in isochoric principal stretches.
 
-use super::{BULK, Dimension, Entry, Kind, LawEntry, Parameter, Problem};
+use std::slice::{from_mut, from_ref};
+
+use catalogue::{Build, Dimension, Entry, Kind, Parameter, Problem, Values};
+use lanes::{LANES, madd};
+use shape::Matrix3;
+
+use super::moduli::BULK;
+use crate::error::MaterialError;
 use crate::kinematics::exp_m1_less;
 use crate::lane::series::{self, BOUNDS, Power, unrolled};
 use crate::lane::stretch::{Stretch, pair_of, pairs, squared};
-use crate::lane::{LANES, LaneStrain, Lanes, one_by_one};
+use crate::lane::{LaneStrain, Lanes};
+use crate::material::{Material, Tangent, Volumetric, one_by_one};
 use crate::principal::{Principal, Slopes};
-use crate::{Material, MaterialError, Separated, Tangent, Volumetric};
-use catalogue::Values;
-use lanes::madd;
-use shape::Matrix3;
-use std::slice::{from_mut, from_ref};
+use crate::separated::Separated;
 
 /// Ogden's law `W = sum_p mu_p / alpha_p (l_1^alpha_p + l_2^alpha_p + l_3^alpha_p - 3) + (J - 1)^2 / D1` with
 /// isochoric stretches `l_a = J^(-1/3) lambda_a` and `D1 = 2 / kappa`; moduli in Pa.
@@ -26,7 +30,7 @@ pub struct Ogden {
     series: Series,
 }
 
-pub(super) const ENTRY: LawEntry = Entry {
+pub(super) const ENTRY: Entry<Build<Ogden>> = Entry {
     name: "ogden",
     meaning: "sum_p mu_p/alpha_p (l_1^alpha_p + l_2^alpha_p + l_3^alpha_p - 3) + (J - 1)^2 / D1, l_a isochoric stretches",
     source: "Ogden, Proc. R. Soc. A 326 (1972) 565-584",
@@ -38,13 +42,13 @@ pub(super) const ENTRY: LawEntry = Entry {
     build,
 };
 
-fn build(values: &Values) -> Result<super::Law, Problem> {
+fn build(values: &Values) -> Result<Ogden, Problem> {
     let [mu, alpha] = ["mu", "alpha"].map(|name| values.list(name).unwrap_or_default());
     if mu.len() != alpha.len() || mu.is_empty() {
         return Err(Problem::new("does not match mu").help("give one alpha for each mu").of("alpha"));
     }
     let terms: Vec<(f64, f64)> = mu.iter().copied().zip(alpha.iter().copied()).collect();
-    Ogden::new(&terms, values.number("bulk")?).map(Into::into).map_err(|bad| match bad {
+    Ogden::new(&terms, values.number("bulk")?).map_err(|bad| match bad {
         MaterialError::Shear { .. } => Problem::new("does not give a positive shear modulus")
             .help("the sum of mu times alpha, which is twice the shear modulus, must be positive")
             .of("mu"),
@@ -193,7 +197,8 @@ impl Material for Ogden {
                 }
             }
             for m in 0..2 {
-                let (strain, p) = (&strains[pair[m]], &mut p[pair[m]]);
+                let strain = &strains[pair[m]];
+                let p = &mut p[pair[m]];
                 match of_stress[m] {
                     Some(series) => {
                         unrolled!(series, stress::<FMA>(self.bulk, strain, &stretch[m], &log[m], p))

@@ -1,12 +1,15 @@
 //! St. Venant-Kirchhoff law: Hooke's law between Green-Lagrange strain and second Piola-Kirchhoff stress.
 
-use lanes::madd;
+use catalogue::{Build, Entry};
+use lanes::{LANES, madd};
 use shape::Matrix3;
 
-use super::{Entry, LawEntry, LinearElastic, MODULI, moduli};
+use super::linear::LinearElastic;
+use super::moduli::{MODULI, moduli};
+use crate::error::MaterialError;
 use crate::kinematics::{add_left, add_right, green_lagrange, tangent_of};
-use crate::lane::{LANES, LaneStrain, Lanes};
-use crate::{Material, MaterialError, Tangent};
+use crate::lane::{LaneStrain, Lanes};
+use crate::material::{Material, Tangent};
 
 /// St. Venant-Kirchhoff law `W = lambda/2 (tr E)^2 + mu E : E` with `E = (H + H^T + H^T H) / 2`; moduli in
 /// Pa.
@@ -20,14 +23,14 @@ pub struct SaintVenantKirchhoff {
     lambda: f64,
 }
 
-pub(super) const ENTRY: LawEntry = Entry {
+pub(super) const ENTRY: Entry<Build<SaintVenantKirchhoff>> = Entry {
     name: "saint-venant-kirchhoff",
     meaning: "lambda/2 (tr E)^2 + mu E : E, E Green-Lagrange strain: for large rotation at small strain",
     source: "Saint-Venant (1844), Kirchhoff (1852)",
     parameters: MODULI,
     build: |values| {
         let (young, poisson) = moduli(values)?;
-        Ok(SaintVenantKirchhoff::new(young, poisson)?.into())
+        Ok(SaintVenantKirchhoff::new(young, poisson)?)
     },
 };
 

@@ -1,4 +1,4 @@
-use shape::Vector3;
+use shape::{Matrix3, Vector3};
 
 use super::*;
 

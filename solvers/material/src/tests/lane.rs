@@ -1,10 +1,12 @@
 //! Stress in lanes against the scalar laws.
 
+use lanes::LANES;
+use proptest::prelude::*;
+use shape::{Matrix3, Vector3};
+
 use super::properties::{POISSON, finite, gradient, rotation};
 use super::*;
-use crate::lane::{LANES, LaneStrain};
-use proptest::prelude::*;
-use shape::Vector3;
+use crate::lane::LaneStrain;
 
 /// Returns the largest difference over eight points, with and without fused products.
 fn difference(law: &Law, at: &[Matrix3; LANES]) -> f64 {

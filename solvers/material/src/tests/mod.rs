@@ -5,8 +5,11 @@ mod lane;
 mod properties;
 mod viscoelastic;
 
-use super::*;
-use crate::law::{OGDEN, SECOND};
+use crate::kinematics::volume_change;
+use crate::law::*;
+use crate::material::Material;
+use crate::prony::Prony;
+use crate::viscoelastic::{deviator, relaxed_stress_and_tangent};
 
 /// Returns every law of the catalogue with a Young's modulus of 20 kPa.
 fn laws(poisson: f64) -> Vec<Law> {

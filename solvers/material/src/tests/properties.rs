@@ -1,6 +1,6 @@
 use nalgebra::Rotation3;
 use proptest::prelude::*;
-use shape::Vector3;
+use shape::{Matrix3, Vector3};
 
 use super::*;
 

@@ -7,7 +7,7 @@ use geometry::{CellKind, Mesh};
 use material::LinearElastic;
 use shape::{DilationGroups, SurfaceRows, VolumeRows};
 use shape::{FixedDof, Point3};
-use tissuebench_statics::{Body, LinearProblem, Load};
+use tissuebench_statics::{LinearBody, LinearProblem, Load};
 
 pub struct Pressed {
     pub mesh: Mesh,
@@ -41,9 +41,9 @@ impl Pressed {
         Pressed { mesh, volume, top, fixed, nodal, material: [LinearElastic::new(20e3, 0.495).unwrap()] }
     }
 
-    pub fn body(&self, projected: bool) -> Body<'_> {
+    pub fn body(&self, projected: bool) -> LinearBody<'_> {
         let dilation = projected.then_some(&self.nodal);
-        Body {
+        LinearBody {
             nodes: self.mesh.points(),
             volume: &self.volume,
             materials: &self.material,

@@ -1,6 +1,7 @@
 //! Errors of implicit dynamics.
 
-use crate::{SolveError, StaticError};
+use crate::error::SolveError;
+use crate::nonlinear::StaticError;
 
 /// Reason why implicit dynamics cannot start or ended early.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

@@ -3,12 +3,12 @@
 use contact::Drive;
 use shape::Vector3;
 
+use super::energy::Energy;
+use super::error::TimeError;
 use super::problem::{Motion, TimeParams, TimePath, TimeProblem, TimeStep};
 use super::scheme::{Scheme, Update};
-use super::{Energy, TimeError};
-use crate::Step;
 use crate::nonlinear::{
-    Attempt, Descent, Ended, InertiaTerms, Memory, Newton, Scales, State, Stepper, TimeTerms, near,
+    Attempt, Descent, Ended, InertiaTerms, Memory, Newton, Scales, State, Step, Stepper, TimeTerms, near,
     shortest_travel,
 };
 
@@ -59,7 +59,9 @@ pub fn solve_in_time(
             }
         }
     }
-    let (counts, work, cut_back) = (march.newton.counts(), march.newton.work(), stepper.cut_back);
+    let counts = march.newton.counts();
+    let work = march.newton.work();
+    let cut_back = stepper.cut_back;
     let March { motion, state: State { pressure, .. }, .. } = march;
     Ok(TimePath { steps, motion, pressure, cut_back, counts, work, failure })
 }
@@ -179,7 +181,8 @@ impl<'a> March<'a> {
         let relaxing = self.memory.as_ref().map(|m| m.relaxing(dt));
         let inertia = self.problem.inertia.map(|i| self.inertia(time, self.scheme.over(dt), i.damping));
         self.newton.set_terms(TimeTerms { scales: self.scales(time), inertia, relaxing });
-        let (before, augmentations) = (self.before.as_ref(), self.params.augmentations);
+        let before = self.before.as_ref();
+        let augmentations = self.params.augmentations;
         let mut to = |descent| self.newton.step(&self.state, before, time, augmentations, descent);
         let (state, step) = near(!self.state.pressure.is_empty(), &mut to)
             .or_else(|_| to(Descent::Down))

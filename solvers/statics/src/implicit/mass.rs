@@ -1,11 +1,9 @@
 //! Mass matrices, stored as tables of values with the mass of each point: `M v` is a product with the table.
 
-use algebra::BlockPattern;
-use algebra::Stiffness;
-use shape::{Matrix3, Vector3};
-use shape::{Rows, VolumeRows};
+use algebra::{BlockPattern, Stiffness};
+use shape::{Matrix3, Rows, Vector3, VolumeRows};
 
-use super::TimeError;
+use super::error::TimeError;
 use crate::body::check_len;
 use crate::nonlinear::SurfaceTable;
 
@@ -133,7 +131,8 @@ impl Mass {
         }
         let mut z = scaled(&r);
         let (mut d, mut rz) = (z.clone(), dot(&r, &z));
-        for iterations in 0.. {
+        let mut iterations = 0;
+        loop {
             let residual = dot(&r, &r).sqrt() / size;
             if residual <= ACCURACY {
                 return Ok(());
@@ -150,8 +149,8 @@ impl Mass {
             let next = dot(&r, &z);
             d.iter_mut().zip(&z).for_each(|(d, z)| *d = z + *d * (next / rz));
             rz = next;
+            iterations += 1;
         }
-        unreachable!("the loop returns by its last iteration")
     }
 }
 

@@ -4,8 +4,11 @@ use contact::ContactCounts;
 use material::Prony;
 use shape::Vector3;
 
-use super::{Energy, Mass, Ramps, TimeError};
-use crate::{NewtonParams, StaticProblem, StaticWork, Step};
+use super::energy::Energy;
+use super::error::TimeError;
+use super::mass::Mass;
+use super::ramp::Ramps;
+use crate::nonlinear::{NewtonParams, StaticProblem, StaticWork, Step};
 
 /// A body whose loads, supports and tools follow functions of physical time.
 #[derive(Clone, Debug)]

@@ -47,7 +47,8 @@ impl Update {
     /// Returns the acceleration `a_n+1` (m/s^2) from the displacement increment `gain` of the step (m), the
     /// velocity `v_n` (m/s) and the acceleration `a_n`.
     pub fn acceleration(&self, gain: &Vector3, v: &Vector3, a: &Vector3) -> Vector3 {
-        let (beta, dt) = (self.scheme.beta, self.dt);
+        let beta = self.scheme.beta;
+        let dt = self.dt;
         (gain / dt - v) / (beta * dt) - a * (0.5 / beta - 1.0)
     }
 

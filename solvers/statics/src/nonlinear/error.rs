@@ -4,7 +4,7 @@ use algebra::AlgebraError;
 use contact::ContactError;
 use shape::Point3;
 
-use crate::SolveError;
+use crate::error::SolveError;
 
 /// An inverted quadrature point.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]

@@ -4,7 +4,9 @@ use shape::Vector3;
 
 use super::error::StaticError;
 use super::newton::{Descent, Newton, State, near, shortest_travel};
-use super::statics::{StaticParams, StaticProblem, Step};
+use super::problem::StaticProblem;
+use super::statics::StaticParams;
+use super::step::Step;
 
 /// Sequence of equilibria ("frames"), each of which starts from the last, forwards or backwards along the
 /// loading. Residuals are relative to the largest forces so far: when tools lift off, a simulator does not
@@ -44,7 +46,9 @@ impl<'a> Frames<'a> {
     fn go(&mut self, time: f64) -> Result<Step, StaticError> {
         let mut target = time;
         loop {
-            let (newton, state, before) = (&mut self.newton, &self.state, self.before.as_ref());
+            let newton = &mut self.newton;
+            let state = &self.state;
+            let before = self.before.as_ref();
             let mut solve = |descent| newton.find(state, before, target, self.augmentations, descent);
             let reached = near(!state.pressure.is_empty(), &mut solve).or_else(|_| solve(Descent::Down));
             let reached = reached.and_then(|(reached, step)| match target == time {

@@ -12,7 +12,6 @@ use lanes::on_path;
 use material::Tangent;
 use shape::{Matrix3, Vector3};
 
-use super::shared::GroupHessian;
 use super::sorted_rows::Sorted;
 
 pub(crate) type Vector4 = nalgebra::Vector4<f64>;
@@ -75,6 +74,16 @@ impl PointTangent {
     }
 }
 
+/// Contribution of one dilation group to the second derivatives: `k b b^T + b m^T + m b^T`, of rank two,
+/// written as `b n^T + n b^T` with `n = m + k b / 2`.
+///
+/// Here `b = dJ_a / du` (1/m), `m` is `d2 psi / dF d theta` transferred to the nodes (N), and `k` is
+/// `d2 psi / d theta2` over the group (J).
+pub(crate) struct GroupHessian {
+    /// Rows by the nodes of the group, ascending.
+    pub rows: Vec<GroupRow>,
+}
+
 /// Entries of one node in the vectors `b` (1/m) and `n` (N) of [`GroupHessian`].
 /// The component of column c is repeated in all lanes of that column of a block.
 #[derive(Clone, Copy)]
@@ -121,7 +130,8 @@ fn point_products_in<const FMA: bool>(
 ) {
     for &(q, k) in seen {
         let (q, k) = (q as usize, k as usize);
-        let (PointTangent(D), g) = (&tangents[q], &points.data[k]);
+        let PointTangent(D) = &tangents[q];
+        let g = &points.data[k];
         let mut M = [0.0; 32];
         for l in 0..32 {
             M[l] = D[0][l] * g[0] + D[1][l] * g[1] + D[2][l] * g[2];
@@ -160,7 +170,8 @@ fn group_products_in<const FMA: bool>(
 ) {
     for &(a, at) in seen {
         let start = nodes.offsets[a as usize];
-        let (own, rows) = (at as usize - start, &groups[a as usize].rows);
+        let own = at as usize - start;
+        let rows = &groups[a as usize].rows;
         let (b, n) = rows[own].both();
         let (bi, ni): ([f64; 8], [f64; 8]) =
             (std::array::from_fn(|l| b[l % 3]), std::array::from_fn(|l| n[l % 3]));
@@ -210,7 +221,8 @@ mod tests {
         let points = Sorted::new(std::iter::once((0..3).map(|k| (k as u32, g(k).push(0.0)))));
         let rows = (0..3).map(|k| GroupRow::new(&g(k + 5), &g(k + 9))).collect();
         let groups = [GroupHessian { rows }];
-        let (offsets, nodes) = ([0, 3], [0, 1, 2]);
+        let offsets = [0, 3];
+        let nodes = [0, 1, 2];
         let connectivity = Connectivity { offsets: &offsets, nodes: &nodes, seen_by: &[] };
         let tangents = [PointTangent::new(&D)];
         let blocks: Vec<Vec<Matrix3>> = LanePath::available()

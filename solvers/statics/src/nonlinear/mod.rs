@@ -1,18 +1,22 @@
 //! Bodies under large displacements: internal energy with projected volume change, and equilibrium by
 //! Newton's method.
 
+mod energy;
 mod error;
 mod frames;
+mod group_means;
 mod groups;
 mod in_time;
 mod lanes;
 mod newton;
+mod problem;
 mod relaxing;
 mod shared;
 mod solid;
 mod sorted_rows;
 mod split;
 mod statics;
+mod step;
 mod stepper;
 mod system;
 #[cfg(test)]
@@ -27,7 +31,7 @@ pub(crate) use system::SurfaceTable;
 pub use error::{Inverted, StaticError, Worst};
 pub use frames::Frames;
 pub use newton::{Iteration, NewtonParams};
-pub use solid::{Dilation, Solid};
-pub use statics::{
-    PenaltySurface, Rest, StaticParams, StaticPath, StaticProblem, StaticWork, Step, solve_static,
-};
+pub use problem::{PenaltySurface, StaticProblem};
+pub use solid::{Solid, SolidDilation};
+pub use statics::{Rest, StaticParams, StaticPath, solve_static};
+pub use step::{StaticWork, Step};

@@ -9,10 +9,11 @@ use material::{Law, Material as _, Prony, PronyStep, Tangent};
 use rayon::prelude::*;
 use shape::{Matrix3, Vector3};
 
+use super::energy::{Hessian, Internal};
+use super::error::StaticError;
 use super::groups::Pairs;
-use super::solid::{Hessian, Internal};
+use super::solid::{Solid, SolidDilation};
 use super::split::{Split, cofactor, flat};
-use super::{Dilation, Solid, StaticError};
 
 /// Stress history of all points of a body.
 #[derive(Clone, Debug)]
@@ -161,8 +162,9 @@ impl Relaxing {
             for (share, split) in &point.splits {
                 let (_, second) = split.second(point.law);
                 D += second.by_FF * (share * less);
-                if matches!(solid.dilation, Dilation::Standard) {
-                    let (mixed, cof) = (flat(&second.by_F_theta), flat(&cofactor(small, &point.H)));
+                if matches!(solid.dilation, SolidDilation::Standard) {
+                    let mixed = flat(&second.by_F_theta);
+                    let cof = flat(&cofactor(small, &point.H));
                     D += (mixed * cof.transpose() + cof * mixed.transpose()) * (0.5 * less);
                 }
             }
@@ -196,11 +198,11 @@ fn points<T: Send>(
     let kinematics = solid.kinematics(u)?;
     let (H, j_minus_1) = (&kinematics.H, &kinematics.j_minus_1);
     let of_groups = match solid.dilation {
-        Dilation::Groups(groups) => solid.group_dilations(groups, j_minus_1)?,
+        SolidDilation::Groups(groups) => solid.group_dilations(groups, j_minus_1)?,
         _ => Vec::new(),
     };
     let pressures = match solid.dilation {
-        Dilation::Mixed(rows) => solid.pressures(rows, p),
+        SolidDilation::Mixed(rows) => solid.pressures(rows, p),
         _ => Vec::new(),
     };
     (0..H.len())
@@ -210,11 +212,11 @@ fn points<T: Send>(
             let law = solid.law(q);
             let split = |theta_minus_1: f64| Split::new(law, &H[q], j_minus_1[q], theta_minus_1);
             let splits = match solid.dilation {
-                Dilation::Standard => vec![(1.0, split(j_minus_1[q]))],
-                Dilation::Groups(_) => (pairs.expect("groups have pairs").of(q).iter())
+                SolidDilation::Standard => vec![(1.0, split(j_minus_1[q]))],
+                SolidDilation::Groups(_) => (pairs.expect("groups have pairs").of(q).iter())
                     .map(|&(a, share)| (share, split(of_groups[a as usize])))
                     .collect(),
-                Dilation::Mixed(_) => {
+                SolidDilation::Mixed(_) => {
                     vec![(1.0, split(solid.mixed_dilation(q, &H[q], j_minus_1[q], pressures[q])?))]
                 }
             };

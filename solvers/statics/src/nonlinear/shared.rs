@@ -8,12 +8,11 @@
 use lanes::LanePath;
 use material::{Material, Separated, Tangent};
 use rayon::prelude::*;
-use shape::DilationGroups;
-use shape::{Matrix3, Vector3};
+use shape::{DilationGroups, Matrix3, Vector3};
 
-use super::Inverted;
+use super::error::Inverted;
 use super::groups::Pairs;
-use super::lanes::{GroupRow, Lanes, add_row};
+use super::lanes::{GroupHessian, GroupRow, Lanes, add_row};
 use super::solid::{Kinematics, Solid};
 use super::split::{Split, add_dilation_hessian, cofactor};
 
@@ -22,16 +21,6 @@ const GROUPS: usize = 8;
 /// Number of points that the groups of a task traverse together: for a cloud with 35 neighbours per group,
 /// 140 KB of rows.
 const POINTS: usize = 64;
-
-/// Contribution of one dilation group to the second derivatives: `k b b^T + b m^T + m b^T`, of rank two,
-/// written as `b n^T + n b^T` with `n = m + k b / 2`.
-///
-/// Here `b = dJ_a / du` (1/m), `m` is `d2 psi / dF d theta` transferred to the nodes (N), and `k` is
-/// `d2 psi / d theta2` over the group (J).
-pub(crate) struct GroupHessian {
-    /// Rows by the nodes of the group, ascending.
-    pub rows: Vec<GroupRow>,
-}
 
 /// A solid at a displacement, with the dilations that its points share.
 pub(super) struct Shared<'a> {
@@ -112,7 +101,8 @@ impl<'a> Shared<'a> {
     fn stress_by_point(&self, parts: &[Separated]) -> (Vec<Matrix3>, Vec<f64>) {
         let weights = self.solid.volume.weights();
         let shape: Vec<(Matrix3, f64)> = self.points(|q| {
-            let (law, split) = (self.solid.law(q), self.split(q, 0.0));
+            let law = self.solid.law(q);
+            let split = self.split(q, 0.0);
             (split.first(law).by_F, split.energy(law))
         });
         let energy = self.solid.group_mean(self.groups, self.pairs, |q, _| shape[q].1);
@@ -158,7 +148,8 @@ impl<'a> Shared<'a> {
             .into_par_iter()
             .with_min_len(64)
             .map(|q| {
-                let (law, split) = (self.solid.law(q), self.split(q, 0.0));
+                let law = self.solid.law(q);
+                let split = self.split(q, 0.0);
                 let (first, second) = split.second(law);
                 let scale = self.at_point(q, |a| parts[a].A[0]);
                 ((split.energy(law), first.by_F), second.by_FF * scale)
@@ -178,7 +169,8 @@ impl<'a> Shared<'a> {
             })
             .collect();
         let of_point = |q: usize| {
-            let (tile, range) = (q / POINTS, rows.range(q));
+            let tile = q / POINTS;
+            let range = rows.range(q);
             let first = rows.offsets()[tile * POINTS];
             &mixed[tile][range.start - first..range.end - first]
         };
@@ -221,7 +213,8 @@ impl<'a> Shared<'a> {
                 .sum();
             (k, 1.0)
         };
-        let (rows, path) = (self.solid.volume.rows(), LanePath::best());
+        let rows = self.solid.volume.rows();
+        let path = LanePath::best();
         let groups = self.group_hessians(stiffness, |q, at, share, slot, sums| {
             let mixed: Vec<Lanes> = self.mixed_rows(q, of_pair[at].by_F_theta).collect();
             add_row(path, rows.row(q).0, &mixed, share, slot, sums);
@@ -241,7 +234,8 @@ impl<'a> Shared<'a> {
 
     /// Returns the contributions of a point's neighbours to `b` and, with `by_F_theta`, to `m`.
     fn mixed_rows(&self, q: usize, by_F_theta: Matrix3) -> impl Iterator<Item = Lanes> + '_ {
-        let (cofactor, weight) = (self.cofactor(q), self.solid.volume.weights()[q]);
+        let cofactor = self.cofactor(q);
+        let weight = self.solid.volume.weights()[q];
         let of_node = move |g: &Vector3| Lanes::pair(&(cofactor * g * weight), &(by_F_theta * g * weight));
         self.solid.volume.row(q).1.iter().map(of_node)
     }
@@ -280,7 +274,8 @@ impl<'a> Shared<'a> {
                 while let Some(first) = next(&done) {
                     let end = first + POINTS as u32;
                     for ((a, k), (slot, sums)) in groups.clone().zip(&mut done).zip(&mut *scratch) {
-                        let ((points, shares), places) = (self.groups.group(a), self.pairs.places(a));
+                        let (points, shares) = self.groups.group(a);
+                        let places = self.pairs.places(a);
                         while *k < points.len() && points[*k] < end {
                             add(points[*k] as usize, places[*k], shares[*k], slot, sums);
                             *k += 1;
@@ -288,7 +283,8 @@ impl<'a> Shared<'a> {
                     }
                 }
                 let row = |a: usize, sums: &[Lanes]| {
-                    let (volume, (k, factor)) = (self.solid.group_volume(self.groups, a), stiffness(a));
+                    let volume = self.solid.group_volume(self.groups, a);
+                    let (k, factor) = stiffness(a);
                     let of_node = |sum: &Lanes| {
                         let (b, m) = sum.of_pair();
                         let b = b / volume;

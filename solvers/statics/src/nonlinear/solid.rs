@@ -1,20 +1,17 @@
 #![allow(non_snake_case)] // F, H, J, P as in the formulas
-//! Internal energy, stresses and their derivatives of a body at finite (or small) strain, for any law and any
-//! projection of the volume change.
+//! A body at finite (or small) strain, for any law and any projection of the volume change.
 
-use material::{Law, Material, Tangent};
+use material::{Law, Material};
 use rayon::prelude::*;
-use shape::{DilationGroups, Rows, VolumeRows};
-use shape::{Matrix3, Vector3};
+use shape::{DilationGroups, Matrix3, Rows, Vector3, VolumeRows};
 
+use super::error::{Inverted, StaticError};
 use super::groups::Pairs;
-use super::shared::{GroupHessian, Shared};
-use super::split::{Split, add_dilation_hessian, cofactor, dilation, dilation_at_pressure};
-use super::{Inverted, StaticError};
+use super::split::{dilation, dilation_at_pressure};
 
 /// Treatment of the volume change.
 #[derive(Clone, Copy, Debug)]
-pub enum Dilation<'a> {
+pub enum SolidDilation<'a> {
     /// Dilation of the displacement, point by point.
     Standard,
     /// One dilation per group: `J_a = sum_q share w J_q / V_a`, energy `sum over (a, q) of share w W(F_bar)`.
@@ -35,37 +32,14 @@ pub struct Solid<'a> {
     /// Region of each point; empty if all points are in region 0.
     pub region: &'a [u16],
     /// Projection of the volume change.
-    pub dilation: Dilation<'a>,
-}
-
-/// First derivatives of the energy.
-pub(crate) struct Internal {
-    /// `w P` per point (3, 3), J; nodal forces are `sum_q (w P) grad N`.
-    pub stress: Vec<Matrix3>,
-    /// `w (J - theta)` per point, m^3, if there is a pressure field. The residual of a pressure parameter is
-    /// the sum of this misfit over the points, times the parameter's shape function.
-    pub misfit: Vec<f64>,
-    /// Strain energy, J; with a pressure field, the value of the saddle-point functional.
-    pub energy: f64,
-    /// Index of the quadrature point with the smallest `J`, and this `J`.
-    pub smallest: (usize, f64),
-}
-
-/// Second derivatives of the energy.
-pub(crate) struct Hessian {
-    /// Per point (9, 9), J: `w d2/dF2` including all terms local to the point.
-    pub point: Vec<Tangent>,
-    /// Per group: the rows of `b n^T + n b^T`.
-    pub groups: Vec<GroupHessian>,
-    /// Per point with a pressure field: `w d2/(dF dp)` (3, 3), m^3, and `-w d2/dp2`, m^3/Pa.
-    pub pressure: Vec<(Matrix3, f64)>,
+    pub dilation: SolidDilation<'a>,
 }
 
 /// Displacement gradient and `J - 1` of each point.
 pub(super) struct Kinematics {
     pub H: Vec<Matrix3>,
     pub j_minus_1: Vec<f64>,
-    smallest: (usize, f64),
+    pub smallest: (usize, f64),
 }
 
 impl Solid<'_> {
@@ -82,14 +56,14 @@ impl Solid<'_> {
     /// Number of pressure parameters.
     pub(crate) fn pressure_count(&self) -> usize {
         match self.dilation {
-            Dilation::Mixed(rows) => rows.node_count(),
+            SolidDilation::Mixed(rows) => rows.node_count(),
             _ => 0,
         }
     }
 
     pub(crate) fn pairs(&self) -> Option<Pairs> {
         match self.dilation {
-            Dilation::Groups(groups) => Some(Pairs::new(groups, self.volume.rows())),
+            SolidDilation::Groups(groups) => Some(Pairs::new(groups, self.volume.rows())),
             _ => None,
         }
     }
@@ -148,98 +122,5 @@ impl Solid<'_> {
                 nodes.iter().zip(values).map(|(&m, v)| v * p[m as usize]).sum()
             })
             .collect()
-    }
-
-    /// Computes energy and stresses at nodal parameters `u` (m) and pressures `p` (Pa).
-    pub(crate) fn internal(
-        &self,
-        pairs: Option<&Pairs>,
-        u: &[Vector3],
-        p: &[f64],
-    ) -> Result<Internal, StaticError> {
-        let kinematics = self.kinematics(u)?;
-        let Kinematics { H, j_minus_1, smallest } = &kinematics;
-        let weights = self.volume.weights();
-        let points = 0..weights.len();
-        let mut misfit = Vec::new();
-        let (stress, energy): (Vec<Matrix3>, Vec<f64>) = match self.dilation {
-            Dilation::Standard => points
-                .into_par_iter()
-                .with_min_len(128)
-                .map(|q| {
-                    let law = self.law(q);
-                    (law.stress(&H[q]) * weights[q], law.energy(&H[q]) * weights[q])
-                })
-                .unzip(),
-            Dilation::Groups(groups) => {
-                Shared::new(self, groups, pairs.expect("groups have pairs"), &kinematics)?.stress()
-            }
-            Dilation::Mixed(rows) => {
-                let p = self.pressures(rows, p);
-                let each: Vec<(Matrix3, f64, f64)> = points
-                    .into_par_iter()
-                    .with_min_len(64)
-                    .map(|q| {
-                        let law = self.law(q);
-                        let theta = self.mixed_dilation(q, &H[q], j_minus_1[q], p[q])?;
-                        let split = Split::new(law, &H[q], j_minus_1[q], theta);
-                        let cof = cofactor(law.is_small_strain(), &H[q]);
-                        let P = split.first(law).by_F + cof * p[q];
-                        let gap = j_minus_1[q] - theta;
-                        Ok((P * weights[q], (split.energy(law) + p[q] * gap) * weights[q], gap * weights[q]))
-                    })
-                    .collect::<Result<_, StaticError>>()?;
-                misfit = each.iter().map(|e| e.2).collect();
-                each.into_iter().map(|e| (e.0, e.1)).unzip()
-            }
-        };
-        Ok(Internal { stress, misfit, energy: energy.iter().sum(), smallest: *smallest })
-    }
-
-    /// Computes second derivatives at nodal parameters `u` (m) and pressures `p` (Pa).
-    pub(crate) fn hessian(
-        &self,
-        pairs: Option<&Pairs>,
-        u: &[Vector3],
-        p: &[f64],
-    ) -> Result<Hessian, StaticError> {
-        let kinematics = self.kinematics(u)?;
-        let Kinematics { H, j_minus_1, .. } = &kinematics;
-        let weights = self.volume.weights();
-        let points = (0..weights.len()).into_par_iter().with_min_len(64);
-        let none = (Vec::new(), Vec::new());
-        let (point, groups, pressure) = match self.dilation {
-            Dilation::Standard => {
-                let point = points.map(|q| self.law(q).tangent(&H[q]) * weights[q]).collect();
-                (point, none.0, none.1)
-            }
-            Dilation::Groups(groups) => {
-                let pairs = pairs.expect("groups have pairs");
-                let (point, groups) = Shared::new(self, groups, pairs, &kinematics)?.hessian();
-                (point, groups, none.1)
-            }
-            Dilation::Mixed(rows) => {
-                let p = self.pressures(rows, p);
-                let each: Vec<(Tangent, (Matrix3, f64))> = points
-                    .map(|q| {
-                        let law = self.law(q);
-                        let theta = self.mixed_dilation(q, &H[q], j_minus_1[q], p[q])?;
-                        let (_, second) = Split::new(law, &H[q], j_minus_1[q], theta).second(law);
-                        let by_p = second.by_F_theta / second.by_theta_theta;
-                        // theta follows F at constant p: this is the Schur complement of the local
-                        // elimination.
-                        let v = super::split::flat(&second.by_F_theta);
-                        let mut D = second.by_FF - v * v.transpose() / second.by_theta_theta;
-                        let small = law.is_small_strain();
-                        add_dilation_hessian(small, &H[q], p[q], &mut D);
-                        let cof = cofactor(small, &H[q]);
-                        Ok((D * weights[q], ((by_p + cof) * weights[q], weights[q] / second.by_theta_theta)))
-                    })
-                    .collect::<Result<_, StaticError>>()?;
-                let (point, pressure) = each.into_iter().unzip();
-                (point, none.0, pressure)
-            }
-        };
-        Ok(Hessian { point, groups, pressure })
     }
 }

@@ -130,7 +130,9 @@ impl Split {
         let FAF = Y.dot(&self.F_bar);
         // At small strain F_bar is constant, so the terms due to its change vanish.
         let (P_term, s_term) = if self.small_strain { (Matrix3::zeros(), 0.0) } else { (P, s) };
-        let (c, T, theta) = (self.scale, &self.T, self.theta);
+        let c = self.scale;
+        let T = &self.T;
+        let theta = self.theta;
         let Z = (Y + P_term) * (c / 3.0);
         let (t, z) = (flat(T), flat(&Z));
         let mut by_FF =

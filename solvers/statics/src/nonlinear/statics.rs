@@ -1,47 +1,13 @@
 //! Quasi-static loading: load steps with cut-back and regrowth, each solved by Newton's method.
 
-use contact::{ContactCounts, ContactHistory, ContactSurface, DrivenTool, ToolState};
-use shape::SurfaceRows;
-use shape::{FixedDof, Point3, Vector3};
+use contact::{ContactCounts, ContactHistory};
+use shape::Vector3;
 
 use super::error::StaticError;
-use super::newton::{Descent, Iteration, Newton, NewtonParams, State, near, shortest_travel};
-use super::solid::Solid;
+use super::newton::{Descent, Newton, NewtonParams, State, near, shortest_travel};
+use super::problem::StaticProblem;
+use super::step::{StaticWork, Step};
 use super::stepper::Stepper;
-use crate::Load;
-
-/// A surface constrained by a penalty, for bases whose parameters are not displacements.
-#[derive(Clone, Debug)]
-pub struct PenaltySurface<'a> {
-    /// Shape values and weights at the surface points.
-    pub surface: &'a SurfaceRows,
-    /// Constrained axes x, y, z.
-    pub axes: [bool; 3],
-    /// Prescribed displacement at each point at the end of the loading, m.
-    pub values: Vec<Vector3>,
-    /// Penalty, Pa/m.
-    pub beta: f64,
-}
-
-/// A body with loads, supports and tools. Loads are dead loads (per reference area or volume). Loads,
-/// prescribed displacements and drives grow in proportion to the time, 0 to 1.
-#[derive(Clone, Debug)]
-pub struct StaticProblem<'a> {
-    /// Reference positions, m.
-    pub nodes: &'a [Point3],
-    /// The body.
-    pub solid: Solid<'a>,
-    /// Loads, which are summed.
-    pub loads: &'a [Load<'a>],
-    /// Prescribed nodal parameters.
-    pub fixed: &'a [FixedDof],
-    /// Surfaces constrained by penalty.
-    pub penalties: &'a [PenaltySurface<'a>],
-    /// Surface on which tools may touch the body.
-    pub contact: Option<&'a ContactSurface<'a>>,
-    /// The tools.
-    pub tools: &'a [DrivenTool<'a>],
-}
 
 /// Parameters of load stepping.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -60,56 +26,6 @@ pub struct StaticParams {
     /// sought. Steps with an indefinite tangent are halved down to this fraction or to twice the smallest
     /// step. Without this search such a point is noticed only if a step ends beyond it.
     pub limit_within: Option<f64>,
-}
-
-/// A converged step.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Step {
-    /// Load fraction, 0 to 1.
-    pub time: f64,
-    /// Whether results are requested at the end of this step (a multiple of `1 / steps`).
-    pub wanted: bool,
-    /// Newton iterations of the step.
-    pub iterations: Vec<Iteration>,
-    /// Whether the body gave way in this step, as in snap-through: there was no equilibrium nearby, so the
-    /// solver followed the energy downhill with an indefinite tangent, further than the Newton step. In a
-    /// search for a limit point the flag is also set if the nearest equilibrium was unstable and the solver
-    /// continued to a stable equilibrium.
-    pub gave_way: bool,
-    /// Whether the step ends in a stable equilibrium: the last tangent (with friction, its symmetric part)
-    /// was positive definite. An unstable equilibrium lies beyond a limit or bifurcation point, and the body
-    /// would leave it by itself.
-    pub stable: bool,
-    /// States of the tools.
-    pub tools: Vec<ToolState>,
-    /// Strain energy, J.
-    pub energy: f64,
-    /// Smallest J of all quadrature points.
-    pub smallest: f64,
-}
-
-impl Step {
-    /// Whether the step took so few iterations that the next step may be longer.
-    pub(crate) fn is_quick(&self) -> bool {
-        self.iterations.len() <= 6
-    }
-}
-
-/// Counters of a static solution, including failed steps and discarded trials.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct StaticWork {
-    /// Number of assembled tangents: one per iteration.
-    pub assemblies: u64,
-    /// Number of numeric factorisations, more than assemblies if tangents are not definite.
-    pub factorisations: u64,
-    /// Number of linear systems solved: one per iteration. With a pressure field, every trial whose residual
-    /// did not fall adds one.
-    pub solves: u64,
-    /// Number of iterations of the linear solver, with a factor kept from another tangent or with sliding
-    /// friction.
-    pub inner: u64,
-    /// Number of force evaluations, one per trial state.
-    pub forces: u64,
 }
 
 /// Result of a static solution up to its end, with the reason of an early end.
@@ -174,11 +90,13 @@ pub fn solve_static(
     // At least a step that can still be halved once: a step that cannot be halved has to accept any
     // equilibrium.
     let finest = 2.0 * stepper.smallest;
-    let (mut within, mut near_limit) = (params.limit_within.map(|within| within.max(finest)), false);
+    let mut within = params.limit_within.map(|within| within.max(finest));
+    let mut near_limit = false;
     while let Some(attempt) = stepper.attempt() {
         // The displacement so far gives the best guess. Without a converged step, or if the guess inverts a
         // point, the last state is the guess.
-        let (guess, rounds) = (before.as_ref(), params.augmentations);
+        let guess = before.as_ref();
+        let rounds = params.augmentations;
         let mut to = |descent| newton.find(&state, guess, attempt.time, rounds, descent);
         let reached = if within.is_some_and(|within| attempt.length > within) {
             to(Descent::Smooth)
@@ -218,7 +136,9 @@ pub fn solve_static(
             }
         }
     }
-    let (counts, work, cut_back) = (newton.counts(), newton.work(), stepper.cut_back);
+    let counts = newton.counts();
+    let work = newton.work();
+    let cut_back = stepper.cut_back;
     if failure.is_none() && !problem.tools.is_empty() {
         newton.check_rigid(&state)?;
     }

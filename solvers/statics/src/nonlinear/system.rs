@@ -1,18 +1,16 @@
 #![allow(non_snake_case)] // K, D, M as in the formulas
 //! Linear system of one Newton iteration: symbolic structure computed once, values at every iteration.
 
-use algebra::Stiffness;
-use algebra::Symmetric;
-use algebra::{BlockPattern, Incidence};
+use algebra::{BlockPattern, Incidence, Stiffness, Symmetric};
 use lanes::LanePath;
 use rayon::prelude::*;
 use shape::{Matrix3, Vector3};
 
+use super::energy::{Hessian, Internal};
 use super::groups::Pairs;
 use super::lanes::{BlockSum, PointTangent, Vector4, group_products, point_products};
-use super::solid::{Hessian, Internal};
+use super::solid::{Solid, SolidDilation};
 use super::sorted_rows::Sorted;
-use super::{Dilation, Solid};
 
 /// Index that marks a constrained degree of freedom among the unknowns.
 pub(crate) const CONSTRAINED: usize = usize::MAX;
@@ -115,7 +113,7 @@ impl<'a> System<'a> {
         let groups = pairs.as_ref().map(Pairs::connectivity);
         let groups_of = groups.map(|groups| Incidence::new(nodes, groups, 0..groups.offsets.len() - 1));
         let mut pressure_of = vec![Vec::new(); solid.pressure_count()];
-        if let Dilation::Mixed(pressure) = solid.dilation {
+        if let SolidDilation::Mixed(pressure) = solid.dilation {
             for q in 0..pressure.len() {
                 let (nodes, values) = pressure.row(q);
                 nodes
@@ -194,7 +192,8 @@ impl<'a> System<'a> {
         let gather = |seen: &[(u32, u32)], slot: &[u32], sums: &mut [BlockSum]| {
             point_products(path, points, &tangents, seen, slot, sums);
         };
-        let (all, per_tile) = (0..points.len(), TILE * points.len() / points.nodes.len().max(1) + 1);
+        let all = 0..points.len();
+        let per_tile = TILE * points.len() / points.nodes.len().max(1) + 1;
         stiffness.by_tiles(points_of, &[all], per_tile, BlockSum::ZERO, gather, |_, i, slot, sums, row| {
             if let Some((nodes, of)) = groups {
                 group_products(path, nodes, &hessian.groups, of.of(i), slot, sums);
@@ -224,7 +223,7 @@ impl<'a> System<'a> {
         let nodes = self.solid.node_count();
         let mut sum = vec![Vector3::zeros(); nodes];
         let mut pressure_sum = vec![0.0; self.pressure_of.len()];
-        let Dilation::Mixed(pressure) = self.solid.dilation else { return matrix };
+        let SolidDilation::Mixed(pressure) = self.solid.dilation else { return matrix };
         for (m, seen) in self.pressure_of.iter().enumerate() {
             let (mut touched, mut partners) = (Vec::new(), Vec::new());
             for &(q, v) in seen {

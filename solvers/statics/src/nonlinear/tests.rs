@@ -5,12 +5,11 @@ use fem::VolumeRule;
 use geometry::CellKind;
 use geometry::generate::{Jitter, box_mesh};
 use material::{Law, Material};
-use shape::{DilationGroups, Rows, VolumeRows};
-use shape::{Matrix3, Point3, Vector3};
+use shape::{DilationGroups, Matrix3, Point3, Rows, Vector3, VolumeRows};
 
 use super::lanes::GroupRow;
 use super::shared::Shared;
-use super::solid::{Dilation, Solid};
+use super::solid::{Solid, SolidDilation};
 use super::split::{Split, dilation, flat};
 use super::system::System;
 
@@ -32,7 +31,8 @@ fn split_derivatives_are_those_of_its_energy() {
     for law in laws() {
         let small = law.is_small_strain();
         let at = |H: &Matrix3, theta_minus_1: f64| Split::new(&law, H, dilation(small, H), theta_minus_1);
-        let (H, theta_minus_1) = (gradient(), 0.27);
+        let H = gradient();
+        let theta_minus_1 = 0.27;
         let (first, second) = at(&H, theta_minus_1).second(&law);
         let scale = YOUNG;
         let by_theta =
@@ -150,10 +150,10 @@ fn field(count: usize, size: f64) -> Vec<Vector3> {
 fn forces_and_tangent_are_derivatives_of_the_energy() {
     let case = case();
     let projections = [
-        ("standard", Dilation::Standard),
-        ("element", Dilation::Groups(&case.element)),
-        ("nodal", Dilation::Groups(&case.nodal)),
-        ("mixed", Dilation::Mixed(&case.pressure)),
+        ("standard", SolidDilation::Standard),
+        ("element", SolidDilation::Groups(&case.element)),
+        ("nodal", SolidDilation::Groups(&case.nodal)),
+        ("mixed", SolidDilation::Mixed(&case.pressure)),
     ];
     for law in laws() {
         for (name, dilation) in projections {
@@ -216,7 +216,8 @@ fn tangent_is_the_weak_form() {
     let case = case();
     for law in laws() {
         let laws = [law];
-        let solid = Solid { volume: &case.volume, laws: &laws, region: &[], dilation: Dilation::Standard };
+        let solid =
+            Solid { volume: &case.volume, laws: &laws, region: &[], dilation: SolidDilation::Standard };
         let nodes = solid.node_count();
         let u = field(nodes, 0.03);
         let mut system = System::new(solid, &vec![false; 3 * nodes], Vec::new());
@@ -243,19 +244,22 @@ fn laws_that_part_give_what_pairs_give() {
     for law in laws() {
         let laws = [law];
         for groups in [&case.element, &case.nodal] {
-            let dilation = Dilation::Groups(groups);
+            let dilation = SolidDilation::Groups(groups);
             let solid = Solid { volume: &case.volume, laws: &laws, region: &[], dilation };
-            let (pairs, kinematics) = (solid.pairs().unwrap(), solid.kinematics(&u).unwrap());
+            let pairs = solid.pairs().unwrap();
+            let kinematics = solid.kinematics(&u).unwrap();
             let shared = || Shared::new(&solid, groups, &pairs, &kinematics).unwrap();
             let close = |a: f64, b: f64, what: &str| {
                 assert!((a - b).abs() < 1e-12 * YOUNG, "{} {what}: {a} {b}", laws[0].name());
             };
-            let ((P, energy), (P_plain, energy_plain)) = (shared().stress(), shared().plain().stress());
+            let (P, energy) = shared().stress();
+            let (P_plain, energy_plain) = shared().plain().stress();
             for q in 0..P.len() {
                 close(energy[q], energy_plain[q], "energy");
                 close((P[q] - P_plain[q]).norm(), 0.0, "stress");
             }
-            let ((D, by_group), (D_plain, plain_by_group)) = (shared().hessian(), shared().plain().hessian());
+            let (D, by_group) = shared().hessian();
+            let (D_plain, plain_by_group) = shared().plain().hessian();
             for q in 0..D.len() {
                 close((D[q] - D_plain[q]).norm(), 0.0, "tangent");
             }
@@ -284,7 +288,8 @@ fn a_group_turned_inside_out_is_refused_with_its_volume_change() {
     let mut shares = vec![2.0, -1.0, -1.0, 2.0];
     shares.resize(count + 2, 1.0);
     let groups = DilationGroups::new(count, vec![0, 2, count + 2], points, shares).unwrap();
-    let solid = Solid { volume: &case.volume, laws: &law, region: &[], dilation: Dilation::Groups(&groups) };
+    let solid =
+        Solid { volume: &case.volume, laws: &law, region: &[], dilation: SolidDilation::Groups(&groups) };
     let mut j_minus_1 = vec![0.0; count];
     j_minus_1[0] = -0.8;
     let weights = case.volume.weights();

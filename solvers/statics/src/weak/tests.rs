@@ -9,7 +9,7 @@ use material::LinearElastic;
 use shape::{DilationGroups, FluxRows, Matrix3, Point3, TraceRows, Vector3, VolumeRows};
 
 use super::{Weak, WeakSupport, WeakTable};
-use crate::Body;
+use crate::body::LinearBody;
 use crate::dilation::Projected;
 
 struct Block {
@@ -31,9 +31,9 @@ impl Block {
         Block { mesh, volume, flux, laws: [LinearElastic::new(20e3, 0.4).unwrap()] }
     }
 
-    fn body<'a>(&'a self, dilation: Option<&'a DilationGroups>) -> Body<'a> {
+    fn body<'a>(&'a self, dilation: Option<&'a DilationGroups>) -> LinearBody<'a> {
         let nodes = self.mesh.points();
-        Body { nodes, volume: &self.volume, materials: &self.laws, region: &[], dilation }
+        LinearBody { nodes, volume: &self.volume, materials: &self.laws, region: &[], dilation }
     }
 
     fn support<'a>(&'a self, axes: [bool; 3], method: Weak, trace: Option<&'a TraceRows>) -> WeakSupport<'a> {
@@ -84,7 +84,8 @@ fn nodal(mesh: &Mesh, of: impl Fn(&Point3) -> Vector3) -> Vec<Vector3> {
 #[test]
 fn matrix_and_right_hand_side_make_the_residual() {
     let block = Block::new();
-    let (trace, groups) = (block.trace(), DilationGroups::nodal(&block.volume).unwrap());
+    let trace = block.trace();
+    let groups = DilationGroups::nodal(&block.volume).unwrap();
     let u = nodal(&block.mesh, |x| affine(x) + Vector3::new(x.y * x.z, x.x * x.x, -x.x * x.y) * 0.3);
     let (nitsche, penalty) = (Weak::Nitsche { gamma: 8.0 }, Weak::Penalty { factor: 50.0 });
     let cases = [(nitsche, None, None), (nitsche, Some(&trace), Some(&groups)), (penalty, None, None)];
@@ -107,7 +108,8 @@ fn matrix_and_right_hand_side_make_the_residual() {
 #[test]
 fn the_prescribed_field_leaves_its_traction() {
     let block = Block::new();
-    let (body, u) = (block.body(None), nodal(&block.mesh, affine));
+    let body = block.body(None);
+    let u = nodal(&block.mesh, affine);
     let stress = block.laws[0].stress(&gradient());
     for axes in [[true; 3], [false, true, true]] {
         let mut traction = vec![Vector3::zeros(); u.len()];
@@ -129,7 +131,8 @@ fn the_prescribed_field_leaves_its_traction() {
 #[test]
 fn consistency_is_all_that_parts_nitsche_from_a_penalty() {
     let block = Block::new();
-    let (body, u) = (block.body(None), nodal(&block.mesh, |x| affine(x) * (1.0 + 40.0 * x.y)));
+    let body = block.body(None);
+    let u = nodal(&block.mesh, |x| affine(x) * (1.0 + 40.0 * x.y));
     let law = &block.laws[0];
     let factor = 8.0 * (law.lambda() + 2.0 * law.mu()) / law.young();
     let forces = |method| {

@@ -3,9 +3,12 @@
 use contact::Drive;
 use shape::Vector3;
 
-use super::{Descent, Newton, State};
-use crate::SolveError;
-use crate::nonlinear::{StaticError, Step};
+use super::Newton;
+use super::policy::Descent;
+use super::state::State;
+use crate::error::SolveError;
+use crate::nonlinear::error::StaticError;
+use crate::nonlinear::step::Step;
 
 /// Number of strides under displacement control after which the approach is given up: a tool that slips off
 /// never reaches its force. Approaches of the kidney between jaws take 10 to 13.
@@ -91,7 +94,9 @@ impl Newton<'_> {
         // Displacement of the nodes per unit stride, once the tools touch: the guess for the next stride.
         let mut per_stride: Option<Vec<Vector3>> = None;
         let mut before = vec![0.0; tools.len()];
-        let (mut stride, mut touches, mut iterations) = (1.0, false, Vec::new());
+        let mut stride = 1.0;
+        let mut touches = false;
+        let mut iterations = Vec::new();
         for _ in 0..STRIDES {
             let forced = !self.equations.displacement_driven.contains(&true);
             let mut guess = state.clone();

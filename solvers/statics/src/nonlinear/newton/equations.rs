@@ -5,19 +5,25 @@ use contact::{ContactCounts, Contacts};
 use material::Material as _;
 use shape::Vector3;
 
-use super::tangent::Direction;
-use super::{State, work};
+use super::direction::Direction;
+use super::state::State;
 use crate::body::check_len;
 use crate::load::nodal_forces;
+use crate::nonlinear::energy::Internal;
 use crate::nonlinear::error::{StaticError, Worst};
 use crate::nonlinear::in_time::{Ended, Scales, TimeTerms};
-use crate::nonlinear::solid::{Internal, Solid};
-use crate::nonlinear::statics::StaticProblem;
+use crate::nonlinear::problem::StaticProblem;
+use crate::nonlinear::solid::Solid;
 use crate::nonlinear::system::{SurfaceTable, System};
 use crate::support::prescribed;
 
 /// Rounding error of a nodal force, relative to the force due to the node's own displacement.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
+
+/// Returns the work `x . r`.
+pub(super) fn work(x: &[f64], r: &[f64]) -> f64 {
+    x.iter().zip(r).map(|(x, r)| x * r).sum()
+}
 
 /// Returns `sum of w (lambda + 2 mu) |grad N|^2` for each node, N/m.
 fn stiffness(solid: &Solid) -> Vec<f64> {

@@ -7,11 +7,11 @@ use algebra::{
     Symmetric, Unsymmetric,
 };
 
+use super::direction::{Direction, Factored};
 use super::policy::{Descent, NewtonParams, Policy};
-use super::tangent::{Direction, Factored};
-use crate::SolveError;
-use crate::nonlinear::StaticError;
-use crate::nonlinear::statics::StaticWork;
+use crate::error::SolveError;
+use crate::nonlinear::error::StaticError;
+use crate::nonlinear::step::StaticWork;
 use crate::nonlinear::system::System;
 
 /// Ratio of the multiplications of a factorisation to those of a solution that pays for one iteration with a
@@ -189,7 +189,8 @@ impl Factors {
     /// Factors the unshifted matrix. A tangent that follows an indefinite tangent is rarely definite, so
     /// `L D L^T` is then used at once.
     fn as_it_is(&mut self, policy: &Policy, matrix: &Symmetric) -> Result<(Arc<Factor>, Kind), StaticError> {
-        let (kind, pressures) = (matrix.kind(), matrix.dim() - matrix.multipliers);
+        let kind = matrix.kind();
+        let pressures = matrix.dim() - matrix.multipliers;
         let at_once =
             kind == Kind::Definite && self.doubtful && self.dear() && policy.descent != Descent::Smooth;
         if !at_once {
@@ -224,7 +225,8 @@ impl Factors {
         policy: &Policy,
         matrix: &mut Symmetric,
     ) -> Result<(Arc<Factor>, Kind), StaticError> {
-        let (kind, pressures) = (matrix.kind(), matrix.dim() - matrix.multipliers);
+        let kind = matrix.kind();
+        let pressures = matrix.dim() - matrix.multipliers;
         let diagonal: Vec<f64> = (0..matrix.dim()).map(|j| matrix.diagonal(j)).collect();
         let searches = kind == Kind::Definite && self.keeps(policy);
         let mut known = -1.0;
@@ -272,7 +274,8 @@ impl Factors {
     /// Solves with the assembled matrix, whose pressures are scaled.
     pub fn solve(&mut self, factored: &Factored, system: &System, b: &mut [f64]) -> Result<(), SolveError> {
         self.work.solves += 1;
-        let (scale, pressures) = (system.pressure_scale, system.free..system.dim());
+        let scale = system.pressure_scale;
+        let pressures = system.free..system.dim();
         b[pressures.clone()].iter_mut().for_each(|p| *p *= scale);
         self.work.inner += factored.solve(b, self.forcing)? as u64;
         b[pressures].iter_mut().for_each(|p| *p *= scale);

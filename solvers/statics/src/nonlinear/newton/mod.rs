@@ -1,5 +1,6 @@
 //! A load step: Newton's method with line search on the balance of internal, external and contact forces.
 
+mod direction;
 mod drive;
 mod equations;
 mod factors;
@@ -16,13 +17,14 @@ mod tools;
 use contact::{ContactCounts, Drive, ToolState};
 use shape::Vector3;
 
+use self::direction::Direction;
 use self::equations::{Balance, Equations};
 use self::factors::Factors;
 use self::policy::{Policy, chord_suffices};
-use self::tangent::Direction;
 use crate::nonlinear::error::StaticError;
 use crate::nonlinear::in_time::{Ended, TimeTerms};
-use crate::nonlinear::statics::{StaticProblem, StaticWork, Step};
+use crate::nonlinear::problem::StaticProblem;
+use crate::nonlinear::step::{StaticWork, Step};
 use crate::nonlinear::system::SurfaceTable;
 
 pub(crate) use self::policy::{Descent, near};
@@ -42,11 +44,6 @@ pub(crate) struct Newton<'a> {
     reaction: Vec<Vector3>,
     /// Norm of the forces at the end of the last step, N.
     reached: f64,
-}
-
-/// Returns the work `x . r`.
-fn work(x: &[f64], r: &[f64]) -> f64 {
-    x.iter().zip(r).map(|(x, r)| x * r).sum()
 }
 
 impl<'a> Newton<'a> {
@@ -171,7 +168,8 @@ impl<'a> Newton<'a> {
         }
         if let Some(surface) = self.equations.problem.contact {
             for (k, (history, contacts)) in state.history.iter_mut().zip(&balance.contacts).enumerate() {
-                let (tool, closure) = (self.equations.problem.tools[k].tool, state.closures[k]);
+                let tool = self.equations.problem.tools[k].tool;
+                let closure = state.closures[k];
                 let side = contacts.iter().try_for_each(|c| surface.check_side(c, &state.u));
                 side.map_err(|cause| StaticError::Contact { tool: k, cause })?;
                 history.commit_all(contacts.as_ref(), surface, tool, closure, &state.u);
@@ -225,7 +223,8 @@ impl<'a> Newton<'a> {
         time: f64,
         log: &mut Vec<Iteration>,
     ) -> Result<Balance, StaticError> {
-        let (first, tolerance) = (log.len(), self.policy.params.tolerance);
+        let first = log.len();
+        let tolerance = self.policy.params.tolerance;
         let mut first_energy = 0.0f64;
         let mut best = (0, f64::INFINITY);
         let mut last = self.factors.kept.take().filter(|_| self.policy.descent == Descent::Nearest);

@@ -1,7 +1,7 @@
 //! Rules of Newton's method: its parameters, its goal when the tangent is not definite, and the iterations at
 //! which it gives up or reuses the last tangent.
 
-use crate::nonlinear::StaticError;
+use crate::nonlinear::error::StaticError;
 
 /// Parameters of Newton's method.
 #[derive(Clone, Copy, Debug, PartialEq)]

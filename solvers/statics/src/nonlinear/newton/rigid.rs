@@ -2,7 +2,8 @@
 
 use algebra::Connectivity;
 
-use super::{Newton, State};
+use super::Newton;
+use super::state::State;
 use crate::nonlinear::error::StaticError;
 use crate::rigid::{add_prescribed, add_surface, check_rows};
 

@@ -3,7 +3,7 @@
 use contact::ContactHistory as History;
 use shape::Vector3;
 
-use crate::nonlinear::statics::StaticProblem;
+use crate::nonlinear::problem::StaticProblem;
 
 /// State at the start or end of a load step.
 #[derive(Clone, Debug)]

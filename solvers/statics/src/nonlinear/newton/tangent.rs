@@ -1,58 +1,16 @@
 //! The tangent of an iteration: assembly, factorisation, and the resulting step.
 
-use algebra::{AlgebraError, Border, Factorization, Symmetric, Unsymmetric};
+use algebra::{Border, Symmetric};
 use shape::{Matrix3, Vector3};
 
+use super::Newton;
+use super::direction::Direction;
 use super::equations::{Balance, Equations};
 use super::factors::Skew;
-use super::{Descent, Newton, State};
-use crate::SolveError;
-use crate::nonlinear::StaticError;
-
-/// A factored tangent over the free unknowns and the displacements of the tools that have a border.
-pub(super) enum Factored {
-    Symmetric(Factorization),
-    Unsymmetric(Unsymmetric),
-}
-
-/// A Newton step with the factor that gave it.
-pub(super) struct Direction {
-    /// Increments of the free unknowns.
-    pub step: Vec<f64>,
-    /// Increments of the displacements of force-driven tools.
-    pub closures: Vec<f64>,
-    /// Whether the tangent was positive definite, force-driven tools included.
-    pub definite: bool,
-    /// Whether `definite` was found with a factor of this very tangent and beyond rounding.
-    pub proven: bool,
-    pub factored: Factored,
-    /// Tools whose borders the factor contains.
-    tools: Vec<usize>,
-}
-
-impl Factored {
-    /// Whether force-driven tools leave the tangent definite, provided it is definite with these tools
-    /// constrained.
-    fn stable(&self) -> bool {
-        match self {
-            Factored::Symmetric(_) => true,
-            Factored::Unsymmetric(f) => f.stable(),
-        }
-    }
-
-    /// Whether a factor in single precision proves the tangent to be definite.
-    fn is_clear(&self) -> bool {
-        matches!(self, Factored::Unsymmetric(f) if f.is_clear())
-    }
-
-    /// Solves in place and returns the number of iterations.
-    pub fn solve(&self, b: &mut [f64], goal: f64) -> Result<usize, AlgebraError> {
-        match self {
-            Factored::Symmetric(f) => f.solve(b).map(|_| 0),
-            Factored::Unsymmetric(f) => f.solve(b, goal),
-        }
-    }
-}
+use super::policy::Descent;
+use super::state::State;
+use crate::error::SolveError;
+use crate::nonlinear::error::StaticError;
 
 impl Equations<'_> {
     /// Returns the stiffness of every surface point, N/m, by surface: `-w dt/dx` with the weight `w`, the
@@ -127,7 +85,8 @@ impl Newton<'_> {
         prescribed_move: Option<&[Vector3]>,
     ) -> Result<Direction, StaticError> {
         let (matrix, skew, right) = self.equations.linearise(state, balance, prescribed_move)?;
-        let (policy, factors) = (&self.policy, &mut self.factors);
+        let policy = &self.policy;
+        let factors = &mut self.factors;
         factors.work.assemblies += 1;
         let (tools, borders): (Vec<usize>, Vec<Border>) = self.equations.borders(balance).into_iter().unzip();
         let (step, closures) = (Vec::new(), Vec::new());

@@ -3,14 +3,14 @@
 use fem::VolumeRule;
 use geometry::CellKind;
 use geometry::generate::box_mesh;
-use material::Law;
-use material::SaintVenantKirchhoff;
+use material::{Law, SaintVenantKirchhoff};
 use shape::{FixedDof, Point3, Vector3};
 
-use super::policy::patience;
-use super::{Descent, Iteration, Newton, NewtonParams, State};
-use crate::nonlinear::solid::{Dilation, Solid};
-use crate::nonlinear::statics::StaticProblem;
+use super::Newton;
+use super::policy::{Descent, Iteration, NewtonParams, patience};
+use super::state::State;
+use crate::nonlinear::problem::StaticProblem;
+use crate::nonlinear::solid::{Solid, SolidDilation};
 
 /// A column of 20 x 1 x 1 with both ends constrained except that one end may sway, compressed by 1 %. This is
 /// five times the buckling strain `pi^2 / 12 (1 / 20)^2`: the straight column is in equilibrium, but the
@@ -35,7 +35,7 @@ fn an_unstable_column_stays_straight_or_goes_down_the_energy() {
     let laws = [Law::SaintVenantKirchhoff(SaintVenantKirchhoff::new(20e3, 0.0).unwrap())];
     let problem = StaticProblem {
         nodes: mesh.points(),
-        solid: Solid { volume: &volume, laws: &laws, region: &[], dilation: Dilation::Standard },
+        solid: Solid { volume: &volume, laws: &laws, region: &[], dilation: SolidDilation::Standard },
         loads: &[],
         fixed: &fixed,
         penalties: &[],

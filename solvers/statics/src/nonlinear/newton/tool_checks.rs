@@ -2,9 +2,11 @@
 
 use contact::{ContactError, ContactSurface, Drive, Stand, Tool};
 
-use super::{Newton, State};
-use crate::nonlinear::StaticError;
-use crate::nonlinear::statics::{StaticProblem, Step};
+use super::Newton;
+use super::state::State;
+use crate::nonlinear::error::StaticError;
+use crate::nonlinear::problem::StaticProblem;
+use crate::nonlinear::step::Step;
 
 /// Fraction of the deepest penetration to which the travel of a tool in a step can always be reduced. At
 /// first touch nothing has moved yet, and the travel of the tool is its penetration.

@@ -5,8 +5,8 @@ use algebra::Border;
 use contact::Drive;
 use shape::Vector3;
 
-use super::State;
 use super::equations::{Balance, Equations};
+use super::state::State;
 
 impl Equations<'_> {
     /// Returns the missing force of each force-driven tool, N; 0 for a displacement-driven tool. The missing

@@ -1,7 +1,8 @@
 //! Longer steps past a limit point, at which the body gives way and the energy falls beyond the Newton step.
 
-use super::{Line, Secant};
-use crate::nonlinear::StaticError;
+use super::line::Line;
+use super::secant::Secant;
+use crate::nonlinear::error::StaticError;
 use crate::nonlinear::newton::equations::Balance;
 
 /// Largest multiple of a step.

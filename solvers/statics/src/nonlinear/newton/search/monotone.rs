@@ -4,8 +4,8 @@
 //! No energy falls along a step of the pressure's saddle point. The test is independent of the scales of
 //! force and volume.
 
-use super::{Line, REFINED, norm};
-use crate::nonlinear::StaticError;
+use super::line::{Line, REFINED, norm};
+use crate::nonlinear::error::StaticError;
 use crate::nonlinear::newton::equations::Balance;
 use crate::nonlinear::newton::factors::Factors;
 

@@ -1,7 +1,7 @@
 //! Steps that are cut at the zero of the work of the residual, found by the secant.
 
-use super::{Line, REFINED, Trial};
-use crate::nonlinear::StaticError;
+use super::line::{Line, REFINED, Trial};
+use crate::nonlinear::error::StaticError;
 use crate::nonlinear::newton::equations::Balance;
 
 /// Conditions under which the secant accepts a step.

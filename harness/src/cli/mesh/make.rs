@@ -1,0 +1,79 @@
+//! `tissuebench mesh make`: fills a closed surface with tetrahedra.
+
+use geometry::stuffing::{self, Stuffed, Stuffing};
+use geometry::{Surface, quality};
+
+use crate::cli::args::MakeArgs;
+use crate::cli::errors::{input, spare};
+use crate::cli::text::{digits, row};
+use crate::error::Failure;
+
+/// Relative difference between requested and actual node count above which the request is printed.
+const NEAR: f64 = 0.1;
+
+/// Fills a surface, writes the mesh and prints how closely it fits.
+pub fn make(args: &MakeArgs) -> Result<(), Failure> {
+    let MakeArgs { surface: file, unit, out, .. } = args;
+    let surface = mesh_files::read_surface(file, unit.metres).map_err(input)?;
+    let doublings = if args.uniform { 0 } else { args.coarser };
+    spare(out)?;
+    let (Stuffed { mesh, left_out }, spacing) = match (args.size, args.nodes) {
+        (Some(spacing), _) => {
+            (stuffing::stuff(&surface, Stuffing { spacing, doublings }).map_err(input)?, spacing)
+        }
+        (_, nodes) => {
+            let nodes = nodes.unwrap_or_default() as usize;
+            stuffing::stuff_with_nodes(&surface, nodes, doublings).map_err(input)?
+        }
+    };
+    mesh_files::write(&mesh, out, unit.metres).map_err(input)?;
+    println!("{}: {} nodes, {} cells", out.display(), mesh.points().len(), mesh.cell_count());
+    let length = |x: f64| format!("{} {}", digits(x / unit.metres), unit.name);
+    let inside = match doublings {
+        0 => String::new(),
+        doublings => format!(", up to {} times that inside", 1 << doublings),
+    };
+    row("surface", &described(&surface));
+    for (at, name) in surface.groups().names().iter().enumerate() {
+        let facets = mesh.group(name).map_or(0, <[_]>::len);
+        row(if at == 0 { "surfaces" } else { "" }, &format!("{name}: {facets} faces"));
+    }
+    if let Some(nodes) = args.nodes {
+        wanted(nodes, mesh.points().len());
+    }
+    row("spacing", &format!("{}{inside}", length(spacing)));
+    let fit = stuffing::fit(&surface, &mesh);
+    let (volume, of_surface) = (1e6 * fit.volume, 1e6 * fit.of_surface);
+    let off = 100.0 * (volume / of_surface - 1.0);
+    row("volume", &format!("{} cm^3, {off:+.2} % of the surface's {}", digits(volume), digits(of_surface)));
+    row(
+        "distance",
+        &format!(
+            "at most {} between mesh and surface (Hausdorff, at points of both)",
+            length(fit.hausdorff())
+        ),
+    );
+    let quality = quality::check(&mesh).map_err(input)?;
+    let (sharpest, bluntest) = (quality.min_dihedral.value, quality.max_dihedral.value);
+    row("angles", &format!("{sharpest:.1} to {bluntest:.1} degrees between two faces of a cell"));
+    if left_out > 0 {
+        row(
+            "left out",
+            &format!("{left_out} parts thinner than the cells; smaller cells would include these parts"),
+        );
+    }
+    Ok(())
+}
+
+/// Prints the requested number of nodes if the mesh differs from it.
+fn wanted(nodes: u32, made: usize) {
+    if (made as f64 / f64::from(nodes) - 1.0).abs() > NEAR {
+        row("wanted", &format!("{nodes} nodes; no tried cell size gives a closer number"));
+    }
+}
+
+fn described(surface: &Surface) -> String {
+    let triangles = surface.triangles().len();
+    let area = 1e4 * surface.area();
+    format!("{triangles} triangles, {} cm^2, closed", digits(area))
+}

@@ -1,0 +1,214 @@
+//! The runs of a study, with their scenes.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use cases::scene::{self, ErrorKind, Scene, Study};
+use records::Record;
+
+use super::args::VerifyArgs;
+use super::filters;
+use super::tasks::{Known, Task, list};
+use super::trials::RefusedScene;
+use crate::measure::Repeats;
+use crate::outcome::Watch;
+use crate::run::case_name;
+use crate::scenario::too_large;
+
+/// Repeats of the timed part in a study: the median of five short passes, or a single long pass.
+pub(super) const REPEATS: Repeats = Repeats { most: 5, seconds: 0.4 };
+/// Repeats in the quick tier, whose purpose is the checks: the median of three passes for runs below 20 ms.
+pub(super) const QUICK: Repeats = Repeats { most: 3, seconds: 0.05 };
+
+/// Study with its parsed scenes.
+pub struct StudyPlan {
+    pub(super) study: Study,
+    pub(super) scenes: Vec<(PathBuf, String, Scene)>,
+    /// Indices of the unmodified scenes, by path.
+    pub(super) as_they_are: BTreeMap<PathBuf, usize>,
+    /// Files of the cases, by case name.
+    pub(super) cases: BTreeMap<String, PathBuf>,
+    pub(super) tasks: Vec<Task>,
+    /// Axis values at which the scene is refused.
+    pub(super) refused: Vec<RefusedScene>,
+    /// Watch of the runs.
+    pub(super) watch: Option<Arc<Watch>>,
+}
+
+impl StudyPlan {
+    /// Reads the scenes of a study and lists its runs. The errors are those of all scenes.
+    pub fn new(study: Study) -> Result<StudyPlan, Vec<scene::SceneError>> {
+        StudyPlan::read(study, |_| true)
+    }
+
+    /// Reads only the scene of these run tables, and lists the runs that they request.
+    pub(crate) fn of_tables(study: Study, tables: &[usize]) -> Result<StudyPlan, Vec<scene::SceneError>> {
+        let first = tables.first().and_then(|&table| study.runs.get(table));
+        let scene = first.map(|run| run.scene.clone());
+        let mut plan = StudyPlan::read(study, |run| Some(&run.scene) == scene.as_ref())?;
+        plan.tasks.retain_mut(|task| {
+            task.runs.retain(|run| tables.contains(run));
+            !task.runs.is_empty()
+        });
+        Ok(plan)
+    }
+
+    /// Reads the scenes of the run tables for which `wanted` returns true.
+    fn read(study: Study, wanted: impl Fn(&scene::Run) -> bool) -> Result<StudyPlan, Vec<scene::SceneError>> {
+        let mut plan = StudyPlan {
+            study,
+            scenes: Vec::new(),
+            as_they_are: BTreeMap::new(),
+            cases: BTreeMap::new(),
+            tasks: Vec::new(),
+            refused: Vec::new(),
+            watch: None,
+        };
+        let mut errors = Vec::new();
+        let mut known = Known::default();
+        let runs = plan.study.runs.clone();
+        for (index, run) in runs.iter().enumerate().filter(|(_, run)| wanted(run)) {
+            let read = match &run.axis {
+                None => plan.scene(run).map(|at| vec![at]),
+                Some(axis) => plan.along(index, run, axis),
+            };
+            match read {
+                Ok(found) => {
+                    for at in found {
+                        list(&mut plan.tasks, &mut known, index, at, run, &plan.scenes[at].2);
+                    }
+                }
+                Err(bad) => errors.extend(bad),
+            }
+        }
+        if errors.is_empty() { Ok(plan) } else { Err(errors) }
+    }
+
+    /// Reads the unmodified scene of a run table.
+    fn read_scene(&self, run: &scene::Run) -> Result<Scene, Vec<scene::SceneError>> {
+        match self.study.scenes.get(&run.scene) {
+            Some(scene) => Ok(scene.clone()),
+            None => scene::load(&run.scene),
+        }
+    }
+
+    /// Index of a run table's unmodified scene, which is read if necessary.
+    fn scene(&mut self, run: &scene::Run) -> Result<usize, Vec<scene::SceneError>> {
+        if let Some(&at) = self.as_they_are.get(&run.scene) {
+            return Ok(at);
+        }
+        let at = self.add(&run.scene, self.read_scene(run)?)?;
+        self.as_they_are.insert(run.scene.clone(), at);
+        Ok(at)
+    }
+
+    fn add(&mut self, path: &Path, scene: Scene) -> Result<usize, Vec<scene::SceneError>> {
+        if !scene.unavailable().is_empty() {
+            return Err(scene.unavailable());
+        }
+        let other = self.cases.entry(case_name(&scene)).or_insert_with(|| path.into());
+        if other != path {
+            let problem = format!("is in a file with the same name as {}", other.display());
+            let help = "rename one of the files: results are stored under the names of scenes";
+            return Err(vec![scene.error(ErrorKind::Invalid, "title", &problem, Some(help))]);
+        }
+        let text = scene.text().to_string();
+        self.scenes.push((path.to_path_buf(), text, scene));
+        Ok(self.scenes.len() - 1)
+    }
+
+    /// Adds the scene at each value of an axis. A refused scene is an error only at the base value.
+    fn along(
+        &mut self,
+        index: usize,
+        run: &scene::Run,
+        axis: &scene::Axis,
+    ) -> Result<Vec<usize>, Vec<scene::SceneError>> {
+        let base = self.read_scene(run)?;
+        let mut found = Vec::new();
+        for &value in &axis.values {
+            match axis.at(&base, &run.methods, value) {
+                Ok(scene) => found.push(self.add(&run.scene, scene)?),
+                Err(bad) if value == axis.base => return Err(bad),
+                Err(bad) => {
+                    let reason = bad.iter().map(ToString::to_string).collect::<Vec<_>>().join("; ");
+                    self.refused.push(RefusedScene { run: index, value, reason });
+                }
+            }
+        }
+        Ok(found)
+    }
+
+    /// Keeps the runs that the arguments select.
+    pub fn select(&mut self, args: &VerifyArgs) {
+        let runs = &self.study.runs;
+        let scenes = &self.scenes;
+        self.tasks.retain_mut(|task| {
+            task.runs.retain(|&run| !args.quick || runs[run].quick);
+            let case = case_name(&scenes[task.scene].2);
+            let method = &task.method.id;
+            let contains = |text: &str| case.contains(text) || method.contains(text);
+            let tags = filters::tags(task, runs, &scenes[task.scene].2);
+            !task.runs.is_empty()
+                && args.filter.as_deref().is_none_or(contains)
+                && args.filters.fits(&case, method, &tags)
+        });
+        if let Some(shard) = args.shard {
+            let mine = self.share(args, shard);
+            let mut index = 0..;
+            self.tasks.retain(|_| index.next().is_some_and(|index| mine.contains(&index)));
+        }
+    }
+
+    /// Errors of the runs that exceed the limits on memory or time.
+    pub(crate) fn too_large(&self, args: &VerifyArgs) -> Vec<scene::SceneError> {
+        let foreseen = self.foreseen(args);
+        let of =
+            |task: &Task| too_large(&self.scenes[task.scene].2, &task.method, foreseen.factor(task.scene));
+        self.tasks.iter().filter_map(of).collect()
+    }
+
+    /// Run tables that request a task.
+    pub(super) fn tables<'a>(&'a self, task: &'a Task) -> impl Iterator<Item = &'a scene::Run> {
+        task.runs.iter().map(|&run| &self.study.runs[run])
+    }
+
+    /// Whether the task is requested only as one of many clouds.
+    pub(super) fn is_one_of_many(&self, task: &Task) -> bool {
+        self.tables(task).all(|run| run.seeds > 0)
+    }
+
+    /// Whether the task is a run along an axis.
+    pub(super) fn is_driven(&self, task: &Task) -> bool {
+        self.scenes[task.scene].2.varied.is_some()
+    }
+
+    /// Number of runs.
+    pub fn len(&self) -> usize {
+        self.tasks.len()
+    }
+
+    /// Whether nothing is to be run.
+    pub fn is_empty(&self) -> bool {
+        self.tasks.is_empty()
+    }
+}
+
+/// Method id with the settings that distinguish the run from others of the same method.
+pub(super) fn label(task: &Task, records: &[Record], seeded: bool) -> String {
+    let mut text = task.method.id.clone();
+    if task.level > 0 {
+        text += &format!(" level {}", task.level);
+    }
+    if let (Some(first), 0) = (records.first(), task.level) {
+        text += &format!(" {} {} nodes", first.variant, first.nodes);
+    }
+    if let Some(poisson) = task.poisson {
+        text += &format!(" nu={poisson}");
+    }
+    if seeded {
+        text += &format!(" seed={}", records.first().map_or(0, |r| r.seed));
+    }
+    text
+}

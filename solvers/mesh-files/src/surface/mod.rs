@@ -1,0 +1,86 @@
+//! Surface files in and out: STL (text and binary), OBJ and PLY (text and binary).
+
+mod obj;
+mod ply;
+mod stl;
+
+use std::path::Path;
+
+use geometry::Surface;
+use geometry::surface::Soup;
+
+use crate::error::{FileError, SurfaceError};
+use crate::open::{bytes, check_unit, suffix};
+use crate::text::{self, unknown};
+
+pub(super) use stl::write;
+
+/// Surface formats accepted by [`read_surface`], for messages.
+pub const SURFACES: &str = "give a closed surface: STL (.stl), OBJ (.obj) or PLY (.ply)";
+
+/// Reads a closed surface; the content of the file determines the format. `unit` is the length of the file's
+/// unit in metres.
+///
+/// # Errors
+/// A file in none of the formats or with a violation of its format, with the line or byte. A surface that is
+/// open, crosses itself or is inside out, with the triangles and the position.
+pub fn read_surface(file: &Path, unit: f64) -> Result<Surface, SurfaceError> {
+    read_surface_bytes(&bytes(file)?, file, unit)
+}
+
+/// Reads a closed surface as [`read_surface`] does, from memory; `file` is the name used in errors.
+///
+/// # Errors
+/// As for [`read_surface`].
+pub fn read_surface_bytes(bytes: &[u8], file: &Path, unit: f64) -> Result<Surface, SurfaceError> {
+    check_unit(file, unit)?;
+    let bytes = unmarked(bytes);
+    let soup = match kind(bytes, file) {
+        Some(Kind::Stl) => stl::parse(bytes),
+        Some(Kind::Obj) => obj::parse(bytes),
+        Some(Kind::Ply) => ply::parse(bytes),
+        None => unknown(bytes),
+    };
+    let at = |(place, problem)| FileError::At { file: file.to_path_buf(), place, problem };
+    let soup: Soup = soup.map_err(at)?;
+    let open = |problem| SurfaceError::Surface { file: file.to_path_buf(), problem: Box::new(problem) };
+    Surface::new(soup, unit).map_err(open)
+}
+
+/// Whether a file holds a surface, according to its first bytes; false for a file that cannot be read.
+pub fn is_surface(file: &Path) -> bool {
+    bytes(file).is_ok_and(|bytes| holds_surface(&bytes, file))
+}
+
+pub(super) fn holds_surface(bytes: &[u8], file: &Path) -> bool {
+    kind(unmarked(bytes), file).is_some()
+}
+
+/// Removes the byte order mark of a text. A binary file is unchanged, because its comment may begin with any
+/// bytes.
+fn unmarked(bytes: &[u8]) -> &[u8] {
+    if stl::is_binary(bytes) { bytes } else { text::unmarked(bytes) }
+}
+
+enum Kind {
+    Stl,
+    Obj,
+    Ply,
+}
+
+/// Format of a surface, `None` for other content.
+fn kind(bytes: &[u8], file: &Path) -> Option<Kind> {
+    let start = bytes.iter().position(|b| !b.is_ascii_whitespace())?;
+    let begins = |word: &[u8]| bytes[start..].get(..word.len()).is_some_and(|b| b.eq_ignore_ascii_case(word));
+    if begins(b"ply\n") || begins(b"ply\r") {
+        Some(Kind::Ply)
+    } else if stl::is_binary(bytes) || begins(b"solid") {
+        Some(Kind::Stl)
+    } else if obj::is_text(&bytes[start..]) {
+        Some(Kind::Obj)
+    } else {
+        // A truncated binary file may begin with any bytes.
+        let other = begins(b"$") || begins(b"*") || begins(b"<") || begins(b"# vtk");
+        (suffix(file) == "stl" && !other).then_some(Kind::Stl)
+    }
+}
