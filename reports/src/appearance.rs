@@ -6,6 +6,7 @@
 //! figure never look the same: [`distinct`] gives the label of lower precedence another marker or shade.
 
 use catalogue::element;
+use plotters::style::RGBColor;
 use records::Family;
 
 /// Names of the markers in pages.
@@ -74,8 +75,7 @@ const SOLVERS: [(&str, usize); 6] =
 /// Appearance of a label: colour, marker, dash and filling.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Look {
-    /// Red, green and blue.
-    pub(crate) colour: [u8; 3],
+    pub(crate) colour: RGBColor,
     /// Index into [`MARKERS`].
     pub(crate) marker: usize,
     /// Alternating drawn and omitted lengths in points; empty for a solid line.
@@ -107,7 +107,7 @@ impl Look {
             Family::Interp => &[1.5, 1.8],
         };
         Look {
-            colour: [red, green, blue],
+            colour: RGBColor(red, green, blue),
             marker,
             dash,
             open: matches!(family, Family::Efg | Family::Interp),
@@ -124,11 +124,11 @@ impl Look {
     fn other(self, k: usize) -> Look {
         let shade = SHADES[k / MARKERS.len() % SHADES.len()];
         let mixed = |c: u8| match shade < 0.0 {
-            true => f64::from(c) * (1.0 + shade),
-            false => f64::from(c) + shade * (255.0 - f64::from(c)),
+            true => (f64::from(c) * (1.0 + shade)) as u8,
+            false => (f64::from(c) + shade * (255.0 - f64::from(c))) as u8,
         };
         Look {
-            colour: self.colour.map(|c| mixed(c) as u8),
+            colour: RGBColor(mixed(self.colour.0), mixed(self.colour.1), mixed(self.colour.2)),
             marker: (self.marker + k) % MARKERS.len(),
             ..self
         }

@@ -123,7 +123,7 @@ struct Painted {
 }
 
 fn draw(figure: Figure) -> Result<Painted, ReportError> {
-    let svg = figure.canvas.svg(&figure.name, &figure.title)?;
+    let svg = figure.drawing.svg(&figure.name, &figure.title)?;
     let (png, pdf) = figures::png_and_pdf(&figure.name, &figure.title, &svg)?;
     Ok(Painted { drawn: Drawn { figure, svg }, png, pdf })
 }

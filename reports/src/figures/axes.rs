@@ -1,11 +1,32 @@
-//! Axes: mapping from values to paper, ticks and frame.
+//! Axes: coordinates of a chart with their ticks, and its frame.
 
+use std::ops::Range;
+
+use plotters::coord::ranged1d::{KeyPointHint, NoDefaultFormatting, ValueFormatter};
+use plotters::coord::types::RangedCoordf64;
+use plotters::prelude::*;
+use plotters::style::text_anchor::HPos;
 use records::text::{power, tick};
 
-use super::canvas::{Anchor, BLACK_INK, Canvas, GREY, PALE, text_width};
+use super::backend::Paths;
+use super::drawing::{Area, Drawn, GREY, PALE, TEXT, bold, text, text_width};
+use crate::plot::Scale;
 
-/// Size of ordinary text, points.
-pub(crate) const TEXT: f64 = 9.0;
+/// A chart with its series.
+pub(crate) type Chart<'a> = ChartContext<'a, Paths, Cartesian2d<Axis, Axis>>;
+
+/// Room left of the frame for tick labels and the name of the axis.
+pub(crate) const LEFT: i32 = 600;
+/// Room left of the name of an axis.
+const EDGE: i32 = 30;
+/// Room right of the frame for a short label.
+const RIGHT: i32 = 180;
+/// Room above the frame for a title.
+pub(crate) const ABOVE: i32 = 270;
+/// Room below the frame for tick labels and the name of the axis.
+pub(crate) const BELOW: i32 = 280;
+/// Length of a tick; plotters writes its label twice as far from the frame.
+const TICK: i32 = 30;
 
 /// One axis.
 #[derive(Clone, Debug)]
@@ -14,6 +35,8 @@ pub(crate) struct Axis {
     log: bool,
     low: f64,
     high: f64,
+    /// Values and their texts. The key points of plotters are unsuitable: fewer than three on a short
+    /// logarithmic axis, and compared with an absolute tolerance on a linear one.
     ticks: Vec<(f64, String)>,
     /// Short marks between the ticks.
     minor: Vec<f64>,
@@ -55,6 +78,19 @@ impl Axis {
         Axis { label: label.into(), log: false, low, high, ticks, minor: Vec::new() }
     }
 
+    /// Creates an axis of the given scale, from zero if it is linear.
+    pub(crate) fn of(scale: &Scale, values: impl Iterator<Item = f64>) -> Axis {
+        if scale.log { Axis::log(&scale.label, values) } else { Axis::linear(&scale.label, values, true) }
+    }
+
+    /// Creates an axis of named steps from zero, of length 1 (to the right) or -1 (downwards).
+    pub(crate) fn named(names: impl ExactSizeIterator<Item = String>, step: f64) -> Axis {
+        let end = step * names.len() as f64;
+        let ticks = names.enumerate().map(|(k, name)| (step * (k as f64 + 0.5), name)).collect();
+        let (low, high) = (end.min(0.0), end.max(0.0));
+        Axis { label: String::new(), log: false, low, high, ticks, minor: Vec::new() }
+    }
+
     /// Replaces the ticks.
     pub(crate) fn with_ticks(mut self, ticks: Vec<(f64, String)>) -> Axis {
         (self.ticks, self.minor) = (ticks, Vec::new());
@@ -67,25 +103,43 @@ impl Axis {
         self
     }
 
-    /// Tick values with their texts.
-    pub(crate) fn ticks(&self) -> &[(f64, String)] {
-        &self.ticks
+    /// Removes ticks whose texts would touch on a horizontal axis of the given length.
+    fn spaced(mut self, length: i32) -> Axis {
+        let places = self.ticks.iter().map(|(at, text)| (self.map(at, (0, length)), text_width(text, TEXT)));
+        let mut has_room = apart(&places.collect::<Vec<_>>()).into_iter();
+        self.ticks.retain(|_| has_room.next().unwrap_or(true));
+        self
     }
+}
 
-    pub(crate) fn low(&self) -> f64 {
-        self.low
-    }
+impl Ranged for Axis {
+    type FormatOption = NoDefaultFormatting;
+    type ValueType = f64;
 
-    pub(crate) fn high(&self) -> f64 {
-        self.high
-    }
-
-    fn fraction(&self, value: f64) -> f64 {
-        if self.log {
-            (value / self.low).ln() / (self.high / self.low).ln()
-        } else {
-            (value - self.low) / (self.high - self.low)
+    /// Values beyond the axis are placed at its ends.
+    fn map(&self, value: &f64, limit: (i32, i32)) -> i32 {
+        let value = value.clamp(self.low, self.high);
+        match self.log {
+            true => LogCoord::from(self.range().log_scale()).map(&value, limit),
+            false => RangedCoordf64::from(self.range()).map(&value, limit),
         }
+    }
+
+    fn key_points<Hint: KeyPointHint>(&self, hint: Hint) -> Vec<f64> {
+        match hint.weight().allow_light_points() {
+            true => self.minor.clone(),
+            false => self.ticks.iter().map(|tick| tick.0).collect(),
+        }
+    }
+
+    fn range(&self) -> Range<f64> {
+        self.low..self.high
+    }
+}
+
+impl ValueFormatter<f64> for Axis {
+    fn format_ext(&self, value: &f64) -> String {
+        self.ticks.iter().find(|tick| tick.0 == *value).map(|tick| tick.1.clone()).unwrap_or_default()
     }
 }
 
@@ -129,13 +183,13 @@ fn minor(low: f64, high: f64) -> Vec<f64> {
 
 /// Whether each text on a line has room, given its centre and width. If two would touch, the longer is
 /// dropped.
-fn apart(texts: &[(f64, f64)]) -> Vec<bool> {
+fn apart(texts: &[(i32, i32)]) -> Vec<bool> {
     let mut order: Vec<usize> = (0..texts.len()).collect();
-    order.sort_by(|&a, &b| texts[a].1.total_cmp(&texts[b].1));
+    order.sort_by(|&a, &b| texts[a].1.cmp(&texts[b].1));
     let mut written = vec![false; texts.len()];
     for a in order {
         let (at, width) = texts[a];
-        let touches = |b: usize| (at - texts[b].0).abs() < (width + texts[b].1) / 2.0 + 2.0;
+        let touches = |b: usize| (at - texts[b].0).abs() < (width + texts[b].1) / 2 + 20;
         written[a] = !(0..texts.len()).any(|b| written[b] && touches(b));
     }
     written
@@ -148,58 +202,37 @@ fn range(values: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
     })
 }
 
-/// A framed plot.
-#[derive(Clone, Debug)]
-pub(crate) struct Panel {
-    /// Left, top, right, bottom of the frame, points.
-    pub(crate) frame: (f64, f64, f64, f64),
-    pub(crate) x: Axis,
-    pub(crate) y: Axis,
-}
-
-impl Panel {
-    /// Position on paper of a pair of values. Values beyond an axis are placed on the frame.
-    pub(crate) fn at(&self, x: f64, y: f64) -> (f64, f64) {
-        let (left, top, right, bottom) = self.frame;
-        let (fx, fy) = (self.x.fraction(x).clamp(0.0, 1.0), self.y.fraction(y).clamp(0.0, 1.0));
-        (left + fx * (right - left), bottom - fy * (bottom - top))
+/// Creates a chart with a frame, ticks, labels and a title, and the given room left of its frame.
+pub(super) fn framed<'a>(area: &Area, left: i32, title: &str, x: Axis, y: Axis) -> Drawn<Chart<'a>> {
+    let x = x.spaced(area.dim_in_pixel().0 as i32 - left - RIGHT);
+    let labels = (x.label.clone(), y.label.clone());
+    let mut chart = ChartBuilder::on(area)
+        .margin_top(ABOVE)
+        .margin_right(RIGHT)
+        .x_label_area_size(BELOW)
+        .margin_left(EDGE)
+        .y_label_area_size(left - EDGE)
+        .build_cartesian_2d(x, y)?;
+    chart
+        .configure_mesh()
+        .x_desc(labels.0)
+        .y_desc(labels.1)
+        .label_style(text(TEXT, HPos::Center))
+        .axis_style(GREY.stroke_width(8))
+        .bold_line_style(PALE.stroke_width(5))
+        .light_line_style(TRANSPARENT)
+        .set_all_tick_mark_size(TICK)
+        .draw()?;
+    // The mesh of plotters has no short marks between the ticks, and a caption is centred on the whole area.
+    let (x, y) = (chart.as_coord_spec().x_spec(), chart.as_coord_spec().y_spec());
+    let below = x.minor.iter().map(|at| (chart.backend_coord(&(*at, y.low)), (0, TICK / 2)));
+    let beside = y.minor.iter().map(|at| (chart.backend_coord(&(x.low, *at)), (-TICK / 2, 0)));
+    for (from, step) in below.chain(beside) {
+        let mark = [from, (from.0 + step.0, from.1 + step.1)];
+        area.use_screen_coord().draw(&PathElement::new(mark, GREY.stroke_width(4)))?;
     }
-
-    /// Draws grid, frame, ticks, axis labels and title.
-    pub(crate) fn draw(&self, canvas: &mut Canvas, title: &str) {
-        let (left, top, right, bottom) = self.frame;
-        let across = |(value, text): &(f64, String)| (self.at(*value, self.y.low).0, text_width(text, TEXT));
-        let places: Vec<(f64, f64)> = self.x.ticks.iter().map(across).collect();
-        for (((at, _), _), (_, text)) in
-            places.iter().zip(apart(&places)).zip(&self.x.ticks).filter(|((_, has_room), _)| *has_room)
-        {
-            canvas.line(&[(*at, top), (*at, bottom)], PALE, 0.5);
-            canvas.line(&[(*at, bottom), (*at, bottom + 3.0)], BLACK_INK, 0.6);
-            canvas.text((*at, bottom + 9.5), text, TEXT, BLACK_INK, Anchor::Middle);
-        }
-        for value in &self.x.minor {
-            let (at, _) = self.at(*value, self.y.low);
-            canvas.line(&[(at, bottom), (at, bottom + 1.5)], GREY, 0.4);
-        }
-        for (value, text) in &self.y.ticks {
-            let (_, at) = self.at(self.x.low, *value);
-            canvas.line(&[(left, at), (right, at)], PALE, 0.5);
-            canvas.line(&[(left - 3.0, at), (left, at)], BLACK_INK, 0.6);
-            canvas.text((left - 5.0, at), text, TEXT, BLACK_INK, Anchor::End);
-        }
-        for value in &self.y.minor {
-            let (_, at) = self.at(self.x.low, *value);
-            canvas.line(&[(left - 1.5, at), (left, at)], GREY, 0.4);
-        }
-        canvas.line(&[(left, top), (left, bottom), (right, bottom)], GREY, 0.8);
-        canvas.text(((left + right) / 2.0, bottom + 22.0), &self.x.label, TEXT, BLACK_INK, Anchor::Middle);
-        if !self.y.label.is_empty() {
-            let widest = self.y.ticks.iter().map(|(_, text)| text_width(text, TEXT)).fold(0.0, f64::max);
-            let aside = (widest + 11.0).clamp(46.0, 54.0);
-            canvas.vertical((left - aside, (top + bottom) / 2.0), &self.y.label, TEXT);
-        }
-        canvas.bold((left, top - 8.0), title, TEXT, Anchor::Start);
-    }
+    area.draw_text(title, &bold(TEXT, HPos::Left), (left, ABOVE - 80))?;
+    Ok(chart)
 }
 
 #[cfg(test)]
@@ -208,11 +241,8 @@ mod tests {
 
     #[test]
     fn texts_that_would_touch_give_way_to_shorter_ones() {
-        assert_eq!(
-            apart(&[(0.0, 30.0), (20.0, 16.0), (45.0, 20.0), (80.0, 16.0)]),
-            [false, true, true, true]
-        );
-        assert_eq!(apart(&[(0.0, 30.0), (26.0, 16.0)]), [true, true]);
+        assert_eq!(apart(&[(0, 300), (200, 160), (450, 200), (800, 160)]), [false, true, true, true]);
+        assert_eq!(apart(&[(0, 300), (260, 160)]), [true, true]);
     }
 
     #[test]
@@ -243,7 +273,7 @@ mod tests {
     fn a_linear_axis_of_tiny_values_has_short_texts() {
         let texts = |high| {
             let axis = Axis::linear("", [0.0, high].into_iter(), true);
-            axis.ticks().iter().map(|t| t.1.clone()).collect::<Vec<_>>()
+            axis.ticks.iter().map(|t| t.1.clone()).collect::<Vec<_>>()
         };
         assert_eq!(texts(2.4e-5), ["0", "10⁻⁵", "2×10⁻⁵"]);
         assert_eq!(texts(0.01), ["0.0000", "0.0025", "0.0050", "0.0075", "0.0100"]);

@@ -1,15 +1,16 @@
 //! Compact SVG backend for plotters. Consecutive shapes of equal appearance become one path in relative
 //! coordinates. The drawing order is preserved, and with it the overlaps.
 //!
-//! A dashed curve consists of dozens of short lines and a surface of thousands of triangles. The output is
-//! five times smaller than one element for each.
+//! A surface consists of thousands of triangles. The output is five times smaller than one element for each,
+//! as the SVG backend of plotters writes them.
 
 use std::convert::Infallible;
+use std::f64::consts::TAU;
 use std::fmt::Write as _;
 
 use plotters::element::{Drawable, PointCollection};
-use plotters::style::{Color, RGBColor};
-use plotters_backend::text_anchor::HPos;
+use plotters::style::{Color, RGBColor, ShapeStyle};
+use plotters_backend::text_anchor::{HPos, VPos};
 use plotters_backend::{
     BackendColor, BackendCoord, BackendStyle, BackendTextStyle, DrawingBackend, DrawingErrorKind, FontStyle,
     FontTransform,
@@ -17,54 +18,84 @@ use plotters_backend::{
 
 /// Font families. Verdana has the same widths if DejaVu Sans is not installed.
 const FAMILIES: &str = "'DejaVu Sans', Verdana, sans-serif";
-/// Ratio of the line height, which plotters uses, to the em size, which SVG text uses.
-pub(super) const LINE_HEIGHT: f64 = 1.24;
+/// Ratio of the height of DejaVu Sans, by which plotters measures a font, to the em size of SVG text.
+pub(super) const FONT_HEIGHT: f64 = 1.164;
 
-/// Width of the line around a facet and of a line that closes a seam, in tenths of a point: half a point.
+/// Width of the line around a facet and of a line that closes a seam: half a point.
 const SEAM: u32 = 5;
 
-/// A filled facet of a surface with an outline of the same colour. (A polygon of plotters has no outline.)
-pub(super) struct Facet {
-    pub(super) points: Vec<BackendCoord>,
-    pub(super) colour: RGBColor,
+/// A shape with SVG attributes that the styles of plotters lack: a pattern of dashes, or an outline of a
+/// filled shape.
+pub(super) struct Attributed<C> {
+    points: Vec<C>,
+    attributes: String,
+    filled: bool,
 }
 
-impl<'a> PointCollection<'a, BackendCoord> for &'a Facet {
-    type Point = &'a BackendCoord;
-    type IntoIter = std::slice::Iter<'a, BackendCoord>;
+impl<C> Attributed<C> {
+    /// A line. The pattern alternates drawn and omitted lengths; an empty pattern gives a solid line.
+    pub(super) fn line(points: Vec<C>, style: ShapeStyle, pattern: &[f64]) -> Attributed<C> {
+        let mut attributes = stroke(&style);
+        if !pattern.is_empty() {
+            let lengths: Vec<String> = pattern.iter().map(f64::to_string).collect();
+            write!(attributes, " stroke-dasharray=\"{}\"", lengths.join(" ")).expect("a string");
+        }
+        Attributed { points, attributes, filled: false }
+    }
 
-    fn point_iter(self) -> Self::IntoIter {
-        self.points.iter()
+    /// A facet of a surface with an outline of its own colour. This closes gaps between neighbours and
+    /// smooths the silhouette of the surface.
+    pub(super) fn facet(points: Vec<C>, colour: RGBColor) -> Attributed<C> {
+        let colour = hexadecimal(colour.to_backend_color());
+        // The joins are round, because a mitre at a sharp corner would stand out.
+        let attributes = format!(
+            "fill=\"{colour}\" stroke=\"{colour}\" stroke-width=\"{SEAM}\" stroke-linejoin=\"round\""
+        );
+        Attributed { points, attributes, filled: true }
     }
 }
 
-impl Drawable<Paths<'_>> for Facet {
-    fn draw<I: Iterator<Item = BackendCoord>>(
-        &self,
-        points: I,
-        backend: &mut Paths<'_>,
-        _: (u32, u32),
-    ) -> Drawn {
-        backend.fill_polygon(points, &self.colour.filled().stroke_width(SEAM))
+impl<'a, C> PointCollection<'a, C> for &'a Attributed<C> {
+    type Point = &'a C;
+    type IntoIter = &'a [C];
+
+    fn point_iter(self) -> &'a [C] {
+        &self.points
+    }
+}
+
+impl<C> Drawable<Paths> for Attributed<C> {
+    fn draw<I: Iterator<Item = BackendCoord>>(&self, points: I, paths: &mut Paths, _: (u32, u32)) -> Drawn {
+        paths.shape(self.attributes.clone(), &points.collect::<Vec<_>>(), self.filled);
+        Ok(())
     }
 }
 
 type Drawn = Result<(), DrawingErrorKind<Infallible>>;
 
 /// SVG elements in drawing order.
-pub(super) struct Paths<'a> {
-    out: &'a mut String,
+pub(crate) struct Paths {
+    elements: String,
     size: (u32, u32),
     /// Appearance of the path being written, and its steps so far.
     open: Option<(String, String)>,
 }
 
-impl<'a> Paths<'a> {
-    pub(super) fn new(out: &'a mut String, size: (u32, u32)) -> Paths<'a> {
-        Paths { out, size, open: None }
+impl Paths {
+    pub(super) fn new(size: (u32, u32)) -> Paths {
+        Paths { elements: String::new(), size, open: None }
+    }
+
+    /// Takes the elements out.
+    pub(super) fn take(&mut self) -> String {
+        self.close();
+        std::mem::take(&mut self.elements)
     }
 
     fn shape(&mut self, look: String, points: &[BackendCoord], filled: bool) {
+        if points.len() < 2 {
+            return;
+        }
         if self.open.as_ref().is_none_or(|open| open.0 != look) {
             self.close();
             self.open = Some((look, String::new()));
@@ -83,12 +114,12 @@ impl<'a> Paths<'a> {
                 }
                 _ => String::new(),
             };
-            self.out.push_str(&format!("<path {look}{seam} d=\"{path}\"/>\n"));
+            self.elements.push_str(&format!("<path {look}{seam} d=\"{path}\"/>\n"));
         }
     }
 }
 
-impl DrawingBackend for Paths<'_> {
+impl DrawingBackend for Paths {
     type ErrorType = Infallible;
 
     fn get_size(&self) -> (u32, u32) {
@@ -100,17 +131,41 @@ impl DrawingBackend for Paths<'_> {
     }
 
     fn present(&mut self) -> Drawn {
-        self.close();
         Ok(())
     }
 
     fn draw_pixel(&mut self, (x, y): BackendCoord, color: BackendColor) -> Drawn {
-        self.shape(
-            format!("fill=\"{}\"", hexadecimal(color)),
-            &[(x, y), (x + 1, y), (x + 1, y + 1), (x, y + 1)],
-            true,
-        );
-        Ok(())
+        self.fill_polygon([(x, y), (x + 1, y), (x + 1, y + 1), (x, y + 1)], &color)
+    }
+
+    fn draw_line<S: BackendStyle>(&mut self, from: BackendCoord, to: BackendCoord, style: &S) -> Drawn {
+        self.draw_path([from, to], style)
+    }
+
+    fn draw_rect<S: BackendStyle>(
+        &mut self,
+        (left, top): BackendCoord,
+        (right, bottom): BackendCoord,
+        style: &S,
+        fill: bool,
+    ) -> Drawn {
+        let corners = [(left, top), (right, top), (right, bottom), (left, bottom)];
+        match fill {
+            true => self.fill_polygon(corners, style),
+            false => self.draw_path(corners.into_iter().chain([corners[0]]), style),
+        }
+    }
+
+    fn draw_circle<S: BackendStyle>(
+        &mut self,
+        (x, y): BackendCoord,
+        radius: u32,
+        style: &S,
+        fill: bool,
+    ) -> Drawn {
+        let ring =
+            ring(CIRCLE, 0.0, f64::from(radius)).into_iter().map(|corner| (x + corner.0, y + corner.1));
+        if fill { self.fill_polygon(ring, style) } else { self.draw_path(ring, style) }
     }
 
     fn draw_path<S: BackendStyle, I: IntoIterator<Item = BackendCoord>>(
@@ -118,10 +173,8 @@ impl DrawingBackend for Paths<'_> {
         path: I,
         style: &S,
     ) -> Drawn {
-        let points: Vec<BackendCoord> = path.into_iter().collect();
-        if points.len() > 1 {
-            let (colour, width) = (hexadecimal(style.color()), style.stroke_width());
-            self.shape(format!("fill=\"none\" stroke=\"{colour}\" stroke-width=\"{width}\""), &points, false);
+        if style.color().alpha > 0.0 {
+            self.shape(stroke(style), &path.into_iter().collect::<Vec<_>>(), false);
         }
         Ok(())
     }
@@ -131,37 +184,59 @@ impl DrawingBackend for Paths<'_> {
         path: I,
         style: &S,
     ) -> Drawn {
-        let points: Vec<BackendCoord> = path.into_iter().collect();
-        if points.len() > 1 {
-            let colour = hexadecimal(style.color());
-            // The joins are round, because a mitre at a sharp corner would stand out.
-            let line = match style.stroke_width() {
-                SEAM => format!(" stroke=\"{colour}\" stroke-width=\"{SEAM}\" stroke-linejoin=\"round\""),
-                _ => String::new(),
-            };
-            self.shape(format!("fill=\"{colour}\"{line}"), &points, true);
+        if style.color().alpha > 0.0 {
+            let look = format!("fill=\"{}\"", hexadecimal(style.color()));
+            self.shape(look, &path.into_iter().collect::<Vec<_>>(), true);
         }
         Ok(())
     }
 
     fn draw_text<S: BackendTextStyle>(&mut self, text: &str, style: &S, (x, y): BackendCoord) -> Drawn {
+        if text.is_empty() {
+            return Ok(());
+        }
         self.close();
         let anchor = match style.anchor().h_pos {
             HPos::Left => "start",
             HPos::Center => "middle",
             HPos::Right => "end",
         };
+        let below = match style.anchor().v_pos {
+            VPos::Top => "0.76em",
+            VPos::Center => "0.5ex",
+            VPos::Bottom => "-0.24em",
+        };
         let weight = if matches!(style.style(), FontStyle::Bold) { " font-weight=\"bold\"" } else { "" };
         let turned = match style.transform() {
             FontTransform::Rotate270 => format!(" transform=\"rotate(270, {x}, {y})\""),
             _ => String::new(),
         };
-        let (size, colour) = (style.size() / LINE_HEIGHT, hexadecimal(style.color()));
-        let place = format!("x=\"{x}\" y=\"{y}\" dy=\"0.5ex\" text-anchor=\"{anchor}\"");
+        let (size, colour) = ((style.size() / FONT_HEIGHT).round(), hexadecimal(style.color()));
+        let place = format!("x=\"{x}\" y=\"{y}\" dy=\"{below}\" text-anchor=\"{anchor}\"");
         let look = format!("font-family=\"{FAMILIES}\" font-size=\"{size}\" opacity=\"1\" fill=\"{colour}\"");
-        self.out.push_str(&format!("<text {place} {look}{weight}{turned}>\n{}\n</text>\n", escaped(text)));
+        self.elements
+            .push_str(&format!("<text {place} {look}{weight}{turned}>\n{}\n</text>\n", escaped(text)));
         Ok(())
     }
+}
+
+/// Number of corners of a circle.
+pub(super) const CIRCLE: i32 = 20;
+
+/// Corners of a regular polygon around the origin, clockwise from a part of a turn after the top, with the
+/// first one repeated at the end.
+pub(super) fn ring(corners: i32, turn: f64, radius: f64) -> Vec<BackendCoord> {
+    let corner = |k: i32| {
+        let (sin, cos) = (TAU * (f64::from(k) / f64::from(corners) + turn)).sin_cos();
+        ((radius * sin).round() as i32, (-radius * cos).round() as i32)
+    };
+    (0..=corners).map(corner).collect()
+}
+
+/// Attributes of a line.
+fn stroke(style: &impl BackendStyle) -> String {
+    let (colour, width) = (hexadecimal(style.color()), style.stroke_width());
+    format!("fill=\"none\" stroke=\"{colour}\" stroke-width=\"{width}\"")
 }
 
 fn hexadecimal(color: BackendColor) -> String {
@@ -221,41 +296,48 @@ fn area(points: &[BackendCoord]) -> i64 {
 mod tests {
     use plotters::prelude::*;
 
-    use super::{Facet, Paths};
+    use super::{Attributed, Paths};
+
+    /// Elements of a drawing.
+    fn elements(draw: impl Fn(&DrawingArea<Paths, plotters::coord::Shift>)) -> String {
+        let paths = std::rc::Rc::new(std::cell::RefCell::new(Paths::new((100, 100))));
+        draw(&DrawingArea::from(&paths));
+        paths.borrow_mut().take()
+    }
 
     #[test]
-    fn a_facet_has_a_line_of_its_own_colour() {
-        let mut out = String::new();
-        {
-            let area = Paths::new(&mut out, (100, 100)).into_drawing_area();
-            let colour = RGBColor(0x44, 0x01, 0x54);
-            area.draw(&Facet { points: vec![(1, 2), (3, 4), (5, 0)], colour }).unwrap();
-            area.draw(&Facet { points: vec![(9, 9), (8, 9), (8, 11)], colour }).unwrap();
-            area.present().unwrap();
-        }
+    fn facets_have_outlines_and_dashed_lines_are_one_path() {
+        let drawn = elements(|area| {
+            for points in [vec![(1, 2), (3, 4), (5, 0)], vec![(9, 9), (8, 9), (8, 11)]] {
+                area.draw(&Attributed::facet(points, RGBColor(0x44, 0x01, 0x54))).unwrap();
+            }
+            let line = Attributed::line(vec![(0, 5), (90, 5)], BLACK.stroke_width(13), &[50.0, 18.0]);
+            area.draw(&line).unwrap();
+        });
         assert_eq!(
-            out,
+            drawn,
             "<path fill=\"#440154\" stroke=\"#440154\" stroke-width=\"5\" stroke-linejoin=\"round\" \
-             d=\"M5 0l-2 4-2-2zM8 11l0-2 1 0z\"/>\n"
+             d=\"M5 0l-2 4-2-2zM8 11l0-2 1 0z\"/>\n\
+             <path fill=\"none\" stroke=\"#000000\" stroke-width=\"13\" stroke-dasharray=\"50 18\" \
+             d=\"M0 5l90 0\"/>\n"
         );
     }
 
     #[test]
-    fn neighbours_alike_become_one_path_and_texts_stay_between() {
-        let mut out = String::new();
-        {
-            let area = Paths::new(&mut out, (100, 100)).into_drawing_area();
-            let violet = RGBColor(0x44, 0x01, 0x54);
+    fn neighbours_alike_become_one_path_and_order_is_kept() {
+        let violet = RGBColor(0x44, 0x01, 0x54);
+        let drawn = elements(|area| {
             let fill = |points: Vec<(i32, i32)>| area.draw(&Polygon::new(points, violet.filled())).unwrap();
             fill(vec![(1, 2), (3, 4), (5, 0), (1, 2)]);
             fill(vec![(9, 9), (8, 9), (8, 11)]);
             area.draw(&PathElement::new(vec![(0, 5), (10, 0)], BLACK.stroke_width(13))).unwrap();
             area.draw(&PathElement::new(vec![(0, 0)], BLACK.stroke_width(13))).unwrap();
+            area.draw(&Rectangle::new([(0, 0), (9, 9)], TRANSPARENT)).unwrap();
+            area.draw_text("", &("sans-serif", 9).into_text_style(area), (0, 0)).unwrap();
             fill(vec![(1, 2), (3, 4), (5, 0)]);
-            area.present().unwrap();
-        }
+        });
         assert_eq!(
-            out,
+            drawn,
             "<path fill=\"#440154\" stroke=\"#440154\" stroke-width=\"5\" d=\"M5 0l-2 4-2-2zM8 11l0-2 1 0z\"/>\n\
              <path fill=\"none\" stroke=\"#000000\" stroke-width=\"13\" d=\"M0 5l10-5\"/>\n\
              <path fill=\"#440154\" d=\"M5 0l-2 4-2-2z\"/>\n"

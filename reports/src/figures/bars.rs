@@ -1,26 +1,29 @@
 //! RMS errors by direction: one row per run, and one scale for all columns.
 
 use catalogue::metric;
+use plotters::prelude::*;
+use plotters::style::text_anchor::HPos;
 use records::cell::csv_line;
 use records::store::slug;
 use records::text::significant;
 
-use super::axes::TEXT;
-use super::canvas::{Anchor, BLACK_INK, Canvas, Colour, GREY, text_width};
+use super::drawing::{BLACK_INK, Drawing, GREY, TEXT, bold, text, widest};
 use super::figure::{Data, Figure};
 use super::grid::WIDTH;
 use crate::appearance::Look;
 use crate::claims::reproduced;
 use crate::select::{Run, competing, kernels, labels, representative, series};
 
-const ROW: f64 = 16.0;
-const TOP: f64 = 42.0;
+const ROW: i32 = 160;
+const TOP: i32 = 420;
+/// Room for the number after the longest bar.
+const NUMBER: i32 = 540;
 const DIRECTIONS: [&str; 4] = ["RMS x [mm]", "RMS y [mm]", "RMS z [mm]", "RMS |u| [mm]"];
 /// Error in mm below which a difference is rounding.
 const NOTHING: f64 = 1e-9;
 
 /// A row: name, four values (mm) and colour.
-type Row = (String, [Option<f64>; 4], Colour);
+type Row = (String, [Option<f64>; 4], RGBColor);
 
 /// One figure per case except patch tests: every run of the usual kernel, or only the finest of each series
 /// if there are too many.
@@ -71,7 +74,7 @@ fn figure(group: &[Run]) -> Option<Figure> {
         name: format!("rms-{}", slug(&is.case)),
         title: format!("RMS errors, {} (ν = {})", is.case, is.poisson),
         caption,
-        canvas: draw(&format!("{}, ν = {}", is.case, is.poisson), &rows),
+        drawing: draw(&format!("{}, ν = {}", is.case, is.poisson), &rows),
         data: Data::Rows(csv(&rows)),
     })
 }
@@ -85,35 +88,32 @@ fn csv(rows: &[Row]) -> String {
     out
 }
 
-fn draw(title: &str, rows: &[Row]) -> Canvas {
-    let left = 12.0 + rows.iter().map(|r| text_width(&r.0, TEXT)).fold(40.0, f64::max).min(240.0);
-    let width = (WIDTH - left - 6.0 - 3.0 * 8.0) / 4.0;
-    let bottom = TOP + ROW * rows.len() as f64;
-    let mut canvas = Canvas::new(WIDTH, bottom + 8.0);
-    canvas.bold((6.0, 12.0), title, TEXT, Anchor::Start);
+fn draw(title: &str, rows: &[Row]) -> Drawing {
+    let left = 120 + widest(rows.iter().map(|row| &row.0)).min(2400);
+    let width = (WIDTH - left - 60) / DIRECTIONS.len() as i32;
+    let bottom = TOP + ROW * rows.len() as i32;
     let largest = rows.iter().flat_map(|r| r.1).flatten().fold(NOTHING, f64::max);
-    // Room for the number after the longest bar.
-    let scale = (width - 46.0) / largest;
-    for (column, head) in DIRECTIONS.iter().enumerate() {
-        let x = left + column as f64 * (width + 8.0);
-        canvas.bold((x, 28.0), head, TEXT, Anchor::Start);
-        canvas.line(&[(x, TOP - 4.0), (x, bottom)], GREY, 0.8);
-        for (row, (name, values, colour)) in rows.iter().enumerate() {
-            let y = TOP + ROW * row as f64;
-            if column == 0 {
-                canvas.text((left - 6.0, y + ROW / 2.0), name, TEXT, BLACK_INK, Anchor::End);
+    let scale = f64::from(width - NUMBER) / largest;
+    Drawing::new(WIDTH, bottom + 80, |page| {
+        page.draw_text(title, &bold(TEXT, HPos::Left), (60, 120))?;
+        for (column, head) in DIRECTIONS.iter().enumerate() {
+            let x = left + column as i32 * width;
+            page.draw_text(head, &bold(TEXT, HPos::Left), (x, TOP - 140))?;
+            page.draw(&PathElement::new([(x, TOP - 40), (x, bottom)], GREY.stroke_width(8)))?;
+            for ((name, values, colour), y) in rows.iter().zip((TOP..).step_by(ROW as usize)) {
+                if column == 0 {
+                    page.draw_text(name, &text(TEXT, HPos::Right), (left - 60, y + ROW / 2))?;
+                }
+                let (length, number, shade) = match values[column] {
+                    None => (0, "—".to_string(), GREY),
+                    Some(v) if v < NOTHING => (0, "rounding".to_string(), GREY),
+                    Some(v) => ((v * scale) as i32, significant(v, 2), BLACK_INK),
+                };
+                page.draw(&Rectangle::new([(x, y + 30), (x + length, y + ROW - 30)], colour.filled()))?;
+                let style = TextStyle { color: shade.to_backend_color(), ..text(TEXT, HPos::Left) };
+                page.draw_text(&number, &style, (x + length + 30, y + ROW / 2))?;
             }
-            let (end, number, ink) = match values[column] {
-                None => (x, "—".to_string(), GREY),
-                Some(v) if v < NOTHING => (x, "rounding".to_string(), GREY),
-                Some(v) => (x + v * scale, significant(v, 2), BLACK_INK),
-            };
-            if end > x {
-                canvas
-                    .fill(&[(x, y + 3.0), (end, y + 3.0), (end, y + ROW - 3.0), (x, y + ROW - 3.0)], *colour);
-            }
-            canvas.text((end + 3.0, y + ROW / 2.0), &number, TEXT, ink, Anchor::Start);
         }
-    }
-    canvas
+        Ok(())
+    })
 }

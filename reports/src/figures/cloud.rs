@@ -1,17 +1,18 @@
 //! Conditioning and neighbours of the meshfree methods as a function of the support scale.
 
 use catalogue::metric;
+use plotters::prelude::*;
 use records::Family;
 
 use super::axes::Axis;
+use super::drawing::Drawing;
 use super::figure::{Data, Figure, PAGE, continued, paged};
 use super::grid::{Content, multiples};
 use super::style::{find, styles};
-use crate::plot::{Curve, Plot, Scale};
+use crate::plot::{self, Curve, Plot, Scale};
 use crate::select::{Run, by_case};
 
-/// A kernel or case as `(label, points)`, each point as `(support scale, value, low, high)`.
-type Line = (String, Vec<(f64, f64, f64, f64)>);
+const SCALES: &str = "support radius / node spacing [1]";
 
 /// Condition number of the moment matrix: one panel per case, one line per kernel and basis.
 pub(super) fn conditioning(runs: &[Run]) -> Vec<Figure> {
@@ -20,20 +21,23 @@ pub(super) fn conditioning(runs: &[Run]) -> Vec<Figure> {
         let value = median.or(worst).filter(|v| *v > 0.0)?;
         Some((value, median.unwrap_or(value), worst.unwrap_or(value)))
     };
-    let panels = panels(runs, point, |r| [vec![r.is.variant.clone()], settings(r)].concat().join(", "));
-    let figure = |(page, panels): (usize, &[(String, Vec<Line>)])| Figure {
+    let label = |r: &Run| [vec![r.is.variant.clone()], settings(r)].concat().join(", ");
+    let plot = |(case, curves): (String, Vec<Curve>)| Plot {
+        title: case.clone(),
+        case,
+        x: Scale::linear(SCALES),
+        y: Scale::log("condition number [1]"),
+        curves,
+    };
+    let plots: Vec<Plot> = panels(runs, point, label).into_iter().map(plot).collect();
+    let figure = |(page, plots): (usize, &[Plot])| Figure {
         name: paged("conditioning", page),
         title: continued("Conditioning of the moment matrix", page),
         caption: "Median condition number over all integration points; the bar extends to the largest".into(),
-        canvas: canvas(
-            panels,
-            "condition number [1]",
-            true,
-            "Marker: median over the points; bar: up to the largest.",
-        ),
-        data: Data::Plots(plotted(panels, "condition number [1]", true)),
+        drawing: drawing(plots, "Marker: median over the points; bar: up to the largest."),
+        data: Data::Plots(plots.to_vec()),
     };
-    panels.chunks(PAGE).enumerate().map(figure).collect()
+    plots.chunks(PAGE).enumerate().map(figure).collect()
 }
 
 /// Neighbours per integration point: one panel, one line per case and basis.
@@ -46,24 +50,26 @@ pub(super) fn neighbours(runs: &[Run]) -> Vec<Figure> {
             r.value(&metric::NEIGHBOURS_MAX).unwrap_or(mean),
         ))
     };
-    let mut lines: Vec<Line> = Vec::new();
+    let mut curves = Vec::new();
     for (case, of_case) in panels(runs, point, |r| settings(r).join(", ")) {
-        for (basis, points) in of_case {
-            let label = if basis.is_empty() { case.clone() } else { format!("{case}, {basis}") };
-            lines.push((label, points));
+        for curve in of_case {
+            let label =
+                if curve.label.is_empty() { case.clone() } else { format!("{case}, {}", curve.label) };
+            curves.push(Curve { label, ..curve });
         }
     }
-    if lines.is_empty() {
+    if curves.is_empty() {
         return Vec::new();
     }
-    let panels = [("Neighbours".to_string(), lines)];
+    let (x, y) = (Scale::linear(SCALES), Scale::linear("neighbours [1]"));
+    let plots = vec![Plot { case: String::new(), title: "Neighbours".into(), x, y, curves }];
     vec![Figure {
         name: "neighbours".into(),
         title: "Neighbours per integration point".into(),
         caption: "Mean number of nodes whose support covers an integration point; the bar spans the smallest and the \
                   largest number".into(),
-        canvas: canvas(&panels, "neighbours [1]", false, "Marker: mean over the points; bar: smallest to largest number."),
-        data: Data::Plots(plotted(&panels, "neighbours [1]", false)),
+        drawing: drawing(&plots, "Marker: mean over the points; bar: smallest to largest number."),
+        data: Data::Plots(plots),
     }]
 }
 
@@ -85,21 +91,21 @@ fn settings(run: &Run) -> Vec<String> {
 const SWEEP: usize = 3;
 
 /// Panels by case and lines by label, at the Poisson's ratio and node count with the most support scales;
-/// each scale has one run.
+/// each scale has one run. `point` gives the value, its low and its high.
 fn panels(
     runs: &[Run],
     point: impl Fn(&Run) -> Option<(f64, f64, f64)>,
     label: impl Fn(&Run) -> String,
-) -> Vec<(String, Vec<Line>)> {
+) -> Vec<(String, Vec<Curve>)> {
     let mut out = Vec::new();
     for case in by_case(runs) {
-        let mut lines: Vec<Line> = Vec::new();
+        let mut lines: Vec<Curve> = Vec::new();
         let mut labels: Vec<String> =
             case.iter().filter(|r| r.is.family == Family::Efg).map(&label).collect();
         labels.sort();
         labels.dedup();
         for name in labels {
-            let mut best: Vec<(f64, f64, f64, f64)> = Vec::new();
+            let mut best: Vec<(f64, (f64, f64, f64))> = Vec::new();
             let own: Vec<&Run> =
                 case.iter().filter(|r| r.is.family == Family::Efg && label(r) == name).collect();
             let mut sizes: Vec<(u64, u64)> =
@@ -107,13 +113,8 @@ fn panels(
             sizes.sort();
             sizes.dedup();
             for size in sizes {
-                let mut points: Vec<(f64, f64, f64, f64)> = own
-                    .iter()
-                    .filter(|r| (r.is.nodes, r.is.poisson.to_bits()) == size)
-                    .filter_map(|r| {
-                        point(r).zip(r.is.support_scale).map(|((v, low, high), d)| (d, v, low, high))
-                    })
-                    .collect();
+                let same = own.iter().filter(|r| (r.is.nodes, r.is.poisson.to_bits()) == size);
+                let mut points: Vec<_> = same.filter_map(|r| r.is.support_scale.zip(point(r))).collect();
                 points.sort_by(|a, b| a.0.total_cmp(&b.0));
                 points.dedup_by(|a, b| a.0 == b.0);
                 if points.len() >= best.len() {
@@ -121,7 +122,9 @@ fn panels(
                 }
             }
             if best.len() >= SWEEP {
-                lines.push((name, best));
+                let points = best.iter().map(|(scale, value)| (*scale, value.0)).collect();
+                let band = best.iter().map(|(scale, value)| (*scale, value.1, value.2)).collect();
+                lines.push(Curve { band, ..Curve::new(name, Family::Efg, points, Vec::new()) });
             }
         }
         if !lines.is_empty() {
@@ -131,58 +134,38 @@ fn panels(
     out
 }
 
-/// The panels as data; the title of a panel of a case is the case name.
-fn plotted(panels: &[(String, Vec<Line>)], y: &str, log: bool) -> Vec<Plot> {
-    let curve = |(label, at): &Line| Curve {
-        band: at.iter().map(|p| (p.0, p.2, p.3)).collect(),
-        ..Curve::new(label.clone(), Family::Efg, at.iter().map(|p| (p.0, p.1)).collect(), Vec::new())
-    };
-    let plot = |(title, lines): &(String, Vec<Line>)| Plot {
-        case: if log { title.clone() } else { String::new() },
-        title: title.clone(),
-        x: Scale::linear("support radius / node spacing [1]"),
-        y: Scale { label: y.into(), log },
-        curves: lines.iter().map(curve).collect(),
-    };
-    panels.iter().map(plot).collect()
+fn drawing(plots: &[Plot], note: &str) -> Drawing {
+    let styles = styles(&plot::labels(plots));
+    let contents = plots.iter().map(|plot| {
+        let scales = || plot.curves.iter().flat_map(|curve| curve.points.iter().map(|p| p.0));
+        let styles = &styles;
+        Content {
+            x: Axis::linear(&plot.x.label, scales(), false).with_ticks(ticks(scales().collect())),
+            series: Box::new(move |chart| {
+                let x = chart.x_range();
+                for (i, curve) in plot.curves.iter().enumerate() {
+                    let Some(style) = find(styles, &curve.label) else { continue };
+                    // Bars are placed side by side, because they would hide each other.
+                    let aside =
+                        ASIDE * (x.end - x.start) * (i as f64 - 0.5 * (plot.curves.len() as f64 - 1.0));
+                    let points: Vec<_> = curve.points.iter().map(|p| (p.0 + aside, p.1)).collect();
+                    let thin = style.look.colour.stroke_width(8);
+                    let bars = points.iter().zip(&curve.band);
+                    chart.draw_series(
+                        bars.map(|(p, b)| ErrorBar::new_vertical(p.0, b.1, p.1, b.2, thin, 24)),
+                    )?;
+                    style.curve(chart, &points, 1)?;
+                }
+                Ok(())
+            }),
+            ..Content::of(plot, styles)
+        }
+    });
+    multiples(contents.collect(), &styles, note)
 }
 
-fn canvas(panels: &[(String, Vec<Line>)], y: &str, log: bool, note: &str) -> super::canvas::Canvas {
-    let styles = styles(
-        &panels.iter().flat_map(|p| p.1.iter().map(|l| (l.0.clone(), Family::Efg))).collect::<Vec<_>>(),
-    );
-    let contents = panels
-        .iter()
-        .map(|(title, lines)| {
-            let points = || lines.iter().flat_map(|l| l.1.iter());
-            let values = || points().flat_map(|p| [p.1, p.2, p.3]);
-            let styles = &styles;
-            Content {
-                title: title.clone(),
-                x: Axis::linear("support radius / node spacing [1]", points().map(|p| p.0), false)
-                    .with_ticks(ticks(points().map(|p| p.0).collect())),
-                y: if log { Axis::log(y, values()) } else { Axis::linear(y, values(), true) },
-                plot: Box::new(move |canvas, panel| {
-                    for (i, (label, points)) in lines.iter().enumerate() {
-                        let Some(style) = find(styles, label) else { continue };
-                        // Bars are placed side by side, because they would hide each other.
-                        let aside = 2.4 * (i as f64 - 0.5 * (lines.len() as f64 - 1.0));
-                        let place = |x: f64, y: f64| {
-                            let at = panel.at(x, y);
-                            (at.0 + aside, at.1)
-                        };
-                        for p in points {
-                            canvas.line(&[place(p.0, p.2), place(p.0, p.3)], style.look.colour, 0.8);
-                        }
-                        let at: Vec<_> = points.iter().map(|p| place(p.0, p.1)).collect();
-                        style.curve(canvas, &at);
-                    }
-                }),
-            }
-        })
-        .collect();
-    multiples(contents, &styles, note)
-}
+/// Distance between the bars of neighbouring curves over the length of the axis.
+const ASIDE: f64 = 0.015;
 
 /// Ticks at the support scales.
 fn ticks(mut values: Vec<f64>) -> Vec<(f64, String)> {
@@ -226,14 +209,15 @@ mod tests {
             let point = |r: &Run| r.value(&metric::CONDITION_MEDIAN).map(|v| (v, v, v));
             panels(&runs(records), point, |r| settings(r).join(", ")).remove(0).1
         };
-        let plain = (
-            "gauss-4".to_string(),
-            [(1.2, 31.0), (1.6, 23.0), (2.0, 24.0)].map(|(d, v)| (d, v, v, v)).to_vec(),
-        );
-        assert_eq!(lines(&records), std::slice::from_ref(&plain));
+        let found = |records: &[Record]| -> Vec<(String, Vec<(f64, f64)>)> {
+            lines(records).into_iter().map(|curve| (curve.label, curve.points)).collect()
+        };
+        let plain = ("gauss-4".to_string(), vec![(1.2, 31.0), (1.6, 23.0), (2.0, 24.0)]);
+        assert_eq!(lines(&records)[0].band, [(1.2, 31.0, 31.0), (1.6, 23.0, 23.0), (2.0, 24.0, 24.0)]);
+        assert_eq!(found(&records), std::slice::from_ref(&plain));
         // A sweep of coupled clouds is a separate line.
         records.extend([1.2, 2.0].map(|scale| cloud("a-coupled", scale, "coupling", 9e4)));
-        let both = lines(&records);
+        let both = found(&records);
         assert_eq!(
             (both[0].clone(), both[1].0.as_str(), both.len()),
             (plain, "gauss-4, coupled to elements", 2)

@@ -1,12 +1,14 @@
 //! Error as a function of spacing, with the theoretical slopes.
 
 use catalogue::metric::{self, Metric};
+use plotters::prelude::*;
+use plotters::style::text_anchor::HPos;
 
-use super::axes::{Axis, Panel, TEXT};
-use super::canvas::{Anchor, Canvas, GREY};
+use super::axes::Chart;
+use super::drawing::{Drawn, GREY, TEXT, text};
 use super::figure::{Data, Figure, PAGE, continued, paged};
 use super::grid::{Content, multiples};
-use super::style::{find, styles};
+use super::style::styles;
 use crate::order::ROUNDING;
 use crate::plot::{self, Curve, Plot, Scale};
 use crate::quantity::label;
@@ -58,29 +60,11 @@ type Paned = (String, String, Vec<Line>);
 fn figure(error: &'static Metric, page: usize, panels: &[Paned]) -> Figure {
     let plots: Vec<Plot> = panels.iter().map(|panel| plotted(panel, error)).collect();
     let styles = styles(&plot::labels(&plots));
-    let contents = panels
-        .iter()
-        .enumerate()
-        .map(|(i, (title, _, lines))| {
-            let points = || lines.iter().flat_map(|l| l.0.points.iter());
-            let y = Axis::log(&label(error), points().map(|p| p.1));
-            let styles = &styles;
-            Content {
-                title: title.clone(),
-                x: Axis::log(SPACING, points().map(|p| p.0)),
-                y: if i % 2 == 0 { y } else { y.without_label() },
-                plot: Box::new(move |canvas, panel| {
-                    slopes(canvas, panel, lines);
-                    for (curve, _) in lines {
-                        if let Some(style) = find(styles, &curve.label) {
-                            let at: Vec<_> = curve.points.iter().map(|p| panel.at(p.0, p.1)).collect();
-                            style.curve(canvas, &at);
-                        }
-                    }
-                }),
-            }
-        })
-        .collect();
+    let contents = plots.iter().zip(panels).enumerate().map(|(i, (plot, (_, _, lines)))| {
+        let content = Content::of(plot, &styles).over(move |chart| slopes(chart, lines));
+        let y = if i % 2 == 0 { content.y } else { content.y.without_label() };
+        Content { y, ..content }
+    });
     let note = "Grey: theoretical slopes. Errors at rounding level are not drawn.";
     Figure {
         name: paged(&format!("convergence-{}", error.name), page),
@@ -90,7 +74,7 @@ fn figure(error: &'static Metric, page: usize, panels: &[Paned]) -> Figure {
         ),
         caption: "Error against node spacing on logarithmic axes; the grey fan shows the theoretical slopes of the \
                   methods in the panel".into(),
-        canvas: multiples(contents, &styles, note),
+        drawing: multiples(contents.collect(), &styles, note),
         data: Data::Plots(plots),
     }
 }
@@ -106,26 +90,26 @@ fn plotted((title, case, lines): &Paned, error: &'static Metric) -> Plot {
 }
 
 /// Draws a fan of theoretical slopes in the lower right corner, which converging data leave free.
-fn slopes(canvas: &mut Canvas, panel: &Panel, lines: &[Line]) {
+fn slopes(chart: &mut Chart<'_>, lines: &[Line]) -> Drawn {
     let mut orders: Vec<f64> = lines.iter().filter_map(|l| l.1).collect();
     orders.sort_by(f64::total_cmp);
     orders.dedup();
-    let span = (panel.x.high() / panel.x.low()).ln();
-    let tall = (panel.y.high() / panel.y.low()).ln();
-    let steepest = orders.last().copied().unwrap_or(1.0);
+    let Some(steepest) = orders.last() else { return Ok(()) };
+    let (x, y) = (chart.x_range(), chart.y_range());
+    let (span, tall) = ((x.end / x.start).ln(), (y.end / y.start).ln());
     let run = (0.4 * span).min(0.5 * tall / steepest);
-    let right = panel.x.high() / (0.08 * span).exp();
-    let (left, foot) = (right / run.exp(), panel.y.low() * (0.06 * tall).exp());
-    let base = panel.at(left, foot);
-    let mut lowest = f64::MAX;
+    let (right, foot) = (x.end / (0.08 * span).exp(), y.start * (0.06 * tall).exp());
+    let base = (right / run.exp(), foot);
+    let mut lowest = i32::MAX;
     for order in &orders {
-        let top = panel.at(right, foot * (run * order).exp());
-        canvas.line(&[base, top], GREY, 1.0);
+        let top = (right, foot * (run * order).exp());
+        chart.draw_series(LineSeries::new([base, top], GREY.stroke_width(10)))?;
         // Labels are at least one line apart.
-        lowest = top.1.min(lowest - TEXT);
-        canvas.text((top.0 + 3.0, lowest), &format!("{order}"), TEXT, GREY, Anchor::Start);
+        let height = chart.backend_coord(&top).1;
+        lowest = height.min(lowest - TEXT as i32);
+        let label = Text::new(order.to_string(), (30, lowest - height), text(TEXT, HPos::Left).color(&GREY));
+        chart.draw_series([EmptyElement::at(top) + label])?;
     }
-    if !orders.is_empty() {
-        canvas.line(&[base, panel.at(right, foot)], GREY, 0.5);
-    }
+    chart.draw_series(LineSeries::new([base, (right, foot)], GREY.stroke_width(5)))?;
+    Ok(())
 }

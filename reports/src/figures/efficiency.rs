@@ -1,9 +1,12 @@
 //! Run time against error, the main result of a benchmark.
 
+use plotters::prelude::*;
+use plotters::style::text_anchor::HPos;
 use records::text::list;
 
-use super::axes::{Axis, Panel, TEXT};
-use super::canvas::{Canvas, GREY};
+use super::axes::{Axis, Chart};
+use super::backend::Attributed;
+use super::drawing::{Drawn, GREY, TEXT, text};
 use super::figure::{Data, Figure, PAGE, continued, paged};
 use super::grid::{Content, multiples};
 use super::style::{Style, find, styles};
@@ -46,7 +49,7 @@ fn figure(question: &Question, clock: Clock, page: usize, panels: &[Ask]) -> Fig
              staircase is the Pareto front of three or more runs: no run in the panel is both faster and more accurate",
             question.name
         ),
-        canvas: multiples(contents, &styles, &note(question, clock, panels)),
+        drawing: multiples(contents, &styles, &note(question, clock, panels)),
         data: Data::Fronts(plots),
     }
 }
@@ -81,14 +84,8 @@ fn y_axis(panel: &Ask) -> Axis {
     Axis::log(&label(panel.error), decade(errors.collect()).into_iter())
 }
 
-/// Whether the axis reaches an error of 1 %.
-fn shows_percent(y: &Axis) -> bool {
-    (y.low()..y.high()).contains(&PERCENT)
-}
-
 fn content<'a>(panel: &'a Ask, clock: Clock, styles: &'a [Style]) -> Content<'a> {
-    let Ask { title, lines, .. } = panel;
-    let panel_of_kernels = panel.kernels;
+    let (title, lines, kernels) = (&panel.title, &panel.lines, panel.kernels);
     let (scale, x) = match clock {
         Clock::First => (1.0, Axis::log(&panel.time(), all(lines).map(|r| r.seconds))),
         Clock::Repeated => {
@@ -101,31 +98,39 @@ fn content<'a>(panel: &'a Ask, clock: Clock, styles: &'a [Style]) -> Content<'a>
         title: title.clone(),
         x,
         y: y_axis(panel),
-        plot: Box::new(move |canvas, panel| {
-            let at = |r: &Timed| panel.at(scale * r.seconds, r.error.max(FLOOR));
-            let counted = |r: &Timed| panel.at(scale * r.seconds, r.counts.clamp(FLOOR, panel.y.high()));
+        series: Box::new(move |chart| {
+            let at = |r: &Timed| (scale * r.seconds, r.error.max(FLOOR));
+            let counted = |r: &Timed| (scale * r.seconds, r.counts.max(FLOOR));
             let best = pareto(all(lines).filter(|_| has_front(lines)), |r| (r.seconds, r.counts.max(FLOOR)));
-            front(canvas, panel, &best.iter().map(|r| counted(r)).collect::<Vec<_>>());
-            if shows_percent(&panel.y) {
-                let ends = [panel.x.low(), panel.x.high()].map(|x| panel.at(x, PERCENT));
-                canvas.dashed(&ends, GREY, 0.7, &[3.0, 2.0]);
+            front(chart, &best.iter().map(|r| counted(r)).collect::<Vec<_>>())?;
+            let (x, y) = (chart.x_range(), chart.y_range());
+            if y.contains(&PERCENT) {
+                chart.draw_series([helper(vec![(x.start, PERCENT), (x.end, PERCENT)])])?;
             }
             if clock == Clock::Repeated {
-                deadlines(canvas, panel, scale, lines);
+                deadlines(chart, scale, lines)?;
             }
             for line in lines {
                 let Some(style) = find(styles, &line.label) else { continue };
                 for run in line.runs.iter().filter(|r| r.counts > r.error) {
-                    canvas.line(&[at(run), counted(run)], style.look.colour, 0.6);
+                    let thin = style.look.colour.stroke_width(6);
+                    chart.draw_series(LineSeries::new([at(run), counted(run)], thin))?;
                 }
+                let points: Vec<_> = line.runs.iter().map(at).collect();
                 // A kernel with several integration rules has no line.
-                match panel_of_kernels {
-                    true => line.runs.iter().for_each(|r| style.mark(canvas, at(r))),
-                    false => style.curve(canvas, &line.runs.iter().map(at).collect::<Vec<_>>()),
+                match kernels {
+                    true => style.marks(chart, points.into_iter())?,
+                    false => style.curve(chart, &points, 1)?,
                 }
             }
+            Ok(())
         }),
     }
+}
+
+/// Dashed line for orientation.
+pub(super) fn helper(ends: Vec<(f64, f64)>) -> Attributed<(f64, f64)> {
+    Attributed::line(ends, GREY.stroke_width(7), &[30.0, 20.0])
 }
 
 /// Largest ratio between a deadline and the nearest run of a panel. A line farther away would squeeze the
@@ -183,7 +188,7 @@ fn note(question: &Question, clock: Clock, panels: &[Ask]) -> String {
         note += "Grey staircase: Pareto front. ";
     }
     note += "Down and to the left is better.";
-    if panels.iter().any(|panel| shows_percent(&y_axis(panel))) {
+    if panels.iter().any(|panel| y_axis(panel).range().contains(&PERCENT)) {
         note += " Dashed: an error of 1 %.";
     }
     if clock == Clock::Repeated {
@@ -224,32 +229,38 @@ fn note(question: &Question, clock: Clock, panels: &[Ask]) -> String {
 }
 
 /// Draws vertical lines at the deadlines of a frame.
-fn deadlines(canvas: &mut Canvas, panel: &Panel, scale: f64, lines: &[Line]) {
-    let (_, top, _, bottom) = panel.frame;
-    let markers: Vec<_> = all(lines).map(|r| panel.at(scale * r.seconds, r.error)).collect();
+fn deadlines(chart: &mut Chart<'_>, scale: f64, lines: &[Line]) -> Drawn {
+    let markers: Vec<_> = all(lines).map(|r| chart.backend_coord(&(scale * r.seconds, r.error))).collect();
+    let y = chart.y_range();
     for deadline in near(lines) {
-        let (x, _) = panel.at(scale * deadline.seconds, panel.y.low());
-        canvas.dashed(&[(x, top), (x, bottom)], GREY, 0.7, &[3.0, 2.0]);
-        // The label runs along the line, because there may be no room next to it, and is placed at the end
-        // with fewer markers.
-        let covered =
-            |y: f64| markers.iter().filter(|m| (m.0 - x - 6.0).abs() < 9.0 && (m.1 - y).abs() < 20.0).count();
-        let (low, high) = (bottom - 18.0, top + 18.0);
-        let y = if covered(high) < covered(low) { high } else { low };
-        canvas.vertical((x + 6.0, y), deadline.name, TEXT);
+        let x = scale * deadline.seconds;
+        chart.draw_series([helper(vec![(x, y.start), (x, y.end)])])?;
+        // The label runs along the line, because there may be no room next to it, and is placed where it
+        // covers the fewest markers, first of all at an end.
+        let [foot, head] = [y.start, y.end].map(|y| chart.backend_coord(&(x, y)));
+        let aside = |part: f64| (60, (part * f64::from(head.1 - foot.1)) as i32);
+        let covered = |part: &f64| {
+            let at = (foot.0 + aside(*part).0, foot.1 + aside(*part).1);
+            markers.iter().filter(|m| (m.0 - at.0).abs() < 90 && (m.1 - at.1).abs() < 200).count()
+        };
+        let part = [0.12, 0.88, 0.3, 0.7, 0.5].into_iter().min_by_key(covered).unwrap_or(0.5);
+        let upwards = text(TEXT, HPos::Center).transform(FontTransform::Rotate270);
+        let label = Text::new(deadline.name, aside(part), upwards);
+        chart.draw_series([EmptyElement::at((x, y.start)) + label])?;
     }
+    Ok(())
 }
 
 /// Draws a staircase along the best runs, from each time to the next smaller error.
-fn front(canvas: &mut Canvas, panel: &Panel, best: &[(f64, f64)]) {
-    let (Some(first), Some(last)) = (best.first(), best.last()) else { return };
-    let (_, top, right, _) = panel.frame;
-    let mut path = vec![(first.0, top), *first];
+fn front(chart: &mut Chart<'_>, best: &[(f64, f64)]) -> Drawn {
+    let (Some(first), Some(last)) = (best.first(), best.last()) else { return Ok(()) };
+    let mut path = vec![(first.0, chart.y_range().end), *first];
     for pair in best.windows(2) {
         path.extend([(pair[1].0, pair[0].1), pair[1]]);
     }
-    path.push((right, last.1));
-    canvas.line(&path, [0xb8, 0xb8, 0xb8], 3.0);
+    path.push((chart.x_range().end, last.1));
+    chart.draw_series(LineSeries::new(path, RGBColor(0xb8, 0xb8, 0xb8).stroke_width(30)))?;
+    Ok(())
 }
 
 #[cfg(test)]

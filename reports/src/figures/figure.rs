@@ -1,6 +1,6 @@
 //! A figure with its data.
 
-use super::canvas::Canvas;
+use super::drawing::Drawing;
 use crate::plot::{Plot, csv};
 
 /// Largest number of panels on a figure.
@@ -11,7 +11,7 @@ pub(crate) struct Figure {
     pub(crate) name: String,
     pub(crate) title: String,
     pub(crate) caption: String,
-    pub(crate) canvas: Canvas,
+    pub(crate) drawing: Drawing,
     pub(crate) data: Data,
 }
 
@@ -40,7 +40,7 @@ impl Data {
 
 /// A triangle on paper with its value.
 pub(super) struct Pictured {
-    pub(super) corners: [[f64; 2]; 3],
+    pub(super) corners: [(f64, f64); 3],
     pub(super) value: f64,
 }
 

@@ -1,69 +1,95 @@
 //! Small multiples: rows and columns of panels with one legend.
 
-use super::axes::{Axis, Panel, TEXT};
-use super::canvas::{Anchor, Canvas, GREY, text_width};
-use super::style::{Style, fillings, legend, legend_height};
+use super::axes::{ABOVE, Axis, BELOW, Chart, LEFT, framed};
+use super::drawing::{Area, Drawing, Drawn, LINE, noted, wrapped};
+use super::style::{Key, Style, fillings, find, keys, legend, legend_height};
+use crate::plot::{Curve, Plot};
 
-/// Page width of a journal, 178 mm, in points.
-pub(crate) const WIDTH: f64 = 504.0;
-/// Column width of a journal, 85 mm, in points. Figures with one panel have this width, so that their text is
-/// printed at its nominal size.
-pub(crate) const COLUMN: f64 = 241.0;
-const LEFT: f64 = 60.0;
-/// Room for a short label beyond the frame.
-const RIGHT: f64 = 24.0;
-const GAP: f64 = 66.0;
-const HEIGHT: f64 = 150.0;
-const STEP: f64 = 206.0;
+/// Page width of a journal, 178 mm.
+pub(crate) const WIDTH: i32 = 5040;
+/// Column width of a journal, 85 mm. Figures with one panel have this width, so that their text is printed at
+/// its nominal size.
+pub(crate) const COLUMN: i32 = 2410;
+/// Room left and right of the text below a figure.
+const MARGIN: i32 = 120;
+const HEIGHT: i32 = 1500;
+/// Room between panels and a legend.
+const GAP: i32 = 120;
+const STEP: i32 = ABOVE + HEIGHT + BELOW;
 
-/// A closure that draws into a frame.
-pub(crate) type Plot<'a> = Box<dyn Fn(&mut Canvas, &Panel) + 'a>;
+/// Largest number of markers on a line; more would hide it.
+const MARKS: usize = 12;
+
+/// A closure that draws into a chart.
+pub(crate) type Series<'a> = Box<dyn Fn(&mut Chart<'_>) -> Drawn + 'a>;
 
 /// Content of one panel.
 pub(crate) struct Content<'a> {
     pub(crate) title: String,
     pub(crate) x: Axis,
     pub(crate) y: Axis,
-    /// Draws the data into the frame.
-    pub(crate) plot: Plot<'a>,
+    /// Draws the data.
+    pub(crate) series: Series<'a>,
+}
+
+impl<'a> Content<'a> {
+    /// The curves of a plot.
+    pub(crate) fn of(plot: &'a Plot, styles: &'a [Style]) -> Content<'a> {
+        let points = || plot.curves.iter().flat_map(|curve| &curve.points);
+        let bands = plot.curves.iter().flat_map(|curve| curve.band.iter().flat_map(|b| [b.1, b.2]));
+        Content {
+            title: plot.title.clone(),
+            x: Axis::of(&plot.x, points().map(|p| p.0)),
+            y: Axis::of(&plot.y, points().map(|p| p.1).chain(bands)),
+            series: Box::new(move |chart| {
+                for Curve { label, points, .. } in &plot.curves {
+                    if let Some(style) = find(styles, label) {
+                        style.curve(chart, points, points.len().div_ceil(MARKS))?;
+                    }
+                }
+                Ok(())
+            }),
+        }
+    }
+
+    /// Draws something below the curves.
+    pub(crate) fn over(self, below: impl Fn(&mut Chart<'_>) -> Drawn + 'a) -> Content<'a> {
+        let series = self.series;
+        let both = move |chart: &mut Chart<'_>| below(chart).and_then(|()| series(chart));
+        Content { series: Box::new(both), ..self }
+    }
 }
 
 /// Draws panels of lines, two to a row, with a legend and a note below.
-pub(crate) fn multiples(panels: Vec<Content>, styles: &[Style], note: &str) -> Canvas {
+pub(crate) fn multiples(panels: Vec<Content>, styles: &[Style], note: &str) -> Drawing {
     let columns = panels.len().clamp(1, 2);
     let rows = panels.len().div_ceil(columns);
-    let whole = if columns == 1 { COLUMN } else { WIDTH };
-    let width = (whole - LEFT - RIGHT - GAP * (columns as f64 - 1.0)) / columns as f64;
-    let notes = wrapped(&format!("{}{note}", fillings(styles)), whole - 20.0);
-    let below = legend_height(styles, whole - 20.0) + 12.0 * notes.len() as f64 + 6.0;
-    let mut canvas = Canvas::new(whole, 20.0 + STEP * rows as f64 + below);
-    for (i, content) in panels.into_iter().enumerate() {
-        let left = LEFT + (i % columns) as f64 * (width + GAP);
-        let top = 24.0 + (i / columns) as f64 * STEP;
-        let panel = Panel { frame: (left, top, left + width, top + HEIGHT), x: content.x, y: content.y };
-        panel.draw(&mut canvas, &content.title);
-        (content.plot)(&mut canvas, &panel);
-    }
-    let bottom = 12.0 + STEP * rows as f64;
-    legend(&mut canvas, styles, (12.0, bottom), whole - 20.0, true);
-    let foot = bottom + legend_height(styles, whole - 20.0) + 10.0;
-    for (i, line) in notes.iter().enumerate() {
-        canvas.text((12.0, foot + 12.0 * i as f64), line, TEXT, GREY, Anchor::Start);
-    }
-    canvas
+    let width = if columns == 1 { COLUMN } else { WIDTH };
+    let note = format!("{}{note}", fillings(styles));
+    with_foot(width, STEP * rows as i32, keys(styles, true), &note, |area| {
+        for (area, content) in area.split_evenly((rows, columns)).iter().zip(panels) {
+            (content.series)(&mut framed(area, LEFT, &content.title, content.x, content.y)?)?;
+        }
+        Ok(())
+    })
 }
 
-/// Wraps a note into lines of a given width.
-pub(crate) fn wrapped(note: &str, width: f64) -> Vec<String> {
-    let mut lines: Vec<String> = Vec::new();
-    for word in note.split_whitespace() {
-        match lines.last_mut() {
-            Some(line) if text_width(&format!("{line} {word}"), TEXT) <= width => {
-                line.push(' ');
-                line.push_str(word);
-            }
-            _ => lines.push(word.into()),
-        }
-    }
-    lines
+/// Draws a page with a legend and a note below an area of the given height.
+pub(crate) fn with_foot(
+    width: i32,
+    above: i32,
+    keys: Vec<Key>,
+    note: &str,
+    draw: impl FnOnce(&Area) -> Drawn,
+) -> Drawing {
+    let notes = wrapped(note, width - 2 * MARGIN);
+    let between = legend_height(&keys, width - 2 * MARGIN) + LINE / 4;
+    let below = GAP + between + LINE * notes.len() as i32 + LINE / 2;
+    Drawing::new(width, above + below, |page| {
+        let (upper, lower) = page.split_vertically(above);
+        draw(&upper)?;
+        let (upper, lower) = lower.margin(GAP, 0, MARGIN, MARGIN).split_vertically(between);
+        legend(&upper, &keys)?;
+        noted(&lower, &notes)
+    })
 }

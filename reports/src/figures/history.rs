@@ -2,21 +2,19 @@
 //! by mode.
 
 use catalogue::metric::{self, Metric};
+use plotters::prelude::*;
 use records::Family;
 
-use super::axes::Axis;
-use super::canvas::{Canvas, Colour};
+use super::drawing::Drawing;
 use super::figure::{Data, Figure, PAGE, continued, paged};
 use super::grid::{Content, multiples};
-use super::style::{find, styles};
+use super::style::styles;
 use crate::history::{band, between, curve, reference};
 use crate::plot::{self, Curve, Plot, Scale};
 use crate::select::{Run, by_case, labels, series};
 
 /// Grey of an uncertainty band, light enough for every line on it.
-const UNCERTAIN: Colour = [0xd6, 0xd6, 0xd6];
-/// Largest number of markers on a line; more would hide it.
-const MARKS: usize = 12;
+const UNCERTAIN: RGBColor = RGBColor(0xd6, 0xd6, 0xd6);
 const ENERGIES: [(&Metric, &str); 9] = [
     (&metric::EXTERNAL_WORK, "work of loads and tools"),
     (&metric::WORK_ON_BODY, "work on the body"),
@@ -177,43 +175,25 @@ fn figures(name: &str, title: &str, caption: &str, panels: Vec<Pane>) -> Vec<Fig
         name: paged(name, page),
         title: continued(title, page),
         caption: caption.into(),
-        canvas: canvas(plots),
+        drawing: drawing(plots),
         data: Data::Plots(plots.to_vec()),
     };
     plots.chunks(PAGE).enumerate().map(page).collect()
 }
 
-fn canvas(plots: &[Plot]) -> Canvas {
+fn drawing(plots: &[Plot]) -> Drawing {
     let styles = styles(&plot::labels(plots));
     let uncertain = plots.iter().any(|p| p.curves.iter().any(|l| l.band.len() > 1));
-    let contents = plots
-        .iter()
-        .map(|plot| {
-            let lines = &plot.curves;
-            let points = || lines.iter().flat_map(|l| l.points.iter());
-            let ends = || lines.iter().flat_map(|l| l.band.iter().flat_map(|b| [b.1, b.2]));
-            let styles = &styles;
-            Content {
-                title: plot.title.clone(),
-                x: Axis::linear(&plot.x.label, points().map(|p| p.0), true),
-                y: Axis::linear(&plot.y.label, points().map(|p| p.1).chain(ends()), true),
-                plot: Box::new(move |canvas, panel| {
-                    for around in lines.iter().map(|l| &l.band).filter(|band| band.len() > 1) {
-                        let low = around.iter().map(|b| panel.at(b.0, b.1));
-                        let high = around.iter().rev().map(|b| panel.at(b.0, b.2));
-                        canvas.fill(&low.chain(high).collect::<Vec<_>>(), UNCERTAIN);
-                    }
-                    for line in lines {
-                        let Some(style) = find(styles, &line.label) else { continue };
-                        let at: Vec<_> = line.points.iter().map(|p| panel.at(p.0, p.1)).collect();
-                        canvas.dashed(&at, style.look.colour, 1.3, style.look.dash);
-                        for at in at.iter().step_by(at.len().div_ceil(MARKS)) {
-                            style.mark(canvas, *at);
-                        }
-                    }
-                }),
+    let content = |plot| {
+        Content::of(plot, &styles).over(move |chart| {
+            for band in plot.curves.iter().map(|curve| &curve.band).filter(|band| band.len() > 1) {
+                let low = band.iter().map(|b| (b.0, b.1));
+                let high = band.iter().rev().map(|b| (b.0, b.2));
+                chart.draw_series([Polygon::new(low.chain(high).collect::<Vec<_>>(), UNCERTAIN)])?;
             }
+            Ok(())
         })
-        .collect();
-    multiples(contents, &styles, if uncertain { "Grey band: uncertainty of the reference." } else { "" })
+    };
+    let note = if uncertain { "Grey band: uncertainty of the reference." } else { "" };
+    multiples(plots.iter().map(content).collect(), &styles, note)
 }

@@ -4,12 +4,12 @@ use catalogue::metric::{self, Metric};
 use records::Family;
 
 use super::axes::Axis;
-use super::canvas::GREY;
+use super::efficiency::helper;
 use super::figure::{Data, Figure, PAGE, continued, paged};
 use super::grid::{Content, multiples};
-use super::style::{find, styles};
+use super::style::styles;
 use crate::fronts::FLOOR;
-use crate::plot::{Curve, Plot, Scale};
+use crate::plot::{self, Curve, Plot, Scale};
 use crate::quantity::label;
 use crate::select::{Run, competing, labels};
 
@@ -97,53 +97,36 @@ fn stiffness(poisson: f64) -> f64 {
 }
 
 fn figure(page: usize, panels: &[(String, &'static Measure, Vec<Sweep>)]) -> Figure {
-    let all: Vec<(String, Family)> =
-        panels.iter().flat_map(|p| p.2.iter().map(|s| (s.0.clone(), s.1))).collect();
-    let styles = styles(&all);
-    let contents = panels
-        .iter()
-        .map(|(case, measure, sweeps)| {
-            let points = |s: &Sweep| -> Vec<(f64, f64)> {
-                s.2.iter().filter_map(|r| Some((r.is.poisson, usable(r, measure)?))).collect()
-            };
-            let values = || sweeps.iter().flat_map(points);
-            let mut ratios: Vec<f64> = values().map(|p| p.0).collect();
-            ratios.sort_by(f64::total_cmp);
-            ratios.dedup();
-            let ticks = spread_out(&ratios);
-            let styles = &styles;
-            Content {
-                title: format!("{case}: {}", measure.what),
-                x: Axis::log("Poisson's ratio ν [1], as 1/(1 − 2ν)", ratios.iter().map(|r| stiffness(*r)))
-                    .with_ticks(ticks),
-                y: if measure.is_error() {
-                    Axis::log(&label(measure.metric), values().map(|p| p.1))
-                } else {
-                    Axis::linear(RATIO, values().map(|p| p.1).chain([1.0]), true)
-                },
-                plot: Box::new(move |canvas, panel| {
-                    if !measure.is_error() {
-                        let (left, right) = (panel.at(panel.x.low(), 1.0), panel.at(panel.x.high(), 1.0));
-                        canvas.dashed(&[left, right], GREY, 0.8, &[3.0, 2.0]);
-                    }
-                    for sweep in sweeps {
-                        if let Some(style) = find(styles, &sweep.0) {
-                            let at: Vec<_> =
-                                points(sweep).iter().map(|p| panel.at(stiffness(p.0), p.1)).collect();
-                            style.curve(canvas, &at);
-                        }
-                    }
-                }),
-            }
+    let plots: Vec<Plot> = panels.iter().map(plotted).collect();
+    let styles = styles(&plot::labels(&plots));
+    let contents = plots.iter().zip(panels).map(|(plot, (case, measure, sweeps))| {
+        let drawn = sweeps.iter().flat_map(|s| &s.2).filter(|r| usable(r, measure).is_some());
+        let mut ratios: Vec<f64> = drawn.map(|r| r.is.poisson).collect();
+        ratios.sort_by(f64::total_cmp);
+        ratios.dedup();
+        let points = || plot.curves.iter().flat_map(|curve| &curve.points);
+        let content = Content {
+            title: format!("{case}: {}", measure.what),
+            x: Axis::log("Poisson's ratio ν [1], as 1/(1 − 2ν)", points().map(|p| p.0))
+                .with_ticks(spread_out(&ratios)),
+            // A ratio is compared with one.
+            y: Axis::of(&plot.y, points().map(|p| p.1).chain((!measure.is_error()).then_some(1.0))),
+            ..Content::of(plot, &styles)
+        };
+        content.over(move |chart| {
+            let x = chart.x_range();
+            let one = helper(vec![(x.start, 1.0), (x.end, 1.0)]);
+            chart.draw_series((!measure.is_error()).then_some(one))?;
+            Ok(())
         })
-        .collect();
+    });
     Figure {
         name: paged("locking", page),
         title: continued("Locking: error against Poisson's ratio", page),
         caption: "Each method at one size as the material becomes incompressible; the error of a method that locks \
                   grows to the right, and its tip deflection falls".into(),
-        canvas: multiples(contents, &styles, "Errors below 10⁻⁶ are drawn at 10⁻⁶."),
-        data: Data::Plots(panels.iter().map(plotted).collect()),
+        drawing: multiples(contents.collect(), &styles, "Errors below 10⁻⁶ are drawn at 10⁻⁶."),
+        data: Data::Plots(plots),
     }
 }
 

@@ -3,10 +3,10 @@
 mod axes;
 mod backend;
 mod bars;
-mod canvas;
 mod cloud;
 mod colour;
 mod convergence;
+mod drawing;
 mod efficiency;
 mod figure;
 mod grid;
@@ -23,7 +23,7 @@ mod style;
 mod surface;
 mod transfer;
 
-pub(crate) use canvas::png_and_pdf;
+pub(crate) use drawing::png_and_pdf;
 pub(crate) use figure::{Data, Figure};
 pub(crate) use locking::sweeps;
 pub use over_commits::svg as svg_over_commits;

@@ -4,7 +4,7 @@ use records::Family;
 use records::cell::csv_line;
 
 use super::axes::Axis;
-use super::canvas::Canvas;
+use super::drawing::Drawing;
 use super::figure::{Data, Figure};
 use super::grid::{Content, multiples};
 use super::style::{Style, find, styles};
@@ -22,7 +22,7 @@ pub(super) fn figure(trends: &[Trend]) -> Option<Figure> {
         caption: "Ratios to the first commit: the geometric mean of all errors, and the processor seconds of one pass \
                   over all runs, with the shortest repeat of each run. Changes outside noise are marked"
             .into(),
-        canvas: over_commits(trends),
+        drawing: over_commits(trends),
         data: Data::Rows(csv(trends)),
     })
 }
@@ -69,7 +69,7 @@ const NAMED: usize = 6;
 
 /// Draws two panels over the commits of each trend, as ratios to the first commit: errors and CPU seconds.
 /// Only steps outside of the noise have markers.
-fn over_commits(trends: &[Trend]) -> Canvas {
+fn over_commits(trends: &[Trend]) -> Drawing {
     let labels: Vec<(String, Family)> = trends.iter().map(|trend| (trend.label(), Family::Fem)).collect();
     let styles = styles(&labels);
     let errors = |point: &Point| point.error_ratio;
@@ -106,15 +106,13 @@ fn panel<'a>(
         title: title.into(),
         x: Axis::linear("commit", [0.0, last].into_iter(), true).with_ticks(names),
         y: Axis::linear(y, trends.iter().flat_map(points).map(|p| p.1).chain([1.0]), false),
-        plot: Box::new(move |canvas, panel| {
+        series: Box::new(move |chart| {
             for trend in trends {
-                let Some(style) = find(styles, &trend.label()) else {
-                    continue;
-                };
-                let at: Vec<_> = points(trend).map(|p| panel.at(p.0, p.1)).collect();
-                canvas.dashed(&at, style.look.colour, 1.3, style.look.dash);
-                points(trend).filter(|p| p.2).for_each(|p| style.mark(canvas, panel.at(p.0, p.1)));
+                let Some(style) = find(styles, &trend.label()) else { continue };
+                chart.draw_series([style.line(points(trend).map(|p| (p.0, p.1)).collect())])?;
+                style.marks(chart, points(trend).filter(|p| p.2).map(|p| (p.0, p.1)))?;
             }
+            Ok(())
         }),
     }
 }

@@ -63,11 +63,16 @@ fn path(content: &mut Content, shape: &usvg::Path, paper: Transform) -> Result<(
         .stroke()
         .map(|stroke| Ok::<_, String>((rgb(stroke.paint(), stroke.opacity())?, stroke.width().get())));
     let stroke = stroke.transpose()?;
+    let scaled = |length: f32| rounded(length * to_paper.get_scale().0);
+    let dashes = shape.stroke().and_then(usvg::Stroke::dasharray);
     if let Some([red, green, blue]) = fill {
         content.set_fill_rgb(red, green, blue);
     }
     if let Some(([red, green, blue], width)) = stroke {
-        content.set_stroke_rgb(red, green, blue).set_line_width(rounded(width * to_paper.get_scale().0));
+        content.set_stroke_rgb(red, green, blue).set_line_width(scaled(width));
+    }
+    if let Some(dashes) = dashes {
+        content.set_dash_pattern(dashes.iter().map(|length| scaled(*length)), 0.0);
     }
     let at = |mut point: Point| {
         to_paper.map_point(&mut point);
@@ -109,6 +114,9 @@ fn path(content: &mut Content, shape: &usvg::Path, paper: Transform) -> Result<(
         (None, Some(_)) => content.stroke(),
         (None, None) => content.end_path(),
     };
+    if dashes.is_some() {
+        content.set_dash_pattern([], 0.0);
+    }
     Ok(())
 }
 
@@ -141,6 +149,7 @@ mod tests {
     fn a_page_has_the_size_the_lines_and_the_outlines_of_the_drawing() {
         let svg = "<svg width=\"72pt\" height=\"36pt\" viewBox=\"0 0 720 360\" xmlns=\"http://www.w3.org/2000/svg\">\
                    <path fill=\"none\" stroke=\"#FF0000\" stroke-width=\"20\" d=\"M0 0l360 180\"/>\
+                   <path fill=\"none\" stroke=\"#FF0000\" stroke-width=\"20\" stroke-dasharray=\"50 20\" d=\"M0 0l360 180\"/>\
                    <path fill=\"#0000FF\" d=\"M100 100q100 0 100 100z\"/></svg>";
         let tree = usvg::Tree::from_str(svg, &usvg::Options::default()).unwrap();
         let made = pdf(&tree, "a title").unwrap();
@@ -152,6 +161,7 @@ mod tests {
         flate2::read::ZlibDecoder::new(&made[begin..]).read_to_string(&mut drawn).unwrap();
         // A line from the top left corner to the middle, two points wide, and the curve in its cubic form.
         assert!(drawn.contains("1 0 0 RG\n2 w\n0 36 m\n36 18 l\nS"), "{drawn}");
+        assert!(drawn.contains("2 w\n[5 2] 0 d\n0 36 m\n36 18 l\nS\n[] 0 d"), "{drawn}");
         assert!(drawn.contains("0 0 1 rg\n10 26 m\n16.667 26 20 22.667 20 16 c\nh\nf"), "{drawn}");
     }
 

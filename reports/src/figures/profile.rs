@@ -55,7 +55,7 @@ pub(super) fn figure(runs: &[Run]) -> Option<Figure> {
              is known), against the ratio of its time to the time of the fastest method (Dolan and More 2002)",
             wanted()
         ),
-        canvas: multiples(vec![content], &styles, &note),
+        drawing: multiples(vec![content], &styles, &note),
         data: Data::Plots(vec![plot]),
     })
 }
@@ -69,20 +69,19 @@ fn stairs(ratios: &[f64], of: usize) -> Vec<(f64, f64)> {
 }
 
 fn content<'a>(plot: &'a Plot, styles: &'a [super::style::Style]) -> Content<'a> {
-    let points = || plot.curves.iter().flat_map(|c| &c.points);
+    let shares = plot.curves.iter().flat_map(|c| &c.points).map(|p| p.1);
     Content {
-        title: plot.title.clone(),
-        x: Axis::log(&plot.x.label, points().map(|p| p.0)),
-        y: Axis::linear(&plot.y.label, points().map(|p| p.1).chain([1.0]), true),
-        plot: Box::new(move |canvas, panel| {
+        y: Axis::of(&plot.y, shares.chain([1.0])),
+        series: Box::new(move |chart| {
             for curve in &plot.curves {
                 let Some(style) = find(styles, &curve.label) else { continue };
-                let at: Vec<_> = curve.points.iter().map(|p| panel.at(p.0, p.1)).collect();
-                canvas.dashed(&at, style.look.colour, 1.3, style.look.dash);
+                chart.draw_series([style.line(curve.points.clone())])?;
                 // The upper corner of each step has a marker.
-                at.iter().skip(1).step_by(2).for_each(|corner| style.mark(canvas, *corner));
+                style.marks(chart, curve.points.iter().copied().skip(1).step_by(2))?;
             }
+            Ok(())
         }),
+        ..Content::of(plot, styles)
     }
 }
 

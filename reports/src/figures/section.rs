@@ -1,15 +1,14 @@
 //! A deformed section between the tools, with every cell in the colour of its own pressure. Nothing is
 //! smoothed, so that checkerboards of a locking or unstable method remain visible.
 
+use plotters::prelude::*;
 use records::store::slug;
 use records::text::significant;
 use records::{Section, SurfaceField};
 
-use super::axes::TEXT;
-use super::canvas::{Anchor, Canvas, GREY};
 use super::colour::Scale;
 use super::figure::{Data, Figure};
-use super::grid::{WIDTH, wrapped};
+use super::grid::{WIDTH, with_foot};
 use super::silhouette;
 use super::surface::{Chosen, GRASPED, Pose, carried, pictured, titled};
 use crate::select::Run;
@@ -60,9 +59,9 @@ fn figure(case: &str, chosen: &[Chosen], runs: &[Run]) -> Figure {
     let frame = sections[0].1;
     let on = |p: &[f64; 3]| {
         let along = |axis: &[f64; 3]| (0..3).map(|i| p[i] * axis[i]).sum::<f64>();
-        [along(&frame.right), along(&frame.up)]
+        (along(&frame.right), along(&frame.up))
     };
-    let tools = |f: &SurfaceField| -> Vec<Vec<[f64; 2]>> {
+    let tools = |f: &SurfaceField| -> Vec<Vec<(f64, f64)>> {
         f.tools.iter().map(|t| silhouette::outline(t, &frame.right, &frame.up)).collect()
     };
     let corners = sections.iter().flat_map(|(_, s)| s.cells.iter().flat_map(|c| c.corners.iter().map(on)));
@@ -74,32 +73,28 @@ fn figure(case: &str, chosen: &[Chosen], runs: &[Run]) -> Figure {
          kPa, the median over the methods of the pressure that 98 % of the cells stay below.",
         significant(limit * 1e-3, 3)
     );
-    let notes = wrapped(&note, WIDTH - 20.0);
-    let mut canvas = Canvas::new(WIDTH, pose.bottom() + 8.0 + 12.0 * notes.len() as f64);
-    for (i, (field, section)) in sections.iter().enumerate() {
-        let (least, most) = section
-            .cells
-            .iter()
-            .fold((f64::MAX, f64::MIN), |(low, high), c| (low.min(c.pressure), high.max(c.pressure)));
-        let range = format!("{} to {} kPa", significant(least * 1e-3, 2), significant(most * 1e-3, 2));
-        pose.title(&mut canvas, i, &titled(&chosen[i]), &range, &carried(field, runs));
-        let outlines: Vec<Vec<(f64, f64)>> =
-            tools(field).iter().map(|o| o.iter().map(|c| pose.place(i, c)).collect()).collect();
-        outlines.iter().for_each(|o| silhouette::fill(&mut canvas, o));
-        let mut cells: Vec<_> = section.cells.iter().collect();
-        // Cells of a section do not overlap, so those of equal colour may share a path in the file.
-        cells.sort_by(|a, b| a.pressure.total_cmp(&b.pressure));
-        for cell in cells {
-            let at: Vec<(f64, f64)> = cell.corners.iter().map(|c| pose.place(i, &on(c))).collect();
-            canvas.fill(&at, scale.colour(cell.pressure * 1e-3));
+    let drawing = with_foot(WIDTH, pose.height(), Vec::new(), &note, |area| {
+        let (areas, bar) = pose.areas(area);
+        for (i, (field, section)) in sections.iter().enumerate() {
+            let pressures = || section.cells.iter().map(|cell| cell.pressure * 1e-3);
+            let (least, most) = (pressures().fold(f64::MAX, f64::min), pressures().fold(f64::MIN, f64::max));
+            let range = format!("{} to {} kPa", significant(least, 2), significant(most, 2));
+            let mut body = pose.body(&areas[i], &titled(&chosen[i]), &range, &carried(field, runs))?;
+            let tools = tools(field);
+            body.draw_series(tools.iter().map(|o| silhouette::metal(o)))?;
+            let mut cells: Vec<_> = section.cells.iter().collect();
+            // Cells of a section do not overlap, so those of equal colour may share a path in the file.
+            cells.sort_by(|a, b| a.pressure.total_cmp(&b.pressure));
+            body.draw_series(cells.into_iter().map(|cell| {
+                Polygon::new(
+                    cell.corners.iter().map(on).collect::<Vec<_>>(),
+                    scale.colour(cell.pressure * 1e-3),
+                )
+            }))?;
+            body.draw_series(tools.iter().map(|o| silhouette::edge(o)))?;
         }
-        outlines.iter().for_each(|o| silhouette::edge(&mut canvas, o));
-    }
-    for (i, line) in notes.iter().enumerate() {
-        canvas.text((12.0, pose.bottom() + 4.0 + 12.0 * i as f64), line, TEXT, GREY, Anchor::Start);
-    }
-    let (at, height) = pose.bar();
-    scale.bar(&mut canvas, at, height, "p [kPa]");
+        scale.bar(&bar, "p [kPa]")
+    });
     Figure {
         name: format!("pressure-{}", slug(case)),
         title: format!("Pressure between the tools, {case}"),
@@ -107,7 +102,7 @@ fn figure(case: &str, chosen: &[Chosen], runs: &[Run]) -> Figure {
                   mean pressure as used by the method (from the projected dilation or the pressure field, if any), \
                   with one colour scale"
             .into(),
-        canvas,
+        drawing,
         data: Data::Picture(case.into()),
     }
 }

@@ -1,27 +1,29 @@
 //! Outlines of the tools in figures.
 
+use plotters::prelude::*;
 use records::ToolHull;
 
-use super::canvas::{Canvas, Colour};
-
-const METAL: Colour = [0xdd, 0xdd, 0xdd];
-const EDGE: Colour = [0x45, 0x45, 0x45];
+const METAL: RGBColor = RGBColor(0xdd, 0xdd, 0xdd);
+const EDGE: RGBColor = RGBColor(0x45, 0x45, 0x45);
 
 /// Outline (m) of a tool: the convex hull of its points projected on the axes `right` and `up`.
-pub(super) fn outline(tool: &ToolHull, right: &[f64; 3], up: &[f64; 3]) -> Vec<[f64; 2]> {
+pub(super) fn outline(tool: &ToolHull, right: &[f64; 3], up: &[f64; 3]) -> Vec<(f64, f64)> {
     let on = |p: &[f64; 3], axis: &[f64; 3]| (0..3).map(|i| p[i] * axis[i]).sum::<f64>();
     hull(tool.points.iter().map(|p| [on(p, right), on(p, up)]).collect())
+        .into_iter()
+        .map(|[x, y]| (x, y))
+        .collect()
 }
 
-/// Fills a tool with the colour of metal; later shapes may cover it.
-pub(super) fn fill(canvas: &mut Canvas, at: &[(f64, f64)]) {
-    canvas.fill(at, METAL);
+/// A tool in the colour of metal; later shapes may cover it.
+pub(super) fn metal(outline: &[(f64, f64)]) -> Polygon<(f64, f64)> {
+    Polygon::new(outline.to_vec(), METAL)
 }
 
-/// Draws the closed edge of a tool.
-pub(super) fn edge(canvas: &mut Canvas, at: &[(f64, f64)]) {
-    let closed: Vec<_> = at.iter().chain(at.first()).copied().collect();
-    canvas.line(&closed, EDGE, 0.8);
+/// Closed edge of a tool.
+pub(super) fn edge(outline: &[(f64, f64)]) -> PathElement<(f64, f64)> {
+    let closed: Vec<_> = outline.iter().chain(outline.first()).copied().collect();
+    PathElement::new(closed, EDGE.stroke_width(8))
 }
 
 /// Convex hull, counter-clockwise (Andrew's monotone chain, 1979).
@@ -61,6 +63,6 @@ mod tests {
         }
         let tool = ToolHull { name: "jaw".into(), points };
         let seen = outline(&tool, &[1.0, 0.0, 0.0], &[0.0, 1.0, 0.0]);
-        assert_eq!(seen, [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]);
+        assert_eq!(seen, [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)]);
     }
 }

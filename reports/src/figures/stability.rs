@@ -1,19 +1,20 @@
 //! Stability maps: a row for each method, a column for each value of an axis, and a colour for each verdict.
 
+use plotters::prelude::*;
+use plotters::style::text_anchor::HPos;
 use records::cell::csv_line;
 use records::store::slug;
 use records::text::{short, significant};
 use records::{Axis, AxisVerdict as Verdict, Trial};
 
-use super::axes::TEXT;
-use super::canvas::{Anchor, BLACK_INK, Canvas, Colour, GREY, text_width};
+use super::drawing::{Drawing, TEXT, bold, text, text_width, widest};
 use super::figure::{Data, Figure};
-use super::grid::{WIDTH, wrapped};
+use super::grid::{WIDTH, with_foot};
+use super::style::{self, Key};
 use crate::quantity::label_of_name;
 
-const ROW: f64 = 15.0;
-const TOP: f64 = 34.0;
-const WHITE_INK: Colour = [0xff, 0xff, 0xff];
+const ROW: i32 = 150;
+const TOP: i32 = 340;
 
 /// One figure per axis.
 pub(super) fn maps(axes: &[Axis]) -> Vec<Figure> {
@@ -27,7 +28,7 @@ pub(super) fn maps(axes: &[Axis]) -> Vec<Figure> {
             value(axis, axis.base),
             significant(100.0 * axis.wrong, 2),
         ),
-        canvas: draw(axis),
+        drawing: draw(axis),
         data: Data::Rows(csv(axis)),
     });
     each.collect()
@@ -39,12 +40,14 @@ fn value(axis: &Axis, v: f64) -> String {
 }
 
 /// Colours of wrong or missing results: warned, refused, silent.
-const BAD: [Colour; 3] = [[0xf0, 0xa2, 0x4a], [0xd8, 0xd8, 0xd8], [0xa5, 0x0f, 0x15]];
+const BAD: [RGBColor; 3] =
+    [RGBColor(0xf0, 0xa2, 0x4a), RGBColor(0xd8, 0xd8, 0xd8), RGBColor(0xa5, 0x0f, 0x15)];
 /// Colours of results that are not wrong, the best last.
-const GOOD: [Colour; 3] = [[0xf7, 0xec, 0xb0], [0xd4, 0xe7, 0xf2], [0xa4, 0xcc, 0xe3]];
+const GOOD: [RGBColor; 3] =
+    [RGBColor(0xf7, 0xec, 0xb0), RGBColor(0xd4, 0xe7, 0xf2), RGBColor(0xa4, 0xcc, 0xe3)];
 
 /// Colour of a class, by its index and the number of classes.
-fn colour(class: usize, classes: usize) -> Colour {
+fn colour(class: usize, classes: usize) -> RGBColor {
     let good = classes - BAD.len();
     if class < good { GOOD[good - 1 - class] } else { BAD[class - good] }
 }
@@ -65,48 +68,41 @@ fn csv(axis: &Axis) -> String {
     out
 }
 
-fn draw(axis: &Axis) -> Canvas {
+fn draw(axis: &Axis) -> Drawing {
     let methods = axis.methods();
-    let left = 12.0 + methods.iter().map(|m| text_width(m, TEXT)).fold(40.0, f64::max).min(200.0);
-    let width = (WIDTH - left - 6.0) / axis.values.len() as f64;
-    let bottom = TOP + ROW * methods.len() as f64;
-    let key = axis.classes();
-    let notes = wrapped(&note(axis), WIDTH - 20.0);
-    let mut canvas = Canvas::new(WIDTH, bottom + 34.0 + 12.0 * notes.len() as f64);
+    let left = 120 + widest(methods.iter()).min(2000);
+    let width = (WIDTH - left - 60) / axis.values.len().max(1) as i32;
+    let classes = axis.classes();
     let unit = if axis.unit.is_empty() { "1" } else { &axis.unit };
-    canvas.bold((6.0, 12.0), &format!("{}: {} [{unit}]", axis.case, axis.name), TEXT, Anchor::Start);
-    for (column, &v) in axis.values.iter().enumerate() {
-        let x = left + column as f64 * width;
-        let head = short(v);
-        let size = TEXT.min(TEXT * (width - 3.0) / text_width(&head, TEXT));
-        canvas.text((x + width / 2.0, TOP - 8.0), &head, size, BLACK_INK, Anchor::Middle);
-        for (row, method) in methods.iter().enumerate() {
-            let y = TOP + ROW * row as f64;
-            if let Some(trial) = axis.trial(method, v) {
-                fill(&mut canvas, (x, y, width - 1.0, ROW - 1.0), colour(axis.class(trial), key.len()));
-                let at = (x + width / 2.0, y + ROW / 2.0);
-                match axis.verdict(trial) {
-                    Verdict::Silent => canvas.text(at, &number(trial), TEXT - 1.0, WHITE_INK, Anchor::Middle),
-                    Verdict::Bends => canvas.bold(at, &number(trial), TEXT - 1.0, Anchor::Middle),
-                    _ => canvas.text(at, &number(trial), TEXT - 1.0, BLACK_INK, Anchor::Middle),
-                }
+    let key = |(class, name): (usize, &String)| -> Key {
+        let fill = colour(class, classes.len()).filled();
+        (name.clone(), Rectangle::new([(120, 20), (240, style::ROW - 20)], fill).into_dyn())
+    };
+    let keys = classes.iter().enumerate().map(key).collect();
+    with_foot(WIDTH, TOP + ROW * methods.len() as i32, keys, &note(axis), |area| {
+        let title = format!("{}: {} [{unit}]", axis.case, axis.name);
+        area.draw_text(&title, &bold(TEXT, HPos::Left), (60, 120))?;
+        for (method, y) in methods.iter().zip((TOP..).step_by(ROW as usize)) {
+            area.draw_text(method, &text(TEXT, HPos::Right), (left - 60, y + ROW / 2))?;
+        }
+        for (&v, x) in axis.values.iter().zip((left..).step_by(width as usize)) {
+            let head = short(v);
+            let size = TEXT * (f64::from(width - 30) / f64::from(text_width(&head, TEXT))).min(1.0);
+            area.draw_text(&head, &text(size, HPos::Center), (x + width / 2, TOP - 80))?;
+            for (method, y) in methods.iter().zip((TOP..).step_by(ROW as usize)) {
+                let Some(trial) = axis.trial(method, v) else { continue };
+                let fill = colour(axis.class(trial), classes.len()).filled();
+                area.draw(&Rectangle::new([(x, y), (x + width - 10, y + ROW - 10)], fill))?;
+                let style = match axis.verdict(trial) {
+                    Verdict::Silent => text(TEXT - 10.0, HPos::Center).color(&WHITE),
+                    Verdict::Bends => bold(TEXT - 10.0, HPos::Center),
+                    _ => text(TEXT - 10.0, HPos::Center),
+                };
+                area.draw_text(&number(trial), &style, (x + width / 2, y + ROW / 2))?;
             }
         }
-    }
-    for (row, method) in methods.iter().enumerate() {
-        let at = (left - 6.0, TOP + ROW * row as f64 + ROW / 2.0);
-        canvas.text(at, method, TEXT, BLACK_INK, Anchor::End);
-    }
-    let mut x = 12.0;
-    for (class, name) in key.iter().enumerate() {
-        fill(&mut canvas, (x, bottom + 10.0, 12.0, 10.0), colour(class, key.len()));
-        canvas.text((x + 16.0, bottom + 15.0), name, TEXT, BLACK_INK, Anchor::Start);
-        x += 34.0 + text_width(name, TEXT);
-    }
-    for (i, line) in notes.iter().enumerate() {
-        canvas.text((12.0, bottom + 34.0 + 12.0 * i as f64), line, TEXT, GREY, Anchor::Start);
-    }
-    canvas
+        Ok(())
+    })
 }
 
 fn note(axis: &Axis) -> String {
@@ -116,10 +112,6 @@ fn note(axis: &Axis) -> String {
         value(axis, axis.base),
         significant(100.0 * axis.wrong, 2),
     )
-}
-
-fn fill(canvas: &mut Canvas, (x, y, width, height): (f64, f64, f64, f64), colour: Colour) {
-    canvas.fill(&[(x, y), (x + width, y), (x + width, y + height), (x, y + height)], colour);
 }
 
 /// The error in per cent, in as few characters as possible.

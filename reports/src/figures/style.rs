@@ -1,10 +1,18 @@
 //! Appearance of a method in figures: marker, line and legend.
 
+use plotters::element::ComposedElement;
+use plotters::prelude::*;
+use plotters::style::text_anchor::HPos;
+use plotters_backend::BackendCoord;
 use records::Family;
 
-use super::axes::TEXT;
-use super::canvas::{Anchor, BLACK_INK, Canvas, text_width};
+use super::axes::Chart;
+use super::backend::{Attributed, CIRCLE, Paths, ring};
+use super::drawing::{Area, Drawn, PER_POINT, TEXT, text, widest};
 use crate::appearance::{Look, distinct};
+
+/// A marker and its rim.
+pub(super) type Mark<C> = ComposedElement<C, Paths, Polygon<BackendCoord>, PathElement<BackendCoord>>;
 
 /// Style of a label.
 #[derive(Clone, Debug, PartialEq)]
@@ -31,75 +39,89 @@ pub(crate) fn find<'a>(styles: &'a [Style], label: &str) -> Option<&'a Style> {
 }
 
 impl Style {
-    /// Draws the marker with a radius of 2.7 points: filled for elements, open for clouds.
-    pub(crate) fn mark(&self, canvas: &mut Canvas, at: (f64, f64)) {
-        let r = 2.7;
-        let ring = |n: usize, turn: f64, r: f64| -> Vec<(f64, f64)> {
-            (0..=n)
-                .map(|i| {
-                    let angle = std::f64::consts::TAU * (i as f64 / n as f64 + turn);
-                    (at.0 + r * angle.sin(), at.1 - r * angle.cos())
-                })
-                .collect()
+    /// Marker at a point: filled for elements, open for clouds.
+    pub(super) fn mark<C>(&self, at: C) -> Mark<C> {
+        let (corners, turn, size) = match self.look.marker {
+            0 => (CIRCLE, 0.0, 27.0),
+            1 => (4, 0.125, 34.0),
+            2 => (3, 0.0, 36.0),
+            3 => (4, 0.0, 35.0),
+            4 => (3, 0.5, 36.0),
+            5 => (5, 0.0, 31.0),
+            _ => (6, 0.0, 30.0),
         };
-        let outline = match self.look.marker {
-            0 => ring(20, 0.0, r),
-            1 => ring(4, 0.125, r * 1.25),
-            2 => ring(3, 0.0, r * 1.35),
-            3 => ring(4, 0.0, r * 1.3),
-            4 => ring(3, 0.5, r * 1.35),
-            5 => ring(5, 0.0, r * 1.15),
-            _ => ring(6, 0.0, r * 1.1),
+        let ring = ring(corners, turn, size);
+        let colour = self.look.colour;
+        let (fill, rim) = match self.look.open {
+            true => (WHITE, colour.stroke_width(12)),
+            false => (colour, WHITE.stroke_width(4)),
         };
-        let open = self.look.open;
-        canvas.fill(&outline, if open { [255, 255, 255] } else { self.look.colour });
-        canvas.line(
-            &outline,
-            if open { self.look.colour } else { [255, 255, 255] },
-            if open { 1.2 } else { 0.4 },
-        );
+        EmptyElement::at(at) + Polygon::new(ring.clone(), fill) + PathElement::new(ring, rim)
     }
 
-    /// Draws the line through the points, and their markers.
-    pub(crate) fn curve(&self, canvas: &mut Canvas, points: &[(f64, f64)]) {
-        if points.len() > 1 {
-            canvas.dashed(points, self.look.colour, 1.3, self.look.dash);
-        }
-        for at in points {
-            self.mark(canvas, *at);
-        }
+    /// Line through points.
+    pub(super) fn line<C>(&self, points: Vec<C>) -> Attributed<C> {
+        let lengths: Vec<f64> = self.look.dash.iter().map(|length| length * PER_POINT).collect();
+        Attributed::line(points, self.look.colour.stroke_width(13), &lengths)
+    }
+
+    /// Draws a curve with a marker at every `each`-th point.
+    pub(super) fn curve(&self, chart: &mut Chart<'_>, points: &[(f64, f64)], each: usize) -> Drawn {
+        chart.draw_series([self.line(points.to_vec())])?;
+        self.marks(chart, points.iter().copied().step_by(each))
+    }
+
+    /// Draws markers.
+    pub(super) fn marks(&self, chart: &mut Chart<'_>, points: impl Iterator<Item = (f64, f64)>) -> Drawn {
+        chart.draw_series(points.map(|at| self.mark(at)))?;
+        Ok(())
     }
 }
 
-/// Number of columns of a legend that fit a width, and the width of a column.
-fn layout(styles: &[Style], width: f64) -> (usize, f64) {
-    let widest = styles.iter().map(|s| text_width(&s.label, TEXT)).fold(0.0, f64::max) + 44.0;
-    let columns = ((width / widest).floor() as usize).clamp(1, styles.len().max(1));
-    (columns, widest)
+/// An entry of a legend: its label, and the element before the label.
+pub(super) type Key = (String, DynElement<'static, Paths, BackendCoord>);
+
+/// Height of an entry, width of its element, and room for it and the gap to the next column.
+pub(super) const ROW: i32 = 140;
+const KEY: i32 = 290;
+const COLUMN: i32 = 440;
+
+/// Entries of methods, with lines if the figure connects its markers.
+pub(super) fn keys(styles: &[Style], lines: bool) -> Vec<Key> {
+    let ends = if lines { vec![(0, 0), (240, 0)] } else { Vec::new() };
+    let key = |style: &Style| {
+        let element = EmptyElement::at((0, ROW / 2)) + style.line(ends.clone()) + style.mark((120, 0));
+        (style.label.clone(), element.into_dyn())
+    };
+    styles.iter().map(key).collect()
+}
+
+/// Number of rows of a legend in columns that fit a width, and the width of a column.
+fn layout(keys: &[Key], width: i32) -> (usize, i32) {
+    let column = COLUMN + widest(keys.iter().map(|key| &key.0));
+    let columns = ((width / column) as usize).clamp(1, keys.len().max(1));
+    (keys.len().div_ceil(columns), column)
+}
+
+/// Height of a legend.
+pub(super) fn legend_height(keys: &[Key], width: i32) -> i32 {
+    layout(keys, width).0 as i32 * ROW
+}
+
+/// Draws a legend in columns. (A legend of plotters has one column and stands inside a chart.)
+pub(super) fn legend(area: &Area, keys: &[Key]) -> Drawn {
+    let (rows, column) = layout(keys, area.dim_in_pixel().0 as i32);
+    for (k, (label, element)) in keys.iter().enumerate() {
+        let at = ((k / rows) as i32 * column, (k % rows) as i32 * ROW);
+        let area = area.clone().shrink(at, (column, ROW));
+        area.draw(element)?;
+        area.draw_text(label, &text(TEXT, HPos::Left), (KEY, ROW / 2))?;
+    }
+    Ok(())
 }
 
 /// Note on filled and open markers, for a legend that has both.
-pub(crate) fn fillings(styles: &[Style]) -> &'static str {
+pub(super) fn fillings(styles: &[Style]) -> &'static str {
     let both = styles.iter().any(|s| s.look.open) && styles.iter().any(|s| !s.look.open);
     if both { "Filled: elements, open: clouds. " } else { "" }
-}
-
-/// Height of a legend, points.
-pub(crate) fn legend_height(styles: &[Style], width: f64) -> f64 {
-    let (columns, _) = layout(styles, width);
-    styles.len().div_ceil(columns) as f64 * 14.0
-}
-
-/// Draws a legend with its top left corner at a point, with lines if the figure connects its markers.
-pub(crate) fn legend(canvas: &mut Canvas, styles: &[Style], at: (f64, f64), width: f64, lines: bool) {
-    let (columns, step) = layout(styles, width);
-    let rows = styles.len().div_ceil(columns);
-    for (i, style) in styles.iter().enumerate() {
-        let (x, y) = (at.0 + (i / rows) as f64 * step, at.1 + (i % rows) as f64 * 14.0 + 7.0);
-        if lines {
-            canvas.dashed(&[(x, y), (x + 24.0, y)], style.look.colour, 1.3, style.look.dash);
-        }
-        style.mark(canvas, (x + 12.0, y));
-        canvas.text((x + 29.0, y), &style.label, TEXT, BLACK_INK, Anchor::Start);
-    }
 }

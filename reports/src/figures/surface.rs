@@ -1,15 +1,20 @@
 //! Bodies seen from outside, deformed and coloured by displacement magnitude.
 
 use catalogue::metric;
+use plotters::coord::types::RangedCoordf64;
+use plotters::prelude::*;
+use plotters::style::text_anchor::HPos;
 use records::store::slug;
 use records::text::significant;
 use records::{Family, SurfaceField};
 
-use super::axes::TEXT;
-use super::canvas::{Anchor, BLACK_INK, Canvas, GREY, text_width};
+use super::backend::{Attributed, Paths};
 use super::colour::Scale;
+use super::drawing::{
+    Area, BLACK_INK, Drawing, Drawn, GREY, LINE, TEXT, bold, noted, text, text_width, wrapped,
+};
 use super::figure::{Data, Figure, Pictured};
-use super::grid::{WIDTH, wrapped};
+use super::grid::WIDTH;
 use super::silhouette;
 use crate::select::Run;
 
@@ -93,85 +98,87 @@ fn magnitude(u: &[f64; 3]) -> f64 {
     (u[0] * u[0] + u[1] * u[1] + u[2] * u[2]).sqrt()
 }
 
-/// Layout of bodies of one scale side by side on a page, with the colour bar.
+/// Bodies of one scale side by side, with a colour bar.
 pub(super) struct Pose {
     columns: usize,
     rows: usize,
-    width: f64,
     low: [f64; 2],
     size: [f64; 2],
+    /// Lengths on paper per metre.
     scale: f64,
 }
 
-/// Room for a colour bar with its numbers, and between bodies, points.
-const BAR: f64 = 54.0;
-const GAP: f64 = 6.0;
+/// A body in coordinates of its view (m).
+pub(super) type Body<'a> = ChartContext<'a, Paths, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
+
+/// Room for a colour bar with its numbers.
+const BAR: i32 = 540;
+/// Largest height of a body.
+const TALL: f64 = 3000.0;
+/// Room between bodies, above a body for its title, and below it.
+const GAP: i32 = 80;
+const HEAD: i32 = 580;
+const BELOW: i32 = 80;
 /// Width of bold text over that of regular text.
-const BOLD: f64 = 1.12;
-/// Room for the title above a body, and with the margin below it, points.
-const HEAD: f64 = 58.0;
-const ROOM: f64 = 66.0;
+const WIDER: f64 = 1.12;
 
 impl Pose {
     /// Lays out `count` bodies whose extent is given by the points (m).
-    pub(super) fn new(count: usize, points: impl Iterator<Item = [f64; 2]>) -> Pose {
+    pub(super) fn new(count: usize, points: impl Iterator<Item = (f64, f64)>) -> Pose {
         let (mut low, mut high) = ([f64::MAX; 2], [f64::MIN; 2]);
         for c in points {
-            for axis in 0..2 {
-                low[axis] = low[axis].min(c[axis]);
-                high[axis] = high[axis].max(c[axis]);
+            for (axis, value) in [c.0, c.1].into_iter().enumerate() {
+                low[axis] = low[axis].min(value);
+                high[axis] = high[axis].max(value);
             }
         }
         let columns = count.clamp(1, SHOWN);
-        let width = (WIDTH - BAR - GAP * (columns as f64 + 1.0)) / columns as f64;
         let size = [(high[0] - low[0]).max(1e-12), (high[1] - low[1]).max(1e-12)];
-        let scale = ((width - 10.0) / size[0]).min(300.0 / size[1]);
-        Pose { columns, rows: count.div_ceil(columns), width, low, size, scale }
+        let width = (WIDTH - BAR) / columns as i32 - 2 * GAP;
+        Pose {
+            columns,
+            rows: count.div_ceil(columns),
+            low,
+            size,
+            scale: (f64::from(width) / size[0]).min(TALL / size[1]),
+        }
     }
 
-    fn height(&self) -> f64 {
-        self.size[1] * self.scale + ROOM
+    fn tall(&self) -> i32 {
+        (self.size[1] * self.scale).round() as i32
     }
 
-    /// Position below the last row.
-    pub(super) fn bottom(&self) -> f64 {
-        self.height() * self.rows as f64
+    /// Height of all rows.
+    pub(super) fn height(&self) -> i32 {
+        (HEAD + self.tall() + BELOW) * self.rows as i32
     }
 
-    fn corner(&self, index: usize) -> (f64, f64) {
-        let column = (index % self.columns) as f64;
-        (GAP + column * (self.width + GAP), (index / self.columns) as f64 * self.height())
+    /// Areas of the bodies, and that of the colour bar.
+    pub(super) fn areas(&self, area: &Area) -> (Vec<Area>, Area) {
+        let (bodies, bar) = area.split_horizontally(WIDTH - BAR);
+        let tall = (self.tall() - 200).clamp(800, 3000) + HEAD - 300;
+        (bodies.split_evenly((self.rows, self.columns)), bar.shrink((80, 300), (BAR - 80, tall)))
     }
 
-    /// Position on paper of a point of a body.
-    pub(super) fn place(&self, index: usize, at: &[f64; 2]) -> (f64, f64) {
-        let (left, top) = self.corner(index);
-        let foot = top + HEAD + self.size[1] * self.scale;
-        let start = left + (self.width - self.size[0] * self.scale) / 2.0;
-        (start + (at[0] - self.low[0]) * self.scale, foot - (at[1] - self.low[1]) * self.scale)
-    }
-
-    /// Draws the name, the size in brackets and two more lines above a body.
-    pub(super) fn title(&self, canvas: &mut Canvas, index: usize, title: &str, first: &str, second: &str) {
-        let (left, top) = self.corner(index);
-        let middle = left + self.width / 2.0;
+    /// Draws the name, the size in brackets and two more lines, and returns the body below them.
+    pub(super) fn body<'a>(&self, area: &Area, title: &str, first: &str, second: &str) -> Drawn<Body<'a>> {
+        let width = area.dim_in_pixel().0 as i32;
         let (name, rest) = title.split_once(" (").unwrap_or((title, ""));
         // The number of nodes is on the next line. A name that is still wider than the column is set in a
         // smaller size.
         let count = rest.split(' ').next().unwrap_or_default();
         let name = name.strip_suffix(count).and_then(|n| n.strip_suffix('-')).unwrap_or(name);
-        let size = TEXT * (self.width / (BOLD * text_width(name, TEXT))).min(1.0);
-        canvas.bold((middle, top + 12.0), name, size, Anchor::Middle);
-        for (line, text) in [rest.trim_end_matches(')'), first, second].into_iter().enumerate() {
-            if !text.is_empty() {
-                canvas.text((middle, top + 24.0 + 12.0 * line as f64), text, TEXT, GREY, Anchor::Middle);
-            }
+        let size = TEXT * (f64::from(width) / (WIDER * f64::from(text_width(name, TEXT)))).min(1.0);
+        area.draw_text(name, &bold(size, HPos::Center), (width / 2, LINE))?;
+        for (line, words) in (2..).zip([rest.trim_end_matches(')'), first, second]) {
+            area.draw_text(words, &text(TEXT, HPos::Center).color(&GREY), (width / 2, line * LINE))?;
         }
-    }
-
-    /// Top left corner and height of a colour bar.
-    pub(super) fn bar(&self) -> ((f64, f64), f64) {
-        ((WIDTH - BAR + 8.0, HEAD), (self.size[1] * self.scale - 20.0).clamp(80.0, 300.0))
+        let middle = self.low[0] + self.size[0] / 2.0;
+        let half = f64::from(width) / 2.0 / self.scale;
+        ChartBuilder::on(area)
+            .margin_top(HEAD)
+            .margin_bottom(BELOW)
+            .build_cartesian_2d(middle - half..middle + half, self.low[1]..self.low[1] + self.size[1])
     }
 }
 
@@ -181,7 +188,7 @@ fn figure(case: &str, chosen: &[Chosen], runs: &[Run]) -> Figure {
     let scale = Scale::Rising(largest);
     let tools = fields.iter().any(|f| !f.tools.is_empty());
     let view = if tools { beside(&fields) } else { view(&fields) };
-    let outlines: Vec<Vec<Vec<[f64; 2]>>> = fields
+    let outlines: Vec<Vec<Vec<(f64, f64)>>> = fields
         .iter()
         .map(|f| f.tools.iter().map(|t| silhouette::outline(t, &view[0], &view[1])).collect())
         .collect();
@@ -189,40 +196,40 @@ fn figure(case: &str, chosen: &[Chosen], runs: &[Run]) -> Figure {
     let seen: Vec<Vec<Pictured>> = fields.iter().map(|f| project(f, finest, &view)).collect();
     let corners = seen.iter().flatten().flat_map(|t| t.corners);
     let pose = Pose::new(fields.len(), corners.chain(outlines.iter().flatten().flatten().copied()));
-    let bottom = pose.bottom();
-    let mut canvas = Canvas::new(WIDTH, bottom + 46.0);
-    for (i, (field, triangles)) in fields.iter().zip(&seen).enumerate() {
-        let own = field.displacement.iter().map(magnitude).fold(0.0, f64::max);
-        let text = format!("max |u| {} mm", significant(own * 1e3, 3));
-        pose.title(&mut canvas, i, &titled(&chosen[i]), &text, &carried(field, runs));
-        let outlines: Vec<Vec<(f64, f64)>> =
-            outlines[i].iter().map(|o| o.iter().map(|c| pose.place(i, c)).collect()).collect();
-        outlines.iter().for_each(|o| silhouette::fill(&mut canvas, o));
-        for t in triangles {
-            canvas.facet(&t.corners.map(|c| pose.place(i, &c)), scale.colour(t.value * 1e3));
-        }
-        outlines.iter().for_each(|o| silhouette::edge(&mut canvas, o));
-    }
-    axes(&mut canvas, (36.0, bottom + 24.0), &view);
     let note = match tools {
         true => {
             "True deformation, orthographic view; one colour scale. Outlines: the tools, including the parts hidden by the body."
         }
         false => "True deformation, orthographic view; one colour scale.",
     };
-    for (i, line) in wrapped(note, WIDTH - 84.0).iter().enumerate() {
-        canvas.text((74.0, bottom + 22.0 + 12.0 * i as f64), line, TEXT, GREY, Anchor::Start);
-    }
-    let (at, height) = pose.bar();
-    scale.bar(&mut canvas, at, height, "|u| [mm]");
+    let drawing = Drawing::new(WIDTH, pose.height() + FOOT, |page| {
+        let (upper, lower) = page.split_vertically(pose.height());
+        let (areas, bar) = pose.areas(&upper);
+        for (i, area) in areas.iter().take(fields.len()).enumerate() {
+            let own = fields[i].displacement.iter().map(magnitude).fold(0.0, f64::max);
+            let text = format!("max |u| {} mm", significant(own * 1e3, 3));
+            let mut body = pose.body(area, &titled(&chosen[i]), &text, &carried(fields[i], runs))?;
+            body.draw_series(outlines[i].iter().map(|o| silhouette::metal(o)))?;
+            body.draw_series(
+                seen[i].iter().map(|t| Attributed::facet(t.corners.to_vec(), scale.colour(t.value * 1e3))),
+            )?;
+            body.draw_series(outlines[i].iter().map(|o| silhouette::edge(o)))?;
+        }
+        axes(&lower, (360, 240), &view)?;
+        noted(&lower.margin(160, 0, 740, 0), &wrapped(note, WIDTH - 840))?;
+        scale.bar(&bar, "|u| [mm]")
+    });
     Figure {
         name: format!("surface-{}", slug(case)),
         title: format!("Surface displacement, {case}"),
         caption: caption(tools, chosen),
-        canvas,
+        drawing,
         data: Data::Picture(case.into()),
     }
 }
+
+/// Room for the axes of the view and the note.
+const FOOT: i32 = 460;
 
 fn caption(tools: bool, chosen: &[Chosen]) -> String {
     let mut text = "The deformed surface, coloured by the magnitude of its displacement; one colour scale for all panels".to_string();
@@ -320,10 +327,10 @@ fn project(field: &SurfaceField, finest: usize, [right, up, towards]: &View) -> 
             [x[0] + u[0], x[1] + u[1], x[2] + u[2], magnitude(&u)]
         })
     };
-    let flat = |c: &Corners| c.map(|x| [dot(&x, right), dot(&x, up)]);
+    let flat = |c: &Corners| c.map(|x| (dot(&x, right), dot(&x, up)));
     let faces = |c: &Corners| {
         let [a, b, c] = flat(c);
-        (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]) > 0.0
+        (b.0 - a.0) * (c.1 - a.1) - (b.1 - a.1) * (c.0 - a.0) > 0.0
     };
     let visible: Vec<Corners> = field.triangles.iter().map(deformed).filter(faces).collect();
     let picture = |c: Corners| {
@@ -339,15 +346,17 @@ fn project(field: &SurfaceField, finest: usize, [right, up, towards]: &View) -> 
     seen.into_iter().map(|(_, t)| t).collect()
 }
 
-/// Draws the three axes in the view.
-fn axes(canvas: &mut Canvas, at: (f64, f64), [right, up, _]: &View) {
+/// Draws the three axes of the view.
+fn axes(area: &Area, at: (i32, i32), [right, up, _]: &View) -> Drawn {
     for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
-        let (dx, dy) = (right[axis] * 18.0, -up[axis] * 18.0);
-        canvas.line(&[at, (at.0 + dx, at.1 + dy)], BLACK_INK, 1.0);
+        let (dx, dy) = (right[axis] * 180.0, -up[axis] * 180.0);
         // The name is placed beyond the end of the arrow, even if the arrow is short in this view.
-        let beyond = 1.0 + 8.0 / dx.hypot(dy).max(1.0);
-        canvas.text((at.0 + dx * beyond, at.1 + dy * beyond), name, TEXT, BLACK_INK, Anchor::Middle);
+        let beyond = 1.0 + 80.0 / dx.hypot(dy).max(10.0);
+        let along = |part: f64| (at.0 + (part * dx).round() as i32, at.1 + (part * dy).round() as i32);
+        area.draw(&PathElement::new([at, along(1.0)], BLACK_INK.stroke_width(10)))?;
+        area.draw_text(name, &text(TEXT, HPos::Center), along(beyond))?;
     }
+    Ok(())
 }
 
 #[cfg(test)]

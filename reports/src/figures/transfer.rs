@@ -8,16 +8,16 @@ use records::cell::csv_line;
 use records::store::slug;
 use records::text::tick;
 
-use super::axes::{Axis, Panel, TEXT};
-use super::canvas::{Anchor, BLACK_INK, Canvas, GREY, PALE, text_width};
+use super::axes::{ABOVE, Axis, BELOW, framed};
+use super::drawing::widest;
 use super::figure::{Data, Figure};
-use super::grid::WIDTH;
-use super::style::{legend, legend_height, styles};
+use super::grid::{WIDTH, with_foot};
+use super::style::{keys, styles};
 use crate::findings::source;
 use crate::select::{Run, by_case};
 
 /// Height of a row with several markers.
-const LINE: f64 = 20.0;
+const ROW: i32 = 200;
 
 /// One panel per case, one marker per field or source.
 pub(super) fn figures(runs: &[Run]) -> Vec<Figure> {
@@ -48,41 +48,30 @@ fn transfer_figure(runs: &[Run]) -> Option<Figure> {
     // Schemes that are exact to rounding would squeeze all others into a corner.
     let largest = raw.iter().copied().fold(0.0, f64::max).max(1e-9);
     let floor = 10f64.powf((largest * 1e-3).log10().floor());
-    let values: Vec<f64> = raw.iter().map(|v| v.max(floor)).collect();
-    let left = 14.0 + names.iter().map(|n| text_width(n, TEXT)).fold(40.0, f64::max);
-    let bottom = 26.0 + LINE * names.len() as f64;
-    let below = 34.0 + legend_height(&styles, WIDTH - 20.0);
-    let floored = raw.iter().any(|v| *v < floor);
-    let mut canvas = Canvas::new(WIDTH, bottom + below + if floored { 18.0 } else { 6.0 });
-    let rows = Axis::linear("", [0.0, 1.0].into_iter(), true).with_ticks(Vec::new());
-    let panel =
-        Panel { frame: (left, 22.0, WIDTH - 16.0, bottom), x: Axis::log(label, values.into_iter()), y: rows };
-    panel.draw(&mut canvas, &runs[0].is.case);
-    for (row, name) in names.iter().enumerate() {
-        let y = 24.0 + LINE * (row as f64 + 0.5);
-        canvas.text((left - 8.0, y), name, TEXT, BLACK_INK, Anchor::End);
-        canvas.line(&[(left, y), (WIDTH - 16.0, y)], PALE, 0.5);
-    }
-    for run in runs {
-        let (Some(v), Some(row)) = (run.value(quantity), names.iter().position(|n| *n == scheme(run))) else {
-            continue;
-        };
-        let x = panel.at((v * scale).max(floor), 0.0).0;
-        if let Some(which) = styles.iter().position(|s| s.label == source(run)) {
-            let aside = 4.5 * (which as f64 - 0.5 * (styles.len() as f64 - 1.0))
-                / (styles.len() as f64 / 2.0).max(1.0);
-            styles[which].mark(&mut canvas, (x, 24.0 + LINE * (row as f64 + 0.5) + aside));
+    let unit = if scale > 1.0 { " mm" } else { "" };
+    let note = match raw.iter().any(|v| *v < floor) {
+        true => {
+            format!("Errors below {}{unit} are drawn at that value; the table lists all errors.", tick(floor))
         }
-    }
-    legend(&mut canvas, &styles, (12.0, bottom + 34.0), WIDTH - 20.0, false);
-    if floored {
-        let unit = if scale > 1.0 { " mm" } else { "" };
-        let note = format!(
-            "Errors below {}{unit} are drawn at that value; the table lists all errors.",
-            tick(floor)
-        );
-        canvas.text((12.0, bottom + below + 8.0), &note, TEXT, GREY, Anchor::Start);
-    }
+        false => String::new(),
+    };
+    let height = ABOVE + ROW * names.len() as i32 + BELOW;
+    let drawing = with_foot(WIDTH, height, keys(&styles, false), &note, |area| {
+        let x = Axis::log(label, raw.iter().map(|v| v.max(floor)));
+        let y = Axis::named(names.iter().cloned(), -1.0);
+        let mut chart = framed(area, 200 + widest(names.iter()), &runs[0].is.case, x, y)?;
+        for (which, style) in styles.iter().enumerate() {
+            // Markers of different sources stand below one another in a row.
+            let aside = 0.45 * ((which as f64 + 0.5) / styles.len() as f64 - 0.5);
+            let of_source = runs.iter().filter(|r| source(r) == style.label);
+            let points = of_source.filter_map(|r| {
+                let row = names.iter().position(|name| *name == scheme(r))?;
+                Some(((r.value(quantity)? * scale).max(floor), -0.5 - row as f64 - aside))
+            });
+            style.marks(&mut chart, points)?;
+        }
+        Ok(())
+    });
     let mut rows = csv_line(&["scheme", "source", label]);
     for run in runs {
         if let Some(v) = run.value(quantity) {
@@ -98,7 +87,7 @@ fn transfer_figure(runs: &[Run]) -> Option<Figure> {
                   included; own-rows (the method's own shape functions) shows the method's error alone. Several \
                   markers of one source in a row are different kernels and numbers of nodes"
             .into(),
-        canvas,
+        drawing,
         data: Data::Rows(rows),
     })
 }

@@ -5,6 +5,7 @@ use std::collections::{BTreeMap, HashMap};
 use catalogue::metric::{
     ENERGY, L2, Metric, PEAK_ERROR, PENETRATION, PRESSURE, RELATIVE_RMS, TOOL_FORCE_ERROR,
 };
+use plotters::style::RGBColor;
 use records::Family;
 use serde::Serialize;
 
@@ -23,7 +24,7 @@ pub(super) struct LookView {
 
 impl LookView {
     fn new(look: Look, family: Family) -> LookView {
-        let [red, green, blue] = look.colour;
+        let RGBColor(red, green, blue) = look.colour;
         LookView {
             colour: format!("#{red:02x}{green:02x}{blue:02x}"),
             marker: MARKERS[look.marker],
