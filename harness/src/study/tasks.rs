@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use cases::scene::{self, Scene, Size};
+use cases::scene::{self, Cloud, Scene, Size};
 
 use crate::scenario::method_identity;
 
@@ -33,6 +33,12 @@ pub(super) fn named(method: &scene::Method) -> String {
         Some(Size::Nodes(nodes)) => name += &format!(", {nodes} nodes"),
         // A run table gives no other sizes, so this is the size in the scene.
         _ => {}
+    }
+    if let scene::Family::Efg(scene::Efg { cloud, .. }) = &method.family
+        && let Cloud::Uniform { nodes, .. } | Cloud::Graded { nodes, .. } | Cloud::Refined { nodes, .. } =
+            cloud
+    {
+        name += &format!(", cloud of {nodes} nodes");
     }
     identity.settings().iter().for_each(|(setting, value)| name += &format!(", {setting} {value}"));
     name

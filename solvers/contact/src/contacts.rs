@@ -88,7 +88,7 @@ impl Contacts {
         &self.stiffness
     }
 
-    /// Friction histories to commit, one per point in contact, see [`ContactHistory::commit`].
+    /// Friction histories to commit, one per point in contact, see [`ContactHistory::commit`](crate::ContactHistory::commit).
     pub fn slip(&self) -> &[Slip] {
         &self.slip
     }
