@@ -132,7 +132,11 @@ pub(crate) fn read(dir: &Path) -> Result<Vec<Record>, RecordError> {
         *text = unguarded(text).to_string();
     }
     if !has_components {
-        records = records.into_iter().map(|record| record.clone().named(&record.quantity)).collect();
+        let named = |mut record: Record| {
+            let name = std::mem::take(&mut record.quantity);
+            record.named(&name)
+        };
+        records = records.into_iter().map(named).collect();
     }
     Ok(records)
 }
@@ -167,6 +171,7 @@ mod tests {
         let names: Vec<&str> = frame.get_column_names().iter().map(|name| name.as_str()).collect();
         assert_eq!(csv.lines().next().unwrap().split(',').collect::<Vec<_>>(), names);
     }
+
     #[test]
     fn a_table_of_an_older_program_is_read_as_one_of_today() {
         let of = |name: &str| metric::find(name).unwrap();

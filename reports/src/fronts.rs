@@ -84,7 +84,7 @@ pub(crate) fn band(run: &Run, error: &'static Metric) -> Option<f64> {
 
 fn largest(error: &'static Metric, of: impl Fn(Address) -> Option<f64>) -> Option<f64> {
     let first = of(error.whole())?;
-    let others = (1..).take_while(|_| error.is_numbered()).map_while(|tool| of(error.at(tool)));
+    let others = (1..).map_while(|tool| of(error.at(tool)));
     Some(others.fold(first, f64::max))
 }
 

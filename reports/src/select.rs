@@ -309,7 +309,7 @@ pub(crate) fn named_cases<'a, 'r>(runs: &'a [Run<'r>]) -> Vec<(String, &'a [Run<
         for group in &by_ratio {
             let is = group[0].is;
             let name = if by_ratio.len() > 1 {
-                format!("{} at ν = {}", is.case, records::text::ratio(is.poisson))
+                format!("{} at ν = {}", is.case, ratio(is.poisson))
             } else {
                 is.case.clone()
             };

@@ -197,6 +197,14 @@ impl Table {
     }
 }
 
+/// Count that may be missing.
+pub(crate) fn whole<'a>(value: Option<f64>) -> Cell<'a> {
+    match value {
+        Some(v) if v >= 0.0 && v.fract() == 0.0 => Cell::Count(v as u64),
+        other => Cell::Digits(other, 3),
+    }
+}
+
 /// Value in thousandths of its unit, such as millimetres.
 pub(crate) fn thousandths(value: Option<f64>) -> Option<f64> {
     value.map(|v| v * 1e3)

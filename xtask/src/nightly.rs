@@ -17,11 +17,12 @@ const MINUTE: u32 = 60;
 /// Runs every check regardless of the others, with `minutes` for each fuzz target, and returns the worst exit
 /// code.
 pub(crate) fn nightly(root: &Path, minutes: u32) -> Result<u8> {
-    let checks: [(&str, &dyn Fn() -> Result<u8>); 5] = [
+    let checks: [(&str, &dyn Fn() -> Result<u8>); 6] = [
         ("deny", &|| deny(root)),
         ("package", &|| cargo(&["package", "--workspace", "--allow-dirty", "--locked", "--quiet"], &[])),
         ("mutants", &|| mutants(root, &[])),
         ("survive", &survive),
+        ("newcomer", &newcomer),
         ("fuzz", &|| fuzz(root, minutes)),
     ];
     let mut worst = 0;
@@ -41,6 +42,13 @@ pub(crate) fn nightly(root: &Path, minutes: u32) -> Result<u8> {
 fn survive() -> Result<u8> {
     let test = ["test", "--release", "--locked", "--package", "tissuebench-harness", "--test", "survive"];
     cargo(&[&test[..], &["--", "--ignored", "--nocapture"]].concat(), &[])
+}
+
+/// Follows the first page of the guide in a fresh clone, with a time limit.
+fn newcomer() -> Result<u8> {
+    let test =
+        ["test", "--locked", "--package", "tissuebench-xtask", "--test", "newcomer", "--", "--ignored"];
+    cargo(&test, &[])
 }
 
 /// Checks licences, advisories, sources and versions of all dependencies.

@@ -14,7 +14,7 @@ const MADE: [&str; 3] =
 
 /// Clones the last commit, then runs every command of the page up to the first run, exactly as written there.
 #[test]
-#[ignore = "takes ten minutes: a whole build"]
+#[ignore = "takes ten minutes, a whole build; cargo xtask nightly runs it"]
 fn a_newcomer_has_a_picture_of_an_organ_in_ten_minutes() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap();
     let folder = root.join("target/newcomer");

@@ -1,6 +1,6 @@
 //! Contradictions between the parts of a scene, and between its checks and the scene.
 
-use catalogue::metric::Needs;
+use catalogue::metric::{self, Needs};
 use catalogue::{Problem, Values};
 use material::Material as _;
 
@@ -108,6 +108,10 @@ fn presses(scene: &Scene) -> bool {
 /// Reports demands of a check, in the scene or in a study, that the scene does not meet.
 pub(crate) fn check(check: &Check, scene: &Scene, report: &Report) {
     known_methods(&check.methods, scene, "method", report);
+    if [&metric::TIME, &metric::CPU_TIME].contains(&check.address.metric) {
+        let problem = Problem::new("is recorded by phase").found(check.address.to_string());
+        return report.add("metric", problem.help("take \"time-total\" or the time of another phase"));
+    }
     let kind = scene.procedure.kind();
     let reference = scene.reference.as_ref();
     let compared = reference.is_some();

@@ -4,7 +4,7 @@ use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::marker::PhantomData;
 
-use catalogue::{Dimension, Entry, Kind, Parameter, Problem, Value, Values, find, nearest};
+use catalogue::{Build, Dimension, Entry, Kind, Parameter, Problem, Value, Values, find, nearest};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Deserializer, de::Error as _};
 use serde_json::{Map, json};
@@ -165,12 +165,9 @@ fn read(setting: Setting, dimension: Dimension) -> Result<Value, Problem> {
     }
 }
 
-/// An entry constructed from its values alone.
-pub(crate) type Makes<T> = Entry<fn(&Values) -> Result<T, Problem>>;
-
 /// Constructs the object of an entry. An error of the constructor is reported at the parameter that it names,
 /// or else at `key`.
-pub(crate) fn build<T>(entry: &Makes<T>, values: &Values, key: &str, report: &Report) -> Option<T> {
+pub(crate) fn build<T>(entry: &Entry<Build<T>>, values: &Values, key: &str, report: &Report) -> Option<T> {
     (entry.build)(values).map_err(|bad| report.add(bad.parameter.unwrap_or(key), bad)).ok()
 }
 
@@ -210,7 +207,7 @@ pub(crate) fn tagged<V: Vocabulary, K: JsonSchema>(
 pub(crate) enum Laws {}
 
 impl Vocabulary for Laws {
-    type Build = fn(&Values) -> Result<material::Law, Problem>;
+    type Build = catalogue::Build<material::Law>;
     const NOUN: &'static str = "law";
     const ENTRIES: &'static [Entry<Self::Build>] = material::LAWS;
 }

@@ -5,14 +5,19 @@
 
 use std::path::{Path, PathBuf};
 
-use tissuebench_cases::scene::{SceneError, load, load_study};
+use tissuebench_cases::scene::{ErrorKind, SceneError, load, load_study};
 
 /// All errors in a scene or study, and all parts of a valid scene that no solver supports.
 fn errors(path: &Path) -> Vec<SceneError> {
     if path.file_name().unwrap().to_string_lossy().starts_with("study") {
         return load_study(path).err().unwrap_or_default();
     }
-    load(path).map_or_else(|errors| errors, |scene| scene.unavailable())
+    let (errors, kind) = match load(path) {
+        Err(errors) => (errors, ErrorKind::Invalid),
+        Ok(scene) => (scene.unavailable(), ErrorKind::NotAvailable),
+    };
+    assert!(errors.iter().all(|error| error.kind == kind), "{}: {errors:?}", path.display());
+    errors
 }
 
 #[test]

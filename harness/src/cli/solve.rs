@@ -109,7 +109,8 @@ fn setup(text: &Text) -> Result<Setup, String> {
     let newton = Newton { tolerance, iterations, augmentations: 0 };
     let procedure = match text.procedure.kind.as_str() {
         "linear" => Procedure::Linear { solver: LinearSolver::Auto },
-        _ => Procedure::Static(Static { steps, newton, limit_within: None, on_stall: OnStall::Stop }),
+        "static" => Procedure::Static(Static { steps, newton, limit_within: None, on_stall: OnStall::Stop }),
+        other => return Err(format!("procedure '{other}': give linear or static")),
     };
     let moduli = |m: &MaterialText| LinearElastic::new(m.young, m.poisson).map_err(|bad| bad.to_string());
     Ok(Setup {

@@ -3,7 +3,7 @@
 
 use std::collections::BTreeSet;
 
-use cases::scene::{Scene, Support};
+use cases::scene::{LoadKind, ScalarField, Scene, Support, VectorField};
 use geometry::{Facet, Mesh, Point3, Vector3};
 
 use crate::discretise::place;
@@ -28,14 +28,15 @@ struct Plane {
 
 impl Mirror {
     /// Finds the planes of symmetry: flat ends of the body whose whole face is held along its normal and free
-    /// along the other axes. There is none if no coarse mesh of the body can be made.
+    /// along the other axes. There is none if no coarse mesh of the body can be made, or under a body force
+    /// across the plane.
     pub(crate) fn of(scene: &Scene) -> Mirror {
         let Ok(mesh) = coarse(&scene.body) else { return Mirror::default() };
         let (low, high) = place::bounds(&mesh);
         let ends = (0..3).flat_map(|axis| {
             [Plane { axis, at: low[axis], side: 1.0 }, Plane { axis, at: high[axis], side: -1.0 }]
         });
-        Mirror { planes: ends.filter(|plane| plane.is_of_symmetry(&scene.supports, &mesh)).collect() }
+        Mirror { planes: ends.filter(|plane| plane.is_of_symmetry(scene, &mesh)).collect() }
     }
 
     /// Returns the point of the modelled body that corresponds to `x`.
@@ -58,7 +59,7 @@ impl Mirror {
 }
 
 impl Plane {
-    fn is_of_symmetry(&self, supports: &[Support], mesh: &Mesh) -> bool {
+    fn is_of_symmetry(&self, scene: &Scene, mesh: &Mesh) -> bool {
         let tolerance = place::tolerance(mesh);
         let is_here = |x: &Point3| (x[self.axis] - self.at).abs() <= tolerance;
         let face: BTreeSet<Facet> = (mesh.boundary().into_iter())
@@ -68,9 +69,43 @@ impl Plane {
             let held = place::patch("support", &support.place, mesh).map(|patch| patch.whole);
             held.is_ok_and(|held| face.is_subset(&held.into_iter().collect()))
         };
-        let holding: Vec<&Support> = supports.iter().filter(holds_face).collect();
+        let holding: Vec<&Support> = scene.supports.iter().filter(holds_face).collect();
         let holds = |axis: usize| holding.iter().any(|support| support.motion[axis].is_some());
         let normal_alone = (0..3).all(|axis| holds(axis) == (axis == self.axis));
-        !face.is_empty() && normal_alone && !holding.iter().any(|support| support.moves())
+        // Gravity across the plane has no mirror image.
+        let is_forced = scene.loads.iter().any(|load| match &load.kind {
+            LoadKind::Body(VectorField::Components(force)) => {
+                !matches!(force[self.axis], ScalarField::Constant(0.0))
+            }
+            LoadKind::Body(VectorField::Exact) => true,
+            LoadKind::Traction(_) | LoadKind::Pressure(_) => false,
+        });
+        !face.is_empty() && normal_alone && !is_forced && !holding.iter().any(|support| support.moves())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn gravity_along_a_plane_is_symmetric_and_across_it_is_not() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("half.toml");
+        let planes = |force: &str| {
+            let text = format!(
+                "title = \"half a block\"\n\
+                 body = {{ shape = \"box\", size = [\"20 mm\", \"20 mm\", \"20 mm\"] }}\n\
+                 material = {{ law = \"linear\", young = \"20 kPa\", poisson = 0.3 }}\n\
+                 support = [{{ on = \"z-min\", fix = \"xyz\" }}, {{ on = \"x-min\", fix = \"x\" }}]\n\
+                 load = [{{ body = [{force}] }}]\n\
+                 method = [{{ id = \"hex8\", family = \"fem\", element = \"hex8\", size = {{ level = 1 }} }}]\n"
+            );
+            std::fs::write(&path, text).unwrap();
+            let mirror = Mirror::of(&cases::scene::load(&path).unwrap());
+            mirror.planes.iter().map(|plane| plane.axis).collect::<Vec<_>>()
+        };
+        assert_eq!(planes("\"0 N/m^3\", \"0 N/m^3\", \"-9810 N/m^3\""), [0]);
+        assert_eq!(planes("\"9810 N/m^3\", \"0 N/m^3\", \"0 N/m^3\""), [0; 0]);
     }
 }

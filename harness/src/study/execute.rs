@@ -21,7 +21,6 @@ use super::tasks::{Task, named};
 use crate::error::Failure;
 use crate::outcome::Counters;
 use crate::run::{Group, RunOptions, case_name};
-use crate::scenario::rule;
 
 /// Time between two checks for the results of other processes.
 const LOOK: Duration = Duration::from_millis(20);
@@ -191,8 +190,8 @@ impl StudyPlan {
         let Task { method, level, poisson, .. } = task;
         let RunOptions { picture, frames, split, states: _ } = options;
         let versions = versions(scene, method);
-        let run = (case_name(scene), named(method), level, poisson);
-        let done = (picture, frames, split.map(rule), repeats.most, repeats.seconds);
+        let run = (case_name(scene), &scene.varied, named(method), level, poisson);
+        let done = (picture, frames, split.map(|split| format!("{split:?}")), repeats.most, repeats.seconds);
         let what = serde_json::to_string(&(run, done, versions)).expect("texts and numbers");
         key(text, &files(scene, method), &what)
     }

@@ -40,6 +40,10 @@ pub(super) fn named(method: &scene::Method) -> String {
     {
         name += &format!(", cloud of {nodes} nodes");
     }
+    // A kernel of the scene may have other parameters than the same kernel of a run table.
+    if let scene::Family::Efg(efg) = &method.family {
+        name += &format!(", {:?}", efg.functions);
+    }
     identity.settings().iter().for_each(|(setting, value)| name += &format!(", {setting} {value}"));
     name
 }
@@ -76,7 +80,10 @@ pub(super) fn list(
                     // or a cloud among clouds.
                     let which = (at, own_ratio(poisson).map(f64::to_bits), named(&method));
                     let places = known.entry(which).or_default();
-                    let fits = |t: &Task| run.split.is_none() || t.split.is_none() || run.split == t.split;
+                    let fits = |t: &Task| {
+                        t.method == method
+                            && (run.split.is_none() || t.split.is_none() || run.split == t.split)
+                    };
                     match places.iter().copied().find(|&place| fits(&tasks[place])) {
                         Some(place) => {
                             let task = &mut tasks[place];
@@ -217,5 +224,30 @@ mod tests {
         let args = VerifyArgs::of(&path);
         let keys: BTreeSet<String> = (0..plan.len()).map(|index| plan.key(index, &args)).collect();
         assert_eq!(keys.len(), plan.len());
+    }
+
+    /// A kernel of the scene has its own parameter, and a split its own spacing.
+    #[test]
+    fn the_key_of_a_run_has_what_its_name_leaves_out() {
+        let folder = tempfile::tempdir().unwrap();
+        let scene = include_str!("../../../cases/scenes/first.toml");
+        let scene = scene.replace("\"cubic-spline\"", "{ name = \"gaussian\", alpha = 0.3 }");
+        std::fs::write(folder.path().join("scene.toml"), scene).unwrap();
+        let path = folder.path().join("study.toml");
+        let keys = |tables: &str| {
+            let text = format!("title = \"parameters\"\n{tables}");
+            std::fs::write(&path, text).unwrap();
+            let plan = StudyPlan::new(scene::load_study(&path).unwrap()).unwrap();
+            let args = VerifyArgs::of(&path);
+            (0..plan.len()).map(|index| plan.key(index, &args)).collect::<BTreeSet<String>>()
+        };
+        let table = |more: &str| format!("[[run]]\nscene = \"scene.toml\"\nmethods = [\"efg\"]\n{more}\n");
+        let kernels = [table(""), table("kernels = [\"gaussian\"]")].concat();
+        assert_eq!(keys(&kernels).len(), 2);
+        let split = |spacing: &str| {
+            table(&format!("split = {{ rule = \"grid\", points = 8, spacing = \"{spacing}\" }}"))
+        };
+        assert_eq!(keys(&[split("2 mm"), split("3 mm")].concat()).len(), 2);
+        assert!(keys(&split("2 mm")).is_disjoint(&keys(&split("3 mm"))));
     }
 }

@@ -1,4 +1,5 @@
-// Tests of the page in a browser: `node test/page.mjs REPORT.html`. Continuous integration tests the page of the
+// Tests of the page in a browser: `node test/page.mjs REPORT.html`. Continuous integration tests the page of
+// the
 // quick verification.
 //
 // If no Chromium is installed, the tests are skipped with a message.
@@ -231,7 +232,8 @@ test("two clicks reach the sections on locking and on failed runs", async (open)
 
 test("the first screen and two clicks answer a stranger", async (open) => {
   const page = await open();
-  // Which method is cheapest: the sentence gives its size and its time, or says that no run reaches the error.
+  // Which method is cheapest: the sentence gives its size and its time, or says that no run reaches the
+  // error.
   const said = await page.eval(text("#answer"));
   assert.match(said, /^\d+ % of .+: ([^,]+, [\d,]+ nodes, [\d.]+ (ns|µs|ms|s|h)[;.]|no run reaches it)/);
   // The main case, if its front is in the results: the force of the jaws on the fair kidney.

@@ -75,8 +75,7 @@ fn font(size: f64, style: FontStyle) -> FontDesc<'static> {
     static REGISTERED: OnceLock<()> = OnceLock::new();
     REGISTERED.get_or_init(|| {
         for (style, font) in [(FontStyle::Normal, REGULAR), (FontStyle::Bold, BOLD)] {
-            // A font that is not registered is an error of each text that is measured.
-            register_font(FONT, style, font).ok();
+            assert!(register_font(FONT, style, font).is_ok(), "the built-in font {FONT} can't be read");
         }
     });
     (FONT, size * FONT_HEIGHT, style).into_font()
@@ -94,8 +93,8 @@ pub(crate) fn bold(size: f64, at: HPos) -> TextStyle<'static> {
 
 /// Width of a text.
 pub(crate) fn text_width(text: &str, size: f64) -> i32 {
-    let usual = 0.6 * size * text.chars().count() as f64;
-    font(size, FontStyle::Normal).box_size(text).map_or(usual as i32, |(width, _)| width as i32)
+    let size = font(size, FontStyle::Normal).box_size(text);
+    size.expect("the built-in font is registered").0 as i32
 }
 
 /// Largest width of some texts of ordinary size.

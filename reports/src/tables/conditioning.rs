@@ -4,7 +4,7 @@ use catalogue::metric;
 
 use crate::select::Run;
 use crate::table::Column::{Number, Words};
-use crate::table::{Cell, Table};
+use crate::table::{Cell, Table, whole};
 
 /// Table of the moment matrices' neighbours, conditioning and fallbacks.
 pub(super) fn conditioning(runs: &[Run]) -> Table {
@@ -63,12 +63,4 @@ pub(super) fn conditioning(runs: &[Run]) -> Table {
         ]);
     }
     table
-}
-
-/// A count that may be missing.
-fn whole<'a>(value: Option<f64>) -> Cell<'a> {
-    match value {
-        Some(v) if v >= 0.0 && v.fract() == 0.0 => Cell::Count(v as u64),
-        other => Cell::Digits(other, 3),
-    }
 }

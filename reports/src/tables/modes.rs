@@ -4,7 +4,7 @@ use catalogue::metric::{self, Metric};
 
 use crate::select::{Run, labelled};
 use crate::table::Column::{Number, Words};
-use crate::table::{Cell, Table};
+use crate::table::{Cell, Table, thousandths, whole};
 
 /// Table of every run with modes.
 pub(super) fn modes(runs: &[Run]) -> Table {
@@ -32,8 +32,6 @@ pub(super) fn modes(runs: &[Run]) -> Table {
     for (run, label) in labelled(runs) {
         let Some(mass) = &run.is.mass else { continue };
         let percent = |of: &'static Metric| run.value(of).map(|v| v * 1e2);
-        let whole =
-            |of: &'static Metric| run.value(of).map_or(Cell::Digits(None, 3), |v| Cell::Count(v as u64));
         table.row(&[
             Cell::Text(&run.is.case),
             Cell::Text(&label),
@@ -43,10 +41,10 @@ pub(super) fn modes(runs: &[Run]) -> Table {
             Cell::Digits(percent(&metric::FREQUENCY_RATIO).map(|v| v - 1e2), 3),
             Cell::Digits(percent(&metric::MODE_OVERLAP), 4),
             Cell::Digits(percent(&metric::SPECTRUM_ERROR), 3),
-            whole(&metric::SLOW_MODES),
-            whole(&metric::RIGID_MODES),
-            whole(&metric::MASSLESS),
-            Cell::Digits(run.value(&metric::CRITICAL_STEP).map(|s| s * 1e3), 3),
+            whole(run.value(&metric::SLOW_MODES)),
+            whole(run.value(&metric::RIGID_MODES)),
+            whole(run.value(&metric::MASSLESS)),
+            Cell::Digits(thousandths(run.value(&metric::CRITICAL_STEP)), 3),
         ]);
     }
     table

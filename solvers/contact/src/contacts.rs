@@ -88,7 +88,8 @@ impl Contacts {
         &self.stiffness
     }
 
-    /// Friction histories to commit, one per point in contact, see [`ContactHistory::commit`](crate::ContactHistory::commit).
+    /// Friction histories, one per point in contact, for
+    /// [`ContactHistory::commit`](crate::ContactHistory::commit).
     pub fn slip(&self) -> &[Slip] {
         &self.slip
     }

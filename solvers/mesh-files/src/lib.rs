@@ -30,9 +30,7 @@ pub use error::{FileError, Place, Problem, SurfaceError};
 pub use format::Format;
 pub use gmsh::GmshVersion;
 pub use left_out::{Kind, LeftOut, summary};
-pub use read::{
-    READ, included, inverted, is_mesh, left_out, read, read_bytes, read_without_unused, row_of_cell,
-};
+pub use read::{READ, included, inverted, is_mesh, left_out, read, read_bytes, read_without_unused};
 pub use rows::Row;
 pub use surface::{SURFACES, is_surface, read_surface, read_surface_bytes};
 pub use vtu::write::{Values, solution_vtu, surface_vtu};

@@ -66,7 +66,7 @@ pub fn read_without_unused(file: &Path, unit: f64) -> Result<Mesh, FileError> {
 }
 
 /// Row of a cell in a file that [`read`] accepts; `None` if the file has no such cell.
-pub fn row_of_cell(file: &Path, cell: usize) -> Option<Row> {
+fn row_of_cell(file: &Path, cell: usize) -> Option<Row> {
     let (_, rows) = read_bytes(&bytes(file).ok()?, file, 1.0).ok()?;
     rows.get(cell).copied()
 }

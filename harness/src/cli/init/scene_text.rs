@@ -101,7 +101,7 @@ pub(super) fn text(wanted: &Wanted) -> String {
     let mut parts = vec![one("head"), filled(&held, &values), one(pressed), one("compared"), one("methods")];
     for &method in &wanted.methods {
         let name = word(method);
-        let (about, table) = part(&name).split_once('\n').unwrap_or_default();
+        let (about, table) = part(&name).split_once('\n').expect("a line about the method");
         let tables = SIZES.iter().zip(wanted.parts).map(|(fineness, part)| {
             // Half of the nodes of tet10 are on edges: small meshes have few cells.
             let doubled = if method == Method::Tet10 { 2.0 } else { 1.0 };
@@ -116,15 +116,16 @@ pub(super) fn text(wanted: &Wanted) -> String {
 /// Returns a part of the template.
 fn part(name: &str) -> &'static str {
     let mut parts = TEMPLATE.split("\n#: ").filter_map(|part| part.split_once('\n'));
-    parts.find(|(known, _)| *known == name).map_or("", |(_, text)| text.trim_end())
+    parts.find(|(known, _)| *known == name).expect("the template has the part").1.trim_end()
 }
 
 /// Replaces every `<value>` of a part of the template, together with its quotes. Values are not searched,
 /// because they may contain any text.
 fn filled(part: &str, values: &[(&str, String)]) -> String {
     let bare = part.replace("\"<", "<").replace(">\"", ">");
-    let value =
-        |name: &str| values.iter().find(|(known, _)| *known == name).map_or("", |(_, value)| value.as_str());
+    let value = |name: &str| {
+        values.iter().find(|(known, _)| *known == name).expect("a part has known values").1.as_str()
+    };
     let pieces = bare.split(['<', '>']).enumerate();
     pieces.map(|(at, piece)| if at % 2 == 0 { piece } else { value(piece) }).collect()
 }

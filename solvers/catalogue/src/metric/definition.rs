@@ -1,4 +1,4 @@
-//! What a metric is.
+//! Metric: a kind of number with its unit, label and meaning.
 
 use crate::dimension::Dimension;
 
