@@ -1,6 +1,5 @@
 // Tests of the page in a browser: `node test/page.mjs REPORT.html`. Continuous integration tests the page of
-// the
-// quick verification.
+// the quick verification.
 //
 // If no Chromium is installed, the tests are skipped with a message.
 import assert from "node:assert/strict";
