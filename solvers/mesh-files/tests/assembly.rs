@@ -2,15 +2,11 @@
 
 mod common;
 
-use std::path::Path;
-
 use common::assert_refused;
 use geometry::Mesh;
-use tissuebench_mesh_files as files;
 
 fn deck(text: &str) -> Result<Mesh, String> {
-    let read = files::read_bytes(text.as_bytes(), Path::new("deck.inp"), 1.0);
-    read.map(|(mesh, _)| mesh).map_err(|bad| bad.to_string())
+    common::read("deck.inp", text)
 }
 
 /// A tetrahedron with a node set, an element set and a surface.
@@ -119,7 +115,7 @@ fn the_mesh_of_an_instance_is_its_own() {
         ("*END INSTANCE", "*INSTANCE, NAME=b, PART=P", "expected *END INSTANCE before the next *INSTANCE"),
     ];
     let text = around(&independent("a", ""));
-    assert_refused(&text, changes.map(|(from, to, says)| (from, to, [says.into()])), |text| deck(text).err());
+    assert_refused("deck.inp", &text, changes);
 }
 
 /// Three hexahedra in a row along x.
@@ -179,5 +175,5 @@ fn surfaces_without_free_faces_are_refused() {
         ("1, S1", "1, S9", "deck.inp:27: expected a face that the element has, found 'S9 of element 1'"),
         ("1, S1", "1, T1", "deck.inp:27: expected the face of an element, such as S1, found 'T1'"),
     ];
-    assert_refused(&text, changes.map(|(from, to, says)| (from, to, [says.into()])), |text| deck(text).err());
+    assert_refused("deck.inp", &text, changes);
 }

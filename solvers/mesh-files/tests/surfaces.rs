@@ -4,7 +4,7 @@ mod common;
 
 use std::path::Path;
 
-use common::assert_refused;
+use common::assert_refused_by;
 use geometry::Surface;
 use proptest::prelude::*;
 use tissuebench_mesh_files as files;
@@ -113,10 +113,9 @@ fn every_kind_of_surface_file_is_read() {
     assert!((cube.volume() - 1.0).abs() < 1e-15 && (cube.area() - 6.0).abs() < 1e-15);
 }
 
-/// Asserts that a text is rejected after each of these changes, with the given words.
-fn assert_text_refused<const N: usize>(name: &str, text: &str, changes: [(&str, &str, &str); N]) {
-    let changes = changes.map(|(from, to, says)| (from, to, [says.into()]));
-    assert_refused(text, changes, |text| read(name, text.as_bytes()).err());
+/// Asserts that a surface file is rejected after each of these changes, with the given words.
+fn assert_refused<const N: usize>(name: &str, text: &str, changes: [(&str, &str, &str); N]) {
+    assert_refused_by(|text| read(name, text.as_bytes()).err(), text, changes);
 }
 
 #[test]
@@ -131,7 +130,7 @@ fn every_broken_text_is_refused_with_its_place() {
         ("endsolid tet\n", "", "the file ends before endsolid"),
         ("endsolid tet\n", "endsolid tet\nfacet\n", "a.stl:31: expected solid, found 'facet'"),
     ];
-    assert_text_refused("a.stl", &stl_text(&FACES), stl);
+    assert_refused("a.stl", &stl_text(&FACES), stl);
     let obj_changes = [
         ("v 1 0 0", "v 1 0", "a.obj:5: expected a coordinate"),
         ("v 1 0 0", "v 1 inf 0", "a.obj:5: node 2 has a coordinate that is not finite"),
@@ -143,7 +142,7 @@ fn every_broken_text_is_refused_with_its_place() {
         ("s off", "wobble 3", "a.obj:9: expected v, f or another word of the format, found 'wobble 3'"),
         ("3/1/1\n", "3/1/1 \\\n", "the file ends before the rest of a line"),
     ];
-    assert_text_refused("a.obj", &obj(OBJ_FACES), obj_changes);
+    assert_refused("a.obj", &obj(OBJ_FACES), obj_changes);
     let ply = [
         ("end_header\n", "", "a.ply:11: expected a line of a PLY header"),
         ("format ascii", "format text", "expected format ascii"),
@@ -162,7 +161,7 @@ fn every_broken_text_is_refused_with_its_place() {
         ("3 0 2 1", "-3 0 2 1", "expected the length of a list, found '-3'"),
         ("1 0 0 7", "1 nan 0 7", "node 1 has a coordinate that is not finite"),
     ];
-    assert_text_refused("a.ply", &ply_text(PLY_HEADER, PLY_FACES), ply);
+    assert_refused("a.ply", &ply_text(PLY_HEADER, PLY_FACES), ply);
 }
 
 #[test]

@@ -2,18 +2,11 @@
 
 mod common;
 
-use std::path::Path;
-
 use common::assert_refused;
 use geometry::Mesh;
-use tissuebench_mesh_files as files;
 
-fn read(bytes: &[u8]) -> Result<Mesh, String> {
-    files::read_bytes(bytes, Path::new("m"), 1.0).map(|(mesh, _)| mesh).map_err(|bad| bad.to_string())
-}
-
-fn refusal(text: &str) -> Option<String> {
-    read(text.as_bytes()).err()
+fn read(content: impl AsRef<[u8]>) -> Result<Mesh, String> {
+    common::read("m", content)
 }
 
 /// Two tetrahedra and a face, with arrays of every kind in addition to the regions.
@@ -54,12 +47,12 @@ LOOKUP_TABLE heights 2
 
 #[test]
 fn grids_are_read_with_their_regions() {
-    let mesh = read(GRID.as_bytes()).unwrap();
+    let mesh = read(GRID).unwrap();
     assert_eq!((mesh.points().len(), mesh.cell_count()), (5, 2));
     assert_eq!(mesh.region_names(), ["region-7", "region-8"]);
     assert_eq!(mesh.group("surface-9").map(<[_]>::len), Some(1));
     let spaced = GRID.replace("POINTS", "points").replace('\n', "\r\n");
-    assert!(read(spaced.as_bytes()).unwrap() == mesh);
+    assert!(read(spaced).unwrap() == mesh);
 }
 
 /// An XML grid in text: two tetrahedra with these cell arrays.
@@ -86,24 +79,24 @@ fn array(name: &str, kind: &str, values: &str) -> String {
 fn regions_are_numbered_by_whole_numbers_of_any_type() {
     for name in ["material", "Material", "MaterialIDs", "MaterialIds", "region", "gmsh:physical"] {
         for (kind, values) in [("Int32", "3 4"), ("Float64", "3.0 4e0")] {
-            let mesh = read(vtu(&array(name, kind, values)).as_bytes()).unwrap();
+            let mesh = read(vtu(&array(name, kind, values))).unwrap();
             assert_eq!(mesh.region_names(), ["region-3", "region-4"], "{name} {kind}");
         }
         for (value, shown) in [("4.25", "4.25"), ("nan", "NaN"), ("1e300", "1000")] {
-            let bad = refusal(&vtu(&array(name, "Float64", &format!("3 {value}")))).unwrap();
+            let bad = read(vtu(&array(name, "Float64", &format!("3 {value}")))).unwrap_err();
             assert!(bad.starts_with(&format!("m:8: cell 1 has the value {shown}")), "{bad}");
             assert!(bad.contains(&format!("in the array '{name}', which numbers regions")), "{bad}");
         }
     }
-    let bad = refusal(&vtu(&array("surface", "Float64", "1 0.5"))).unwrap();
+    let bad = read(vtu(&array("surface", "Float64", "1 0.5"))).unwrap_err();
     assert!(bad.starts_with("m:8: cell 1 has the value 0.5 in the array 'surface'"), "{bad}");
     // Arrays with other names are ignored.
-    let mesh = read(vtu(&array("stiffness", "Float64", "1.5 2.5")).as_bytes()).unwrap();
+    let mesh = read(vtu(&array("stiffness", "Float64", "1.5 2.5"))).unwrap();
     assert_eq!(mesh.region_names(), ["body"]);
     let older = GRID.replace("material 1 3 int\n7 8 9", "material 1 3 double\n7 8.5 9");
-    let bad = refusal(&older).unwrap();
+    let bad = read(&older).unwrap_err();
     assert!(bad.starts_with("m:24: cell 1 has the value 8.5 in the array 'material'"), "{bad}");
-    let whole = read(older.replace("8.5", "8.0").as_bytes()).unwrap();
+    let whole = read(older.replace("8.5", "8.0")).unwrap();
     assert_eq!(whole.region_names(), ["region-7", "region-8"]);
 }
 
@@ -122,7 +115,7 @@ fn raw_whole_numbers_keep_their_sign() {
             let number = |n: i64| n.to_le_bytes()[..size].to_vec();
             let bytes = [&(2 * size as u32).to_le_bytes()[..], &number(3), &number(second)].concat();
             let end = &b"</AppendedData></VTKFile>"[..];
-            read(&[head.as_bytes(), b"<AppendedData encoding=\"raw\">_", &bytes, end].concat())
+            read([head.as_bytes(), b"<AppendedData encoding=\"raw\">_", &bytes, end].concat())
         };
         assert_eq!(read(100).unwrap().region_names(), ["region-3", "region-100"], "{kind}");
         let negative = read(-100);
@@ -135,8 +128,8 @@ fn raw_whole_numbers_keep_their_sign() {
 fn two_arrays_of_materials_have_to_agree() {
     let both =
         |ids: &str| vtu(&(array("material", "Float64", "3 4") + "\n" + &array("MaterialIds", "Int32", ids)));
-    assert_eq!(read(both("3 4").as_bytes()).unwrap().region_names(), ["region-3", "region-4"]);
-    let bad = refusal(&both("3 5")).unwrap();
+    assert_eq!(read(both("3 4")).unwrap().region_names(), ["region-3", "region-4"]);
+    let bad = read(both("3 5")).unwrap_err();
     let says =
         "cell 1 is in region 5 by the array 'MaterialIds' and in 4 by 'material': remove or rename one";
     assert!(bad.starts_with("m:") && bad.contains(says), "{bad}");
@@ -160,7 +153,7 @@ fn binary() -> Vec<u8> {
 
 #[test]
 fn binary_grids_are_read() {
-    let mesh = read(&binary()).unwrap();
+    let mesh = read(binary()).unwrap();
     assert_eq!((mesh.points()[3].z, mesh.region_names()), (1.0, &["region--3".to_string()][..]));
     let bad = read(&binary()[..170]).unwrap_err();
     assert!(bad.contains("too many numbers for the size of the file: 12"), "{bad}");
@@ -204,14 +197,14 @@ fn broken_grids_are_refused_with_their_place() {
             "m:28: expected a number, found 'POINT_DATA'",
         ),
     ];
-    assert_refused(GRID, changes.map(|(from, to, says)| (from, to, [says.into()])), refusal);
+    assert_refused("m", GRID, changes);
     let apart = GRID.replace(
         "CELLS 3 14\n4 0 1 2 3\n4 1 2 3 4\n3 0 2 1",
         "CELLS 4 11\nOFFSETS vtktypeint64\n0 4 8 11\nCONNECTIVITY vtktypeint64\n0 1 2 3 1 2 3 4 0 2 1",
     );
-    assert!(read(apart.as_bytes()).unwrap() == read(GRID.as_bytes()).unwrap());
+    assert!(read(&apart).unwrap() == read(GRID).unwrap());
     for offsets in ["0 4 8 12", "1 4 8 11", "0 8 4 11"] {
-        let bad = read(apart.replace("0 4 8 11", offsets).as_bytes()).unwrap_err();
+        let bad = read(apart.replace("0 4 8 11", offsets)).unwrap_err();
         assert!(bad.contains("offsets that ascend from 0"), "{bad}");
     }
 }
@@ -235,7 +228,7 @@ $ENDELM
 
 #[test]
 fn the_first_format_of_gmsh_is_read() {
-    let mesh = read(FIRST.as_bytes()).unwrap();
+    let mesh = read(FIRST).unwrap();
     assert_eq!((mesh.points().len(), mesh.cell_count()), (5, 2));
     assert_eq!(mesh.region_names(), ["body", "region-7"]);
     assert_eq!(mesh.group("surface-5").map(<[_]>::len), Some(1));
@@ -260,5 +253,5 @@ fn the_first_format_of_gmsh_is_read() {
         ("$ENDELM\n", "$ENDELM\n$MORE\n", "m:15: expected the end of the file, found '$MORE'"),
         ("5\n1 0", "many\n1 0", "m:2: expected the number of nodes, found 'many'"),
     ];
-    assert_refused(FIRST, changes.map(|(from, to, says)| (from, to, [says.into()])), refusal);
+    assert_refused("m", FIRST, changes);
 }
