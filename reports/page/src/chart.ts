@@ -92,8 +92,8 @@ function card(point: Point): (Node | string)[] {
   const at = point.run;
   if (at === null) return [h("b", {}, name(point.label)), point.about ? `: ${point.about.replaceAll("\n", ", ")}` : ""];
   const errors = Object.entries(r.errors)
-    .filter(([, values]) => values[at] !== null)
-    .map(([quantity, values]) => `${quantity} ${quantity === "penetration" ? `${digits(1e3 * values[at]!, 2)} mm` : percent(values[at]!, 3)}`);
+    .filter(([, { values }]) => values[at] !== null)
+    .map(([quantity, { unit, values }]) => `${quantity} ${unit === "1" ? percent(values[at]!, 3) : `${digits(values[at]!, 2)} ${unit}`}`);
   const clock = page.asks.find((a) => a.case === r.case[at] && !a.repeated)?.time.split(",")[0] ?? "run time";
   const facts = [
     `${whole(r.nodes[at])} nodes`, `${whole(r.elements[at])} cells`, `${whole(r.dofs[at])} unknowns`, r.settings[at],

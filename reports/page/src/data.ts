@@ -31,7 +31,8 @@ export interface Picture { name: string; case: string; title: string; caption: s
 export interface Runs {
   id: string[]; case: string[]; method: string[]; label: number[]; poisson: number[]; nodes: number[]; elements: number[];
   dofs: number[]; settings: string[]; solver: string[]; seconds: (number | null)[]; memory: (number | null)[];
-  errors: Record<string, (number | null)[]>;
+  /** Errors by quantity, in their own unit; `1` for relative errors. */
+  errors: Record<string, { unit: string; values: (number | null)[] }>;
 }
 
 export interface Commit {

@@ -10,6 +10,7 @@ use records::Family;
 use serde::Serialize;
 
 use crate::appearance::{Look, MARKERS, distinct};
+use crate::quantity::{scale, unit};
 use crate::select::{Run, by_material, labels};
 
 /// Appearance of a label.
@@ -50,7 +51,14 @@ pub(super) struct RunColumns {
     solver: Vec<String>,
     seconds: Vec<Option<f32>>,
     memory: Vec<Option<f64>>,
-    errors: BTreeMap<&'static str, Vec<Option<f32>>>,
+    errors: BTreeMap<&'static str, ErrorColumn>,
+}
+
+/// Values of a metric, one per run, in the unit in which they are shown; `1` for relative errors.
+#[derive(Serialize)]
+struct ErrorColumn {
+    unit: &'static str,
+    values: Vec<Option<f32>>,
 }
 
 /// Errors in the description of a run.
@@ -73,7 +81,7 @@ impl Methods {
                 all.push(run, &label);
             }
         }
-        all.runs.errors.retain(|_, values| values.iter().any(Option::is_some));
+        all.runs.errors.retain(|_, error| error.values.iter().any(Option::is_some));
         all
     }
 
@@ -97,7 +105,10 @@ impl Methods {
         runs.seconds.push(run.total().map(|t| t as f32));
         runs.memory.push(run.memory());
         for error in ERRORS {
-            runs.errors.entry(error.name).or_default().push(run.value(error).map(|v| v as f32));
+            let of = error.whole();
+            let column = || ErrorColumn { unit: unit(of), values: Vec::new() };
+            let value = run.value(of).map(|v| (scale(of) * v) as f32);
+            runs.errors.entry(error.name).or_insert_with(column).values.push(value);
         }
     }
 
