@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use catalogue::metric;
 use geometry::Vector3;
 use records::Reference;
 use schemars::JsonSchema;
@@ -153,7 +154,8 @@ impl<'a> RunObject<'a> {
     /// Returns the object of a finished run; times are medians over its repeats.
     pub fn finished(outcome: &'a Outcome) -> RunObject<'a> {
         let mut metrics = numbers(&outcome.metrics);
-        metrics.insert("memory".into(), Number { value: outcome.memory as f64, unit: "B" });
+        let memory = &metric::MEMORY;
+        metrics.insert(memory.name.into(), Number { value: outcome.memory as f64, unit: memory.unit() });
         if let Some(bytes) = outcome.process_memory {
             metrics.insert("memory-process".into(), Number { value: bytes as f64, unit: "B" });
         }

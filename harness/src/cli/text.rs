@@ -2,6 +2,7 @@
 
 use std::fmt::Write as _;
 
+use catalogue::metric::{self, Address, Metric};
 use records::{Check, Reference, Status};
 use reports::Seconds;
 
@@ -85,39 +86,45 @@ fn judged(check: &Check) -> String {
     format!("{} {} {}: {} ({})", check.case, check.method, check.metric, check.bound, check.reason)
 }
 
+/// Errors against the reference method that mean nothing for this method itself.
+const OWN_ERRORS: [&Metric; 3] =
+    [&metric::RELATIVE_RMS, &metric::STRAIN_ENERGY_ERROR, &metric::TOOL_FORCE_ERROR];
+
 /// Formats a table of finished runs: sizes, errors, displacement, and milliseconds per phase by the clock
 /// that is compared.
 pub fn outcomes(outcomes: &[Outcome], by: Seconds) -> String {
-    let columns: [(&str, &str, f64); 19] = [
-        ("l2", "L2 [%]", 100.0),
-        ("energy", "energy [%]", 100.0),
-        ("pressure", "pressure [%]", 100.0),
-        ("rms", "RMS [mm]", 1e3),
-        ("relative-rms", "RMS [%]", 100.0),
-        ("max-x", "max x [mm]", 1e3),
-        ("max-y", "max y [mm]", 1e3),
-        ("max-z", "max z [mm]", 1e3),
-        ("max-over-time", "largest over time [mm]", 1e3),
-        ("time-of-max", "at [s]", 1.0),
-        ("tip", "probe/exact", 1.0),
-        ("history-error", "history [%]", 100.0),
-        ("period", "period [s]", 1.0),
-        ("strain-energy-error", "work error [%]", 100.0),
-        ("load-carried", "load [%]", 100.0),
-        ("tool-force", "force [N]", 1.0),
-        ("tool-force-error", "force error [%]", 100.0),
-        ("smallest-j", "smallest J", 1.0),
-        ("newton-iterations", "iterations", 1.0),
+    // In dynamics the largest displacement at the end is not the largest of all times.
+    let moves = outcomes.iter().any(|o| o.value(&metric::MAX_OVER_TIME).is_some());
+    let [end_x, end_y, end_z] = match moves {
+        true => ["end x [mm]", "end y [mm]", "end z [mm]"],
+        false => ["max x [mm]", "max y [mm]", "max z [mm]"],
+    };
+    let [x, y, z] = metric::MAX.components();
+    let columns: [(Address, &str, f64); 19] = [
+        (metric::L2.whole(), "L2 [%]", 100.0),
+        (metric::ENERGY.whole(), "energy [%]", 100.0),
+        (metric::PRESSURE.whole(), "pressure [%]", 100.0),
+        (metric::RMS.whole(), "RMS [mm]", 1e3),
+        (metric::RELATIVE_RMS.whole(), "RMS [%]", 100.0),
+        (x, end_x, 1e3),
+        (y, end_y, 1e3),
+        (z, end_z, 1e3),
+        (metric::MAX_OVER_TIME.whole(), "largest over time [mm]", 1e3),
+        (metric::TIME_OF_MAX.whole(), "at [s]", 1.0),
+        (metric::TIP.whole(), "probe/exact", 1.0),
+        (metric::HISTORY_ERROR.whole(), "history [%]", 100.0),
+        (metric::PERIOD.whole(), "period [s]", 1.0),
+        (metric::STRAIN_ENERGY_ERROR.whole(), "work error [%]", 100.0),
+        (metric::LOAD_CARRIED.whole(), "load [%]", 100.0),
+        (metric::TOOL_FORCE.whole(), "force [N]", 1.0),
+        (metric::TOOL_FORCE_ERROR.whole(), "force error [%]", 100.0),
+        (metric::SMALLEST_J.whole(), "smallest J", 1.0),
+        (metric::NEWTON_ITERATIONS.whole(), "iterations", 1.0),
     ];
-    let shown: Vec<_> = columns.iter().filter(|c| outcomes.iter().any(|o| o.metric(c.0).is_some())).collect();
+    let shown: Vec<_> = columns.iter().filter(|c| outcomes.iter().any(|o| o.value(c.0).is_some())).collect();
     let mut rows: Vec<Vec<String>> = Vec::new();
     let mut head: Vec<String> = ["method", "nodes", "dofs"].map(String::from).to_vec();
-    // In dynamics the largest displacement at the end is not the largest of all times.
-    let moves = outcomes.iter().any(|o| o.metric("max-over-time").is_some());
-    let of_end = |title: &str| {
-        if moves && title.starts_with("max") { title.replacen("max", "end", 1) } else { title.into() }
-    };
-    head.extend(shown.iter().map(|c| of_end(c.1)));
+    head.extend(shown.iter().map(|c| c.1.to_string()));
     let phases =
         PHASES.iter().chain(&["total"]).filter(|p| outcomes.iter().any(|o| phase(o, p, by).is_some()));
     let phases: Vec<_> = phases.copied().collect();
@@ -130,12 +137,11 @@ pub fn outcomes(outcomes: &[Outcome], by: Seconds) -> String {
             outcome.size.nodes.to_string(),
             outcome.size.dofs.to_string(),
         ];
-        row.extend(shown.iter().map(|(name, _, scale)| match *name {
-            "rms" if is_reference(outcome) => "reference".into(),
-            "relative-rms" | "strain-energy-error" | "tool-force-error" if is_reference(outcome) => {
-                "-".into()
-            }
-            _ => outcome.metric(name).map_or("-".into(), |v| digits(v * scale)),
+        let own = outcome.is_reference();
+        row.extend(shown.iter().map(|&&(of, _, scale)| match outcome.value(of) {
+            _ if own && *of.metric == metric::RMS => "reference".into(),
+            Some(value) if !own || !OWN_ERRORS.contains(&of.metric) => digits(value * scale),
+            _ => "-".into(),
         }));
         row.extend(phases.iter().map(|p| phase(outcome, p, by).map_or("-".into(), |s| digits(s * 1e3))));
         rows.push(row);
@@ -170,13 +176,11 @@ pub fn places(outcomes: &[Outcome]) -> String {
     section(&mut text, &["mean displacement of a face [mm]", "face", "x", "y", "z"], means.collect());
     let modes = outcomes.iter().flat_map(|outcome| {
         (1..).zip(&outcome.modes).map(|(number, mode): (usize, _)| {
-            let of = |name: &str| {
-                mode.iter().find(|m| m.of.metric.name == name).map_or("-".into(), |m| digits(m.value))
+            let of = |metric: &Metric| {
+                mode.iter().find(|m| m.of.metric == metric).map_or("-".into(), |m| digits(m.value))
             };
-            row(
-                &outcome.identity.method,
-                vec![number.to_string(), of("frequency"), of("omega"), of("omega-ratio")],
-            )
+            let [hertz, omega, ratio] = [&metric::FREQUENCY, &metric::OMEGA, &metric::OMEGA_RATIO].map(of);
+            row(&outcome.identity.method, vec![number.to_string(), hertz, omega, ratio])
         })
     });
     section(&mut text, &["modes of vibration", "mode", "[Hz]", "[rad/s]", "/ exact"], modes.collect());
@@ -230,12 +234,6 @@ pub fn warnings(rows: &[records::Warning]) -> String {
 fn line(warning: &records::Warning) -> String {
     let place = if warning.place.is_empty() { String::new() } else { format!("key '{}': ", warning.place) };
     format!("{place}{} ({})", warning.message, warning.code)
-}
-
-/// Whether the run is the reference method, which does not differ from itself. An exact solution is not a
-/// method.
-fn is_reference(outcome: &Outcome) -> bool {
-    outcome.metric("relative-rms") == Some(0.0) && outcome.metric("l2").is_none()
 }
 
 fn phase(outcome: &Outcome, name: &str, by: Seconds) -> Option<f64> {

@@ -14,7 +14,7 @@ mod warning;
 mod watch;
 
 use catalogue::Values;
-use catalogue::metric;
+use catalogue::metric::{self, Address};
 use geometry::{Matrix3, Point3, Vector3};
 use records::{Record, Reference, SurfaceField};
 
@@ -227,7 +227,18 @@ impl Outcome {
 
     /// Value of a metric by name, such as `rms-x` or `tool-force-2`.
     pub fn metric(&self, name: &str) -> Option<f64> {
-        let of = metric::find(name)?;
+        self.value(metric::find(name)?)
+    }
+
+    /// Value of a metric, in SI units.
+    pub fn value(&self, of: impl Into<Address>) -> Option<f64> {
+        let of = of.into();
         self.metrics.iter().find(|m| m.of == of).map(|m| m.value)
+    }
+
+    /// Whether the run is the reference method, which does not differ from itself. An exact solution is not a
+    /// method.
+    pub(crate) fn is_reference(&self) -> bool {
+        self.value(&metric::RELATIVE_RMS) == Some(0.0) && self.value(&metric::L2).is_none()
     }
 }

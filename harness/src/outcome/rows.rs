@@ -1,7 +1,7 @@
 //! Conversion of a finished run to rows of the long table, and of its plan and warnings to rows of the
 //! report.
 
-use catalogue::metric;
+use catalogue::{Dimension, metric};
 use records::{Family, PlanEntry, Record};
 
 use super::load_step::LoadStep;
@@ -76,7 +76,8 @@ impl Outcome {
             if first.strain_energy.is_some() {
                 rows.push(number(&start, &Metric::new(&metric::STRAIN_ENERGY, 0.0)));
             }
-            for known in first.more.iter().filter(|m| m.unit() == "s" || m.unit() == "J") {
+            let is_zero = |m: &&Metric| matches!(m.of.metric.dimension, Dimension::Time | Dimension::Energy);
+            for known in first.more.iter().filter(is_zero) {
                 rows.push(number(&start, &Metric::new(known.of, 0.0)));
             }
         }

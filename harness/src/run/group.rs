@@ -394,7 +394,7 @@ const ROUNDING: f64 = 1e-9;
 
 /// Warning that the run has more nodes than its reference, whose error may then dominate.
 fn coarser(reference: &records::Reference, outcome: &Outcome) -> Option<Warning> {
-    let error = outcome.metric(metric::RELATIVE_RMS.name).filter(|error| *error > ROUNDING)?;
+    let error = outcome.value(&metric::RELATIVE_RMS).filter(|error| *error > ROUNDING)?;
     let own = outcome.size.nodes;
     let known = reference.nodes;
     (known > 0 && own > known).then(|| {

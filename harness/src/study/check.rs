@@ -1,13 +1,13 @@
 //! Checks of bounds on metrics of one run, or of a family of runs at several levels.
 
 use cases::scene::{Bound, Check};
-use catalogue::metric::{self, Address, Metric, Needs};
+use catalogue::metric::{self, Address, Kind, Needs};
 use records::{Check as Verdict, Family, Record, Status};
 
 /// Value of a number among the records of one run, SI units; `None` if there is no such record.
 pub fn value(of: Address, records: &[Record]) -> Option<f64> {
     let own = |r: &&Record| r.family != Family::Interp;
-    if let Some(phase) = of.metric.name.strip_prefix("time-") {
+    if let Kind::Phase(phase) = of.metric.kind {
         let median = |r: &&Record| r.is(&metric::TIME) && r.phase == phase && r.statistic == "median";
         return records.iter().filter(own).find(median).map(|r| r.value);
     }
@@ -27,10 +27,8 @@ pub fn band(of: Address, records: &[Record]) -> Option<f64> {
     records.iter().find(|r| r.is(of) && r.statistic == "band").map(|r| r.value)
 }
 
-/// Observed order between the two finest levels of a family of runs, each given by its records. The error is
-/// the metric without its prefix `order-`.
-fn order(metric: &Metric, family: &[&[Record]]) -> Option<f64> {
-    let error = metric::find(metric.name.strip_prefix("order-")?)?;
+/// Observed order of an error between the two finest levels of a family of runs, each given by its records.
+fn order(error: Address, family: &[&[Record]]) -> Option<f64> {
     let mut points: Vec<(f64, f64)> =
         family.iter().filter_map(|run| Some((run.first()?.spacing, value(error, run)?))).collect();
     points.sort_by(|a, b| b.0.total_cmp(&a.0));
@@ -44,7 +42,8 @@ pub fn of_many(of: Address, runs: &[&[Record]]) -> Option<f64> {
         let carried = runs.iter().filter(|records| carried(records)).count();
         return (!runs.is_empty()).then(|| carried as f64 / runs.len() as f64);
     }
-    order(of.metric, runs)
+    let Kind::Order(error) = of.metric.kind else { return None };
+    order(error.whole(), runs)
 }
 
 /// Whether a run has results and reached the whole load. A procedure without load steps always reaches it.

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use cases::scene;
+use catalogue::metric;
 use records::{Failure as FailedRun, PlanEntry, Record, Reference, SurfaceField, Warning};
 use serde::{Deserialize, Serialize};
 
@@ -80,7 +81,7 @@ pub fn stalled(outcome: &Outcome, failure: &Failure) -> FailedRun {
         case: outcome.identity.case.clone(),
         method: outcome.identity.method.clone(),
         reason: format!("{}: {failure}", outcome.status),
-        carried: outcome.metric("load-carried").filter(|load| *load > 0.0),
+        carried: outcome.value(&metric::LOAD_CARRIED).filter(|load| *load > 0.0),
         status: outcome.status.into(),
         adapter: outcome.identity.adapter.clone().unwrap_or_default(),
         at: failure.place(),

@@ -280,38 +280,58 @@ fn no_meaning_is_read_out_of_names() {
     }
 }
 
-/// Literals of the reports that are a heading, a statistic or a word of a sentence, and have the name of a
-/// metric.
-const WORDS: [(&str, &str); 9] = [
-    ("commits/trend.rs", "time"),
-    ("compare/across.rs", "mass"),
-    ("figures/locking.rs", "pressure"),
-    ("fronts.rs", "max"),
-    ("fronts.rs", "pressure"),
-    ("tables/face_results.rs", "mode"),
-    ("tables/modes.rs", "mass"),
-    ("tables/modes.rs", "massless"),
-    ("tables/outcome.rs", "warnings"),
+/// Literals of the reports and the harness that are a heading, a statistic, a key or a word of a sentence, and
+/// have the name of a metric.
+const WORDS: [(&str, &[&str]); 25] = [
+    ("harness/src/cli/ci/listing.rs", &["memory"]),
+    ("harness/src/cli/init/args.rs", &["load"]),
+    ("harness/src/cli/init/mod.rs", &["closure", "load"]),
+    ("harness/src/cli/init/scene_text.rs", &["pressure"]),
+    ("harness/src/cli/list/mod.rs", &["warnings"]),
+    ("harness/src/cli/mesh/info.rs", &["volume"]),
+    ("harness/src/cli/mesh/make.rs", &["volume"]),
+    ("harness/src/cli/pick/default_methods.rs", &["hex20", "tet10", "tet4"]),
+    ("harness/src/cli/pick/quantity.rs", &["energy", "frequency", "pressure", "stress"]),
+    ("harness/src/cli/text.rs", &["mode"]),
+    ("harness/src/outcome/latency.rs", &["max"]),
+    ("harness/src/outcome/plan.rs", &["mass"]),
+    ("harness/src/outcome/states.rs", &["pressure", "stress"]),
+    ("harness/src/prepare/loads.rs", &["pressure"]),
+    ("harness/src/procedure/external/problem.rs", &["closure"]),
+    ("harness/src/procedure/implicit_dynamic.rs", &["time"]),
+    ("harness/src/procedure/modes.rs", &["mass"]),
+    ("harness/src/procedure/statics.rs", &["load"]),
+    ("reports/src/commits/trend.rs", &["time"]),
+    ("reports/src/compare/across.rs", &["mass"]),
+    ("reports/src/figures/locking.rs", &["pressure"]),
+    ("reports/src/fronts.rs", &["max", "pressure"]),
+    ("reports/src/tables/face_results.rs", &["mode"]),
+    ("reports/src/tables/modes.rs", &["mass", "massless"]),
+    ("reports/src/tables/outcome.rs", &["warnings"]),
 ];
 
 #[test]
-fn reports_name_no_quantity_and_no_element_in_text() {
-    let folder = repository().join("reports/src");
+fn reports_and_the_harness_name_no_quantity_and_no_element_in_text() {
+    let root = repository();
     let names: Vec<String> =
         METRICS.iter().flat_map(|metric| metric.addresses()).map(|of| of.to_string()).collect();
     let bare = METRICS.iter().map(|metric| metric.name).chain(ELEMENTS.iter().map(|element| element.name));
     let names: BTreeSet<&str> = names.iter().map(String::as_str).chain(bare).collect();
     let mut found = BTreeSet::new();
-    for (path, text) in files(&folder).into_iter().filter(|(path, _)| !path.ends_with("tests.rs")) {
-        let file = path.strip_prefix(&folder).unwrap().to_str().unwrap().to_string();
+    let all = ["reports/src", "harness/src"].map(|folder| files(&root.join(folder)));
+    for (path, text) in all.into_iter().flatten().filter(|(path, _)| !path.ends_with("tests.rs")) {
+        let file = path.strip_prefix(&root).unwrap().to_str().unwrap().to_string();
         let code = text.split("#[cfg(test)]").next().unwrap();
         for line in code.lines().filter(|line| !line.trim_start().starts_with("//")) {
             let literals = line.split('"').skip(1).step_by(2).filter(|literal| names.contains(literal));
             found.extend(literals.map(|literal| (file.clone(), literal.to_string())));
         }
     }
-    let words = WORDS.map(|(file, word)| (file.to_string(), word.to_string()));
-    assert_eq!(found, words.into(), "take the entry of the catalogue, such as `metric::L2`");
+    let each = |(file, words): (&str, &'static [&str])| {
+        words.iter().map(|word| (file.to_string(), word.to_string())).collect::<Vec<_>>()
+    };
+    let words = WORDS.into_iter().flat_map(each).collect();
+    assert_eq!(found, words, "take the entry of the catalogue, such as `metric::L2`");
 }
 
 /// Files are opened in one place only, which refuses large or special files and outputs that would replace an

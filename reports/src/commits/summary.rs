@@ -1,9 +1,9 @@
 //! Summary of results: small enough for a repository, with enough data to distinguish a step from noise.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
-use catalogue::metric::{self, Metric};
+use catalogue::metric::{self, Kind, METRICS};
 use records::store::write_text;
 use records::{Machine, Numbers, Program, Record, RecordError, RunSet, Status};
 use serde::{Deserialize, Serialize};
@@ -62,6 +62,8 @@ impl Summary {
     pub fn of(set: &RunSet) -> Summary {
         let mut runs: BTreeMap<String, RunNumbers> = BTreeMap::new();
         let mut wall: BTreeMap<(String, String), Vec<f64>> = BTreeMap::new();
+        let errors = METRICS.iter().filter(|metric| metric.kind == Kind::Error);
+        let errors: BTreeSet<&str> = errors.map(|metric| metric.name).collect();
         let at_end = |r: &&Record| r.step.is_none() && r.mode.is_none();
         for record in set.records.iter().filter(at_end) {
             let name = record.run_name();
@@ -81,7 +83,7 @@ impl Summary {
                 "repeat" if record.is(&metric::TIME) => {
                     wall.entry((name, record.phase.clone())).or_default().push(time());
                 }
-                "value" if metric::find(&record.name()).is_some_and(|of| is_error(of.metric)) => {
+                "value" if errors.contains(record.quantity.as_str()) => {
                     run.errors.insert(record.name(), rounded(record.value, ERROR_DIGITS));
                 }
                 _ => {}
@@ -167,11 +169,6 @@ impl Summary {
         let times = self.runs.get(run)?.seconds.get("total")?;
         times.iter().copied().reduce(f64::min)
     }
-}
-
-/// Whether the metric measures a deviation from the correct result.
-fn is_error(metric: &Metric) -> bool {
-    metric.lower_is_better() && metric.kind != metric::Kind::Cost
 }
 
 #[cfg(test)]

@@ -2,6 +2,7 @@
 //! passes.
 
 use cases::scene;
+use catalogue::metric::{self, Metric};
 
 use crate::adapter::{self, Found};
 use crate::cli::text::digits;
@@ -26,8 +27,8 @@ struct Case {
     /// Procedure and law required by the case, as words of `can`.
     needs: &'static [&'static str],
     scene: &'static str,
-    /// Name of the compared metric, and its bound.
-    metric: &'static str,
+    /// The compared metric, and its bound.
+    metric: &'static Metric,
     bound: f64,
     /// Factor of the tolerance for missing digits of the answer, in exact solutions and balances; 0 for none.
     by_digits: f64,
@@ -50,7 +51,7 @@ const CASES: [Case; 6] = [
         what: "rigid motion",
         needs: &["linear"],
         scene: RIGID,
-        metric: "relative-rms",
+        metric: &metric::RELATIVE_RMS,
         bound: EXACT,
         by_digits: 1.0,
     },
@@ -58,7 +59,7 @@ const CASES: [Case; 6] = [
         what: "linear patch",
         needs: &["linear"],
         scene: PATCH,
-        metric: "relative-rms",
+        metric: &metric::RELATIVE_RMS,
         bound: EXACT,
         by_digits: 1.0,
     },
@@ -66,7 +67,7 @@ const CASES: [Case; 6] = [
         what: "force balance",
         needs: &["linear"],
         scene: LOADED,
-        metric: "residual",
+        metric: &metric::RESIDUAL,
         bound: EXACT,
         by_digits: BALANCE,
     },
@@ -74,7 +75,7 @@ const CASES: [Case; 6] = [
         what: "agreement with the built-in element",
         needs: &["linear"],
         scene: LOADED,
-        metric: "relative-rms",
+        metric: &metric::RELATIVE_RMS,
         bound: AGREEMENT,
         by_digits: 0.0,
     },
@@ -82,7 +83,7 @@ const CASES: [Case; 6] = [
         what: "neo-hookean at large strain",
         needs: &["static", "neo-hookean"],
         scene: HELD,
-        metric: "relative-rms",
+        metric: &metric::RELATIVE_RMS,
         bound: LARGE,
         by_digits: 0.0,
     },
@@ -90,7 +91,7 @@ const CASES: [Case; 6] = [
         what: "neo-hookean-isochoric at large strain",
         needs: &["static", "neo-hookean-isochoric"],
         scene: HELD,
-        metric: "relative-rms",
+        metric: &metric::RELATIVE_RMS,
         bound: LARGE,
         by_digits: 0.0,
     },
@@ -114,7 +115,7 @@ pub(super) fn check(adapter: &Found) -> u8 {
                     let bound = case.bound.max(case.by_digits * 0.1f64.powi(adapter.manifest.digits as i32));
                     // The comparison is false for NaN.
                     let holds = value <= bound;
-                    (holds, format!("{} {}, at most {}", case.metric, digits(value), digits(bound)))
+                    (holds, format!("{} {}, at most {}", case.metric.name, digits(value), digits(bound)))
                 }
                 Err(failure) => (false, failure.to_string()),
             };
@@ -133,12 +134,12 @@ pub(super) fn check(adapter: &Found) -> u8 {
 
 /// Runs one case and returns the compared value.
 fn value(adapter: &Found, case: &Case, element: &str) -> Result<f64, Failure> {
-    let Outcome { metrics, stalled, .. } = run(adapter, case, element)?;
-    if let Some(failure) = stalled {
-        return Err(failure);
+    let outcome = run(adapter, case, element)?;
+    let value = outcome.value(case.metric);
+    match outcome.stalled {
+        Some(failure) => Err(failure),
+        None => value.ok_or_else(|| Failure::Run(format!("gives no {}", case.metric.name))),
     }
-    let found = metrics.iter().find(|metric| metric.name() == case.metric);
-    found.map(|metric| metric.value).ok_or_else(|| Failure::Run(format!("gives no {}", case.metric)))
 }
 
 fn run(adapter: &Found, case: &Case, element: &str) -> Result<Outcome, Failure> {

@@ -170,7 +170,6 @@ impl Found {
 /// difference from itself is zero.
 fn tried(outcome: &Outcome, demand: &Demand) -> Tried {
     let whole = outcome.stalled.is_none();
-    let is_reference = outcome.metric("relative-rms") == Some(0.0) && outcome.metric("l2").is_none();
     let of = |quantity: &Quantity| quantity.error(outcome).filter(|_| whole);
     let error = of(&demand.quantity);
     let others = demand.also.iter().map(|(quantity, _)| quantity.clone()).chain(Quantity::shown());
@@ -185,7 +184,7 @@ fn tried(outcome: &Outcome, demand: &Demand) -> Tried {
     let keeps = |quantity: &Quantity, most: f64| of(quantity).is_some_and(|error| error <= most);
     let within = keeps(&demand.quantity, demand.error)
         && demand.also.iter().all(|(quantity, most)| keeps(quantity, *most))
-        && !is_reference;
+        && !outcome.is_reference();
     let total = outcome.total().cloned().unwrap_or_default();
     Tried {
         method: outcome.identity.method.clone(),
@@ -195,7 +194,7 @@ fn tried(outcome: &Outcome, demand: &Demand) -> Tried {
         errors,
         seconds: undisturbed(&total),
         timed: total,
-        status: if is_reference { "reference" } else { outcome.status },
+        status: if outcome.is_reference() { "reference" } else { outcome.status },
         within,
         front: false,
     }

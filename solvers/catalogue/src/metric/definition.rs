@@ -27,10 +27,12 @@ pub struct Metric {
 pub enum Kind {
     /// A distance from the right value: lower is better.
     Error,
-    /// An observed order of convergence: higher is better.
-    Order,
+    /// The observed order of convergence of an error: higher is better.
+    Order(&'static Metric),
     /// Time or memory of the machine: lower is better, and two runs differ.
     Cost,
+    /// The time of a phase, which is recorded as `time` with the phase: lower is better, and two runs differ.
+    Phase(&'static str),
     /// A result, neither good nor bad by itself.
     Value,
     /// A number of events or objects.
@@ -109,7 +111,7 @@ impl Metric {
 
     /// Whether a lower value is better. A result or a count is neither better nor worse.
     pub const fn lower_is_better(&self) -> bool {
-        matches!(self.kind, Kind::Error | Kind::Cost)
+        matches!(self.kind, Kind::Error | Kind::Cost | Kind::Phase(_))
     }
 
     /// Whether a run has a number for each of its tools, supports or faces.

@@ -7,7 +7,7 @@ use crate::dimension::Dimension;
 macro_rules! metrics {
     (@shape) => { Shape::Scalar };
     (@shape $shape:ident) => { Shape::$shape };
-    ($($id:ident: $name:literal, $label:literal, $dimension:ident, $kind:ident, $needs:ident $(, $shape:ident)?,
+    ($($id:ident: $name:literal, $label:literal, $dimension:ident, $kind:ident $(($of:expr))?, $needs:ident $(, $shape:ident)?,
         $meaning:literal;)*) => {
         $(
             #[doc = concat!("`", $name, "`: ", $meaning, ".")]
@@ -15,7 +15,7 @@ macro_rules! metrics {
                 name: $name,
                 label: $label,
                 dimension: Dimension::$dimension,
-                kind: Kind::$kind,
+                kind: Kind::$kind $(($of))?,
                 needs: Needs::$needs,
                 shape: metrics!(@shape $($shape)?),
                 meaning: $meaning,
@@ -77,13 +77,13 @@ metrics! {
     OUTSIDE: "outside", "targets outside the nodes' hull", None, Count, Transfer,
         "targets of a transfer outside the convex hull of the nodes or outside the mesh";
     // Orders of convergence.
-    ORDER_L2: "order-l2", "order of the L2 error", None, Order, Levels,
+    ORDER_L2: "order-l2", "order of the L2 error", None, Order(&L2), Levels,
         "observed order of the L2 error";
-    ORDER_ENERGY: "order-energy", "order of the energy error", None, Order, Levels,
+    ORDER_ENERGY: "order-energy", "order of the energy error", None, Order(&ENERGY), Levels,
         "observed order of the energy error";
-    ORDER_PRESSURE: "order-pressure", "order of the pressure error", None, Order, Levels,
+    ORDER_PRESSURE: "order-pressure", "order of the pressure error", None, Order(&PRESSURE), Levels,
         "observed order of the pressure error";
-    ORDER_FREQUENCY_ERROR: "order-frequency-error", "order of the frequency error", None, Order, Levels,
+    ORDER_FREQUENCY_ERROR: "order-frequency-error", "order of the frequency error", None, Order(&FREQUENCY_ERROR), Levels,
         "observed order of the frequency error";
     // Many clouds.
     CARRIED_SHARE: "carried-share", "fraction of clouds that reached the full load", None, Value, Seeds,
@@ -271,16 +271,16 @@ metrics! {
         "peak memory allocated in the run, excluding its input";
     CPU_TIME: "cpu-time", "CPU time", Time, Cost, Run,
         "CPU time of a phase, of all threads of the process";
-    TIME_PREPARE: "time-prepare", "time to prepare", Time, Cost, Run,
+    TIME_PREPARE: "time-prepare", "time to prepare", Time, Phase("prepare"), Run,
         "seconds for search and shape functions";
-    TIME_ASSEMBLE: "time-assemble", "time to assemble", Time, Cost, Run,
+    TIME_ASSEMBLE: "time-assemble", "time to assemble", Time, Phase("assemble"), Run,
         "seconds to assemble";
-    TIME_FACTOR: "time-factor", "time to factor", Time, Cost, Run,
+    TIME_FACTOR: "time-factor", "time to factor", Time, Phase("factor"), Run,
         "seconds to factor";
-    TIME_SOLVE: "time-solve", "time to solve", Time, Cost, Run,
+    TIME_SOLVE: "time-solve", "time to solve", Time, Phase("solve"), Run,
         "seconds to solve";
-    TIME_TRANSFER: "time-transfer", "time to transfer", Time, Cost, Transfer,
+    TIME_TRANSFER: "time-transfer", "time to transfer", Time, Phase("transfer"), Transfer,
         "seconds to apply the transfer";
-    TIME_TOTAL: "time-total", "total time", Time, Cost, Run,
+    TIME_TOTAL: "time-total", "total time", Time, Phase("total"), Run,
         "seconds for all phases except reading files";
 }
