@@ -185,8 +185,10 @@ impl Outcome {
 
 /// Id of the run of a row: a hash of its case, method, settings and size. It is the same in every study.
 pub(crate) fn run_id(row: &Record) -> String {
-    let size = (row.poisson.to_bits(), row.level, row.nodes, row.elements, row.seed);
-    digest(&format!("{:?}", (&row.case, &row.method, row.family, &row.variant, row.settings(), size)))
+    let Record { case, method, family, variant, poisson, level, nodes, elements, seed, .. } = row;
+    let size = (poisson, level, nodes, elements, seed);
+    let what = (case, method, family, variant, row.settings(), size);
+    digest(&serde_json::to_string(&what).expect("texts and numbers"))
 }
 
 fn digest(text: &str) -> String {
