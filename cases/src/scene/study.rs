@@ -296,9 +296,26 @@ fn first_times<T: PartialEq>(list: &[T]) -> Vec<bool> {
     list.iter().enumerate().map(|(i, value)| !list[..i].contains(value)).collect()
 }
 
+/// Reports each external solver whose method would have the id of another method.
+fn distinct(run: &Run, scene: &Scene, report: &Report) {
+    let mut known: Vec<String> = scene.methods.iter().map(|method| method.id.clone()).collect();
+    for own in run.chosen(scene) {
+        for (at, adapter) in run.adapters.iter().enumerate() {
+            let Some(twin) = own.solved_by(adapter) else { continue };
+            if known.contains(&twin.id) {
+                let problem = format!("solves '{}' as '{}', the id of another method", own.id, twin.id);
+                let help = "rename one of the two methods in the scene, or leave the adapter out";
+                report.add(&format!("adapters[{at}]"), Problem::new(problem).found(adapter).help(help));
+            }
+            known.push(twin.id);
+        }
+    }
+}
+
 /// Checks the demands of a run on its scene.
 fn fit(run: &Run, scene: &Scene, report: &Report) {
     known_methods(&run.methods, scene, "methods", report);
+    distinct(run, scene, report);
     if let Some(axis) = &run.axis
         && let Err(bad) = axis.at(scene, &run.methods, axis.base)
     {
