@@ -247,6 +247,40 @@ method = [{ id = "hex8", family = "fem", element = "hex8", size = { cells = [8, 
     }
 }
 
+/// A plate on half of a block has half of its force on the whole, and all of its force on the half.
+#[test]
+fn a_tool_that_a_plane_of_symmetry_cuts_is_said_of_the_reference() {
+    let whole = r#"title = "A block under a plate"
+body = { shape = "box", min = ["-20 mm", "0 mm", "0 mm"], max = ["20 mm", "20 mm", "20 mm"] }
+material = { law = "neo-hookean", young = "20 kPa", poisson = 0.3 }
+support = [{ on = "z-min", fix = "xyz" }]
+procedure = { kind = "static", steps = 1 }
+tool = [{ name = "plate", shape = "plate", at = ["5 mm", "10 mm", "20 mm"], along = [0, 0, -1], drive = { closure = "1 mm" }, penalty = "5 MPa/mm" }]
+method = [{ id = "hex8", family = "fem", element = "hex8", size = { cells = [4, 2, 2] } }]
+"#;
+    let half = whole
+        .replace("[\"-20 mm\"", "[\"0 mm\"")
+        .replace("[4, 2, 2]", "[2, 2, 2]")
+        .replace("\"xyz\" }", "\"xyz\" }, { on = \"x-min\", fix = \"x\" }");
+    for (of, x, error) in [(whole, -15.0, 0.5), (&half, 2.0, 0.0)] {
+        let dir = tempfile::tempdir().unwrap();
+        let corners = [[x, 5.0, 5.0], [15.0, 5.0, 5.0], [5.0, 15.0, 10.0], [5.0, 5.0, 15.0]];
+        let out = inside(&dir, "r.json");
+        let scene = write(&dir, "made.toml", of);
+        let made = tissuebench(&["reference", &scene, "--points", &points(&dir, corners), "--out", &out]);
+        assert_eq!(made.code, 0, "{}", made.stderr);
+        let scene = write(&dir, "half.toml", &format!("{half}reference = {{ record = \"r.json\" }}\n"));
+        let done = tissuebench(&["run", &scene, "--once", "--format", "json"]);
+        assert_eq!(done.code, 0, "{}", done.stderr);
+        let object: Value = serde_json::from_str(done.stdout.trim()).unwrap();
+        let found = object["metrics"]["tool-force-error"]["value"].as_f64().unwrap();
+        assert!((found - error).abs() < 1e-6, "{found}");
+        let warnings = &object["reference"]["warnings"];
+        let said = warnings.to_string().contains("its force in this scene is 0.5 of that on the whole body");
+        assert_eq!(said, error > 0.0, "{warnings}");
+    }
+}
+
 #[test]
 fn bad_records_are_named() {
     let dir = tempfile::tempdir().unwrap();

@@ -22,7 +22,7 @@ use crate::outcome::{
 };
 use crate::prepare::region_check;
 use crate::procedure::{Wanted, plan};
-use crate::scenario::{Scenario, point, rule, warnings};
+use crate::scenario::{Scenario, point, rule, tools, warnings};
 
 /// Data shared by all runs of a scene at one Poisson's ratio: probes, targets, transfer schemes and
 /// references.
@@ -92,7 +92,9 @@ impl<'a> Group<'a> {
                 let stored = Stored::load(&group.scene, &path)?;
                 let mirror = Mirror::of(&group.scene);
                 group.targets = stored.targets(&mirror);
-                group.reference = Some(stored.reference(&mirror));
+                // Each run reports invalid tools.
+                let tools = tools(&group.scene).unwrap_or_default();
+                group.reference = Some(stored.reference(&mirror, &tools));
             }
             Some(Reference::Exact { .. }) | None => {}
         }

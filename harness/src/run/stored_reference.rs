@@ -7,6 +7,7 @@ use std::path::Path;
 
 use cases::scene::{ErrorKind, Scene};
 use catalogue::metric::{self, Address};
+use catalogue::warning;
 use geometry::{Point3, Vector3};
 use records::{Family, Record};
 use serde::{Deserialize, Serialize};
@@ -14,7 +15,8 @@ use serde::{Deserialize, Serialize};
 use super::symmetry::Mirror;
 use crate::error::Failure;
 use crate::measure::{OwnError, Reference, norms};
-use crate::outcome::{LoadStep, ToolStep, provenance, push, run_id};
+use crate::outcome::{LoadStep, ToolStep, Warning, provenance, push, run_id};
+use crate::scenario::PlacedTool;
 
 /// Stored reference, a JSON file. Lengths in m, forces in N.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -223,8 +225,25 @@ impl Stored {
         self.points.iter().map(|&x| mirror.place(&x.into())).collect()
     }
 
-    /// Converts the file to the reference of a run.
-    pub(crate) fn reference(&self, mirror: &Mirror) -> Reference {
+    /// Warns of each tool that a plane of symmetry cuts, because the file has its force on the whole body.
+    fn cut_tools(&self, mirror: &Mirror, tools: &[PlacedTool]) -> Vec<Warning> {
+        let body: Vec<Point3> = self.points.iter().map(|&x| x.into()).collect();
+        let cut = |(index, placed): (usize, &PlacedTool)| {
+            let fraction = mirror.fraction(&placed.tool, &body);
+            (fraction < 1.0).then(|| {
+                let message = format!(
+                    "the tool '{}' is cut by planes of symmetry: its force in this scene is {fraction} of that on \
+                     the whole body, which the reference has, and the two are compared as they are",
+                    placed.name
+                );
+                Warning::new(&warning::TOOL_CUT, fraction, format!("tool[{index}]"), message)
+            })
+        };
+        tools.iter().enumerate().filter_map(cut).collect()
+    }
+
+    /// Converts the file to the reference of a run with these tools.
+    pub(crate) fn reference(&self, mirror: &Mirror, tools: &[PlacedTool]) -> Reference {
         let vectors = |all: &[[f64; 3]]| -> Vec<Vector3> { all.iter().map(|&v| v.into()).collect() };
         let at_points = self.points.iter().zip(&self.displacement);
         let steps = self.steps.iter().map(|step| LoadStep {
@@ -247,7 +266,7 @@ impl Stored {
             targets: at_points.map(|(&x, &u)| mirror.displacement(&x.into(), u.into())).collect(),
             steps: steps.collect(),
             finished: true,
-            warnings: Vec::new(),
+            warnings: self.cut_tools(mirror, tools),
             own: self.own_error(),
             at: None,
         }

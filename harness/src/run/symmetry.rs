@@ -4,10 +4,14 @@
 use std::collections::BTreeSet;
 
 use cases::scene::{LoadKind, ScalarField, Scene, Support, VectorField};
+use contact::Tool;
 use geometry::{Facet, Mesh, Point3, Vector3};
 
 use crate::discretise::place;
 use crate::scenario::coarse;
+
+/// Relative rounding of a distance.
+const ROUNDING: f64 = 1e-9;
 
 /// Planes of symmetry at which the modelled part of a body ends. Points beyond a plane are replaced by their
 /// mirror images.
@@ -52,13 +56,35 @@ impl Mirror {
         u
     }
 
+    /// Returns the fraction of a tool that acts on the modelled part of a body with these points: half of it
+    /// for each plane that cuts the tool.
+    pub(crate) fn fraction(&self, tool: &Tool, body: &[Point3]) -> f64 {
+        let cuts = |plane: &&Plane| body.iter().any(|x| plane.is_crossed(x)) && plane.halves(tool, body);
+        0.5f64.powi(self.planes.iter().filter(cuts).count() as i32)
+    }
+
     /// Planes beyond which `x` lies.
     fn crossed(&self, x: &Point3) -> impl Iterator<Item = &Plane> {
-        self.planes.iter().filter(|plane| (x[plane.axis] - plane.at) * plane.side < 0.0)
+        self.planes.iter().filter(|plane| plane.is_crossed(x))
     }
 }
 
 impl Plane {
+    fn is_crossed(&self, x: &Point3) -> bool {
+        (x[self.axis] - self.at) * self.side < 0.0
+    }
+
+    /// Whether the tool is its own mirror image at every closure, as far as these points show.
+    fn halves(&self, tool: &Tool, points: &[Point3]) -> bool {
+        let size = points.iter().map(|x| x.coords.amax()).fold(0.0, f64::max);
+        let is_same = |x: &Point3| {
+            let mut image = *x;
+            image[self.axis] = 2.0 * self.at - x[self.axis];
+            (tool.gap(0.0, x) - tool.gap(0.0, &image)).abs() <= ROUNDING * size
+        };
+        tool.along()[self.axis].abs() <= ROUNDING && points.iter().all(is_same)
+    }
+
     fn is_of_symmetry(&self, scene: &Scene, mesh: &Mesh) -> bool {
         let tolerance = place::tolerance(mesh);
         let is_here = |x: &Point3| (x[self.axis] - self.at).abs() <= tolerance;

@@ -25,7 +25,7 @@ pub(crate) use body_mesh::coarse;
 pub(crate) use estimate::{Estimate, estimate, of_reference, too_large};
 pub(crate) use identity::{method_identity, purpose, rule};
 pub(crate) use notes::warnings;
-pub(crate) use tools::PlacedTool;
+pub(crate) use tools::{PlacedTool, tools};
 
 use cases::exact::{Exact, Medium};
 use cases::scene::{self, LoadKind, Prescribed, Reference, Scene, VectorField};
@@ -34,7 +34,6 @@ use material::{Law, LinearElastic, Prony};
 
 use crate::error::{Failure, Key};
 use setup::{Applied, Load, Setup, Support, SurfaceLoad};
-use tools::tools;
 
 /// A scene's method with the changes of a study.
 #[derive(Clone, Debug)]

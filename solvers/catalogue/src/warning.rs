@@ -102,6 +102,9 @@ warnings! {
     TOOL_INSIDE: "tool-inside", Length,
         "a tool overlaps the undeformed body, so the first step has to remove the whole overlap; value: the \
          depth of the overlap";
+    TOOL_CUT: "tool-cut", None,
+        "a plane of symmetry cuts a tool, so its force is a part of that on the whole body, which the stored \
+         reference has; value: this part";
     STEP_ERROR: "step-error", None,
         "time steps are too long; value: the estimated error of one step divided by the largest displacement";
     REFERENCE_COARSER: "reference-coarser", None,
