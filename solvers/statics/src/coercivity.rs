@@ -36,19 +36,20 @@ impl Factored<'_> {
             .map(|i| Vector3::from_fn(|a, _| (12.9898 * i as f64 + 78.233 * a as f64).sin()))
             .collect();
         let mut alpha = 1.0;
-        let mut mv = mass(forms, stiff(forms, &v), &v);
+        let mut kv = stiff(forms, &v);
+        let mut mv = mass(forms, kv.clone(), &v);
         for _ in 0..STEPS {
             // The iterate stays in the space that the supports leave free; the start vector need not lie in
             // this space.
-            v = self.solve_roughly(&mv)?;
+            v = self.inverse_step(v, &kv, &mv, alpha)?;
             let size = v.iter().fold(0.0f64, |l, v| l.max(v.amax()));
             if size == 0.0 {
                 return Ok(None);
             }
             v.iter_mut().for_each(|v| *v /= size);
-            let kv = stiff(forms, &v);
+            kv = stiff(forms, &v);
             let over = dot(&v, &kv);
-            mv = mass(forms, kv, &v);
+            mv = mass(forms, kv.clone(), &v);
             alpha = over / dot(&v, &mv);
         }
         Ok(Some(gamma * (1.0 - alpha.clamp(0.0, 1.0)).powi(2)))

@@ -38,7 +38,7 @@ impl Assembled<'_> {
             .filter(|&a| excess[a] > 0.0)
             .map(|a| group(&averaged[a], excess[a], kept(a) * (1.0 + 4.0 / 3.0 / KEPT)))
             .collect();
-        let levels = Multigrid::new(&without, body.nodes, self.held(), linear);
+        let levels = Multigrid::new(&without, body.nodes, self.held(), linear, &[]);
         Ok(levels.map_err(not_definite)?.with_pressures(without, &pressures))
     }
 }

@@ -60,6 +60,13 @@ pub(crate) struct Pointwise {
 }
 
 impl Pointwise {
+    /// Returns the trace of the penalty of all weak supports at each node, N/m.
+    pub(crate) fn penalties(&self, nodes: usize) -> Vec<f64> {
+        let mut sums = vec![0.0; nodes];
+        self.weak.iter().for_each(|(table, _)| table.add_penalties(&mut sums));
+        sums
+    }
+
     /// Subtracts the internal forces and those of the weak supports (at `factor` times their values) from
     /// `residual`, N.
     pub fn subtract(&self, u: &[Vector3], factor: f64, residual: &mut [Vector3]) {

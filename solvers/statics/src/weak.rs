@@ -213,6 +213,16 @@ impl WeakTable {
         });
     }
 
+    /// Adds the trace of `integral of beta u_a v_a` over the constrained axes at each node, N/m.
+    pub fn add_penalties(&self, sums: &mut [f64]) {
+        for (q, range) in self.offsets.windows(2).enumerate() {
+            let spring = self.constrained.trace() * self.weights[q] * self.beta[q];
+            for k in range[0]..range[1] {
+                sums[self.nodes[k] as usize] += spring * self.phi[k].powi(2);
+            }
+        }
+    }
+
     /// Adds the linear form `sum over constrained axes of integral of g_a (beta v_a - t_a(v))` to the nodal
     /// forces.
     pub fn add_force(&self, incidence: &Incidence, force: &mut [Vector3]) {

@@ -13,7 +13,8 @@ use crate::stiffness::Stiffness;
 pub struct Iterations {
     /// Number of iterations.
     pub count: usize,
-    /// Relative residual `|b - A x| / |b|`, computed from the solution.
+    /// Relative residual `|b - A x| / |b|`, computed from the solution. With a patch on weak supports, it is
+    /// relative to the residual of the solution of the patch alone.
     pub residual: f64,
 }
 
@@ -23,8 +24,8 @@ const MOST: usize = 500;
 const ROUNDING: f64 = 1e-15;
 
 impl Hierarchy {
-    /// Solves `K x = b` in place, to a residual of `tolerance |b|` or of rounding. On failure, `b` changes
-    /// only at constrained degrees of freedom.
+    /// Solves `K x = b` in place, to a relative residual of `tolerance` ([`Iterations::residual`]) or to
+    /// one of rounding. On failure, `b` changes only at constrained degrees of freedom.
     ///
     /// The preconditioner is in single precision and therefore symmetric to rounding only. The flexible
     /// formula for the next direction (Polak and Ribiere) allows this, at the cost of one more product of
@@ -41,13 +42,13 @@ impl Hierarchy {
         cycle: Cycle,
     ) -> Result<Iterations, AlgebraError> {
         self.release(b);
-        let size = norm(b);
+        let (mut x, mut rest) = self.start(stiffness, b);
+        let size = norm(&rest);
         if size == 0.0 {
+            b.copy_from_slice(&x);
             return Ok(Iterations { count: 0, residual: 0.0 });
         }
         let nodes = b.len();
-        let mut x = vec![Vector3::zeros(); nodes];
-        let mut rest = b.to_vec();
         let mut before = vec![Vector3::zeros(); nodes];
         let mut direction = vec![Vector3::zeros(); nodes];
         let mut image = vec![Vector3::zeros(); nodes];

@@ -26,7 +26,8 @@ impl Hierarchy {
     /// Builds the hierarchy of a positive definite stiffness.
     ///
     /// `nodes` are the node positions, m. `held` marks the constrained degrees of freedom `3 node + axis`.
-    /// `linear` is the mesh of the next level, if there is one.
+    /// `linear` is the mesh of the next level, if there is one. `patch` lists the nodes on weak supports,
+    /// ascending.
     ///
     /// # Errors
     ///
@@ -36,6 +37,7 @@ impl Hierarchy {
         nodes: &[Point3],
         held: Vec<bool>,
         linear: Option<&Coarser>,
+        patch: &[u32],
     ) -> Result<Hierarchy, FactorError> {
         let lower = Held::new(stiffness, &held);
         let scale = if lower.unit() > 0.0 { 1.0 / lower.unit() } else { 1.0 };
@@ -45,12 +47,26 @@ impl Hierarchy {
                 let modes: Vec<Modes<3>> = linear.places.iter().map(|&i| modes[i as usize]).collect();
                 level::nested(&lower, Transfer::nested(linear, &held), &modes, scale)?
             }
-            None => level::by_aggregates(&lower, &modes, scale)?,
+            None => level::by_aggregates(&lower, &modes, scale, patch)?,
         };
         let mut levels = Vec::new();
         finest.sizes(&mut levels);
         let free = held.iter().filter(|held| !**held).count();
         Ok(Hierarchy { finest, held, free, levels, scale })
+    }
+
+    /// Returns a first solution, zero except on weak supports, and its residual. `b` is zero at constrained
+    /// degrees of freedom.
+    pub(super) fn start(&self, stiffness: &Stiffness, b: &[Vector3]) -> (Vec<Vector3>, Vec<Vector3>) {
+        let mut x = vec![Vector3::zeros(); b.len()];
+        if !self.finest.has_patch() {
+            return (x, b.to_vec());
+        }
+        self.finest.start(b, &mut x);
+        let mut rest = stiffness.multiply(&x);
+        self.release(&mut rest);
+        rest.iter_mut().zip(b).for_each(|(rest, b)| *rest = b - *rest);
+        (x, rest)
     }
 
     /// Sets the entries of constrained degrees of freedom to zero.

@@ -11,6 +11,7 @@
 //! Source: Vanek, Mandel and Brezina 1996, Computing 56, 179.
 
 mod aggregate;
+mod coarsest;
 mod conjugate;
 mod galerkin;
 mod graph;
@@ -18,6 +19,7 @@ mod hierarchy;
 mod level;
 mod lower_triangle;
 mod operator;
+mod patch;
 mod pressure;
 mod row_sets;
 mod sweep;
@@ -47,7 +49,8 @@ impl Multigrid {
     /// Builds the hierarchy of a positive definite stiffness.
     ///
     /// `nodes` are the node positions, m. `held` marks the constrained degrees of freedom `3 node + axis`.
-    /// `linear` is the linear mesh of the next level, for quadratic elements.
+    /// `linear` is the linear mesh of the next level, for quadratic elements. `patch` lists the nodes on weak
+    /// supports, ascending.
     ///
     /// # Errors
     ///
@@ -57,8 +60,9 @@ impl Multigrid {
         nodes: &[Point3],
         held: Vec<bool>,
         linear: Option<&Coarser>,
+        patch: &[u32],
     ) -> Result<Multigrid, FactorError> {
-        let hierarchy = Hierarchy::new(stiffness, nodes, held, linear)?;
+        let hierarchy = Hierarchy::new(stiffness, nodes, held, linear, patch)?;
         Ok(Multigrid { hierarchy, pressures: None })
     }
 
@@ -92,9 +96,15 @@ impl Multigrid {
         self.levels().iter().map(|level| level.1 as f64).sum::<f64>() / self.levels()[0].1 as f64
     }
 
-    /// Solves `K x = b` in place, to a residual of `tolerance |b|` or of rounding. Entries of `b` at
-    /// constrained degrees of freedom are ignored. With pressures ([`Multigrid::with_pressures`]), these and
-    /// the displacements are iterated together.
+    /// Whether the nodes on weak supports are solved together. Residuals are then relative to the forces in
+    /// the body; otherwise also to the far larger forces by which a penalty moves a support.
+    pub fn has_patch(&self) -> bool {
+        self.hierarchy.finest.has_patch()
+    }
+
+    /// Solves `K x = b` in place, to a relative residual of `tolerance` ([`Iterations::residual`]) or to one
+    /// of rounding. Entries of `b` at constrained degrees of freedom are ignored. With pressures
+    /// ([`Multigrid::with_pressures`]), these and the displacements are iterated together.
     ///
     /// A W-cycle computes a residual on a coarse level from a solution there. If the softest motions have
     /// 1e-8 of the stiffness, as in a slender beam, this residual is all rounding in single precision, and

@@ -3,9 +3,10 @@
 use super::aggregate::{MODES, aggregates, orthonormal};
 use super::galerkin::galerkin;
 use super::graph::Graph;
-use super::level::{Cycle, by_aggregates};
+use super::level::{Cycle, Level, by_aggregates};
 use super::lower_triangle::{Block, Lower, LowerRows};
 use super::operator::Operator;
+use super::patch::Patch;
 use super::transfer::{Dense, Transfer, Weight};
 
 /// Grid of n x n x n nodes connected to their neighbours by springs, with the first face on ground springs.
@@ -140,12 +141,21 @@ fn restriction_is_the_transpose_of_prolongation() {
     assert_eq!((fused_up, fused_down), (up, down));
 }
 
-/// A preconditioner of conjugate gradients must be symmetric and positive, also with several chunks.
+/// A preconditioner of conjugate gradients must be symmetric and positive, also with several chunks, and with
+/// a patch of the nodes on the first face.
 #[test]
 fn a_cycle_is_symmetric_and_positive() {
     // 17,576 nodes: two chunks of the sweeps.
     let (lower, modes) = grid(26);
-    let level = by_aggregates(&lower, &modes, 0.1).unwrap_or_else(|_| panic!("definite"));
+    let face: Vec<u32> = (0..26 * 26).collect();
+    for patch in [&[][..], &face] {
+        let level = by_aggregates(&lower, &modes, 0.1, patch).unwrap_or_else(|_| panic!("definite"));
+        assert_eq!(level.has_patch(), !patch.is_empty());
+        check_cycles(&lower, &modes, &*level);
+    }
+}
+
+fn check_cycles(lower: &Lower<3>, modes: &[[[f64; MODES]; 3]], level: &dyn Level<3>) {
     let vector = |seed: f64| -> Vec<[f32; 3]> {
         (0..lower.nodes())
             .map(|i| std::array::from_fn(|a| ((3 * i + a) as f64 * seed).fract() as f32 - 0.5))
@@ -170,6 +180,38 @@ fn a_cycle_is_symmetric_and_positive() {
     let once = inner(&cycle(&smooth, Cycle::V), &smooth);
     let twice = inner(&solve(&smooth), &smooth);
     assert!(once > 0.0 && twice > 1.01 * once, "{once} and {twice}");
+}
+
+/// On its own nodes a patch leaves no residual. Elsewhere it keeps the residual up to date.
+#[test]
+fn a_patch_solves_its_part_of_the_matrix() {
+    let (lower, _) = grid(8);
+    let nodes = lower.nodes();
+    let matrix = Operator::new(&lower, 0.1);
+    let of_patch: Vec<u32> = (0..nodes as u32).filter(|i| i % 7 == 3).collect();
+    let Ok(Some(patch)) = Patch::new(&lower, &of_patch, 0.1) else { panic!("a patch") };
+    let value = |i: usize| (i as f64 * 0.618034).fract() as f32 - 0.5;
+    let b: Vec<[f32; 3]> = (0..nodes).map(|i| [0, 1, 2].map(|a| value(3 * i + a))).collect();
+    let residual = |x: &[[f32; 3]]| {
+        let mut out = vec![[0.0; 3]; nodes];
+        matrix.residual(&b, x, &mut out);
+        out
+    };
+    let start: Vec<[f32; 3]> = b.iter().rev().copied().collect();
+    let (mut corrected, mut rest) = (start.clone(), residual(&start));
+    patch.correct(&mut corrected, &mut rest);
+    let mut solved = start.clone();
+    patch.solve(&b, &mut solved);
+    let exact = residual(&corrected);
+    for i in 0..nodes {
+        for a in 0..3 {
+            assert!((rest[i][a] - exact[i][a]).abs() < 1e-5, "node {i}: {} for {}", rest[i][a], exact[i][a]);
+            assert!((solved[i][a] - corrected[i][a]).abs() < 1e-5, "node {i}");
+            assert!(i % 7 != 3 || exact[i][a].abs() < 1e-5, "node {i}: {}", exact[i][a]);
+        }
+    }
+    let half: Vec<u32> = (0..nodes as u32 / 2).collect();
+    assert!(matches!(Patch::new(&lower, &half, 0.1), Ok(None)));
 }
 
 /// Checks that one stored triangle serves as both, across two chunks: in residuals, and in the sweeps that
