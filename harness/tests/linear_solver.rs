@@ -74,6 +74,17 @@ fn the_plan_says_which_and_why() {
     let said = "multigrid levels for conjugate gradients (36501 unknowns, as costly to factor as 25810 unknowns of a cube; iterative solution from 20000 at \
                 lambda / mu = 1.500)";
     assert_eq!(factorisation(large), said);
+    // Clouds are iterated earlier, because their factors are more expensive.
+    let cloud = block("auto").replace("size = { cells = [8, 8, 5] }", "size = { cells = [15, 15, 11] }");
+    let args = ["run", &write(&dir, "cloud.toml", &cloud), "--format", "json", "--method", "efg"];
+    let cloud = &objects(&tissuebench(&args).stdout)[0];
+    assert_eq!(cloud["linear_solver"], "multigrid", "{cloud}");
+    let said = "multigrid levels for conjugate gradients (9216 unknowns, as costly to factor as 6517 unknowns of a cube; iterative solution from 6000 at \
+                lambda / mu = 1.500)";
+    assert_eq!(factorisation(cloud), said);
+    let wide = block("auto").replace("support_scale = 1.6", "support_scale = 2.0");
+    let said = "one, for all load levels (the supports of the cloud are too wide for iterations)";
+    assert_eq!(factorisation(run(&wide).last().unwrap()), said);
     // A nearly incompressible body takes so many iterations that a factor is faster.
     let stiff = block("auto").replace("[8, 8, 6]", "[18, 18, 18]").replace("poisson = 0.3", "poisson = 0.49");
     let plan = tissuebench(&["plan", &write(&dir, "stiff.toml", &stiff), "--method", "tet4"]).stdout;

@@ -94,6 +94,8 @@ pub struct Discretisation {
     pub interpolates: bool,
     /// Whether shape functions extend across borders between regions.
     pub blends: bool,
+    /// Whether supports are so wide that multigrid takes hundreds of iterations.
+    pub wide: bool,
     /// Order of the polynomials that the shape functions reproduce: 1 or 2.
     pub order: usize,
     /// Whether the quadrature is reduced: much of the strain between its points has no energy.
@@ -143,6 +145,7 @@ impl Discretisation {
             nodes: Arc::new(mesh.points().to_vec()),
             mesh: mesh.clone(),
             interpolates: true,
+            wide: false,
             blends: false,
             order,
             reduced,
