@@ -253,7 +253,61 @@ fn bad_explicit_scenes_name_the_key() {
         let path = write(&dir, "bad.toml", &good.replace(from, to));
         assert_fails(&tissuebench(&["run", &path]), code, says);
     }
-    let efg = PRESSED.lines().find(|l| l.contains("\"efg\"")).unwrap();
-    let path = write(&dir, "cloud.toml", &good.replace("method = [", &format!("method = [\n{efg}")));
-    assert_fails(&tissuebench(&["run", &path]), 3, "a cloud in explicit dynamics is not available");
+}
+
+/// A block held at its base and pulled by a load that grows over a time, by elements and by a cloud on the same vertices.
+fn pulled(over: &str, cloud: &str) -> String {
+    format!(
+        r#"title = "A sudden pull"
+body = {{ shape = "box", size = ["40 mm", "40 mm", "40 mm"] }}
+material = {{ law = "neo-hookean", young = "20 kPa", poisson = 0.3, density = "1000 kg/m^3" }}
+support = [{{ on = "z-min", fix = "xyz" }}]
+load = [{{ on = "z-max", traction = ["0 Pa", "0 Pa", "200 Pa"] }}]
+procedure = {{ kind = "explicit", over = "{over}", duration = "60 ms", steps = 12 }}
+method = [
+    {{ id = "hex8", family = "fem", element = "hex8", size = {{ cells = [8, 8, 8] }} }},
+    {{ id = "cloud", family = "efg", size = {{ cells = [8, 8, 8] }}, kernel = "cubic-spline", basis = "linear", integration = {{ rule = "cell-smoothed" }}, {cloud} }},
+]
+output = {{ probes = [["20 mm", "20 mm", "40 mm"]] }}
+"#
+    )
+}
+
+/// Heights of the probe at every state, m, by method.
+fn heights(objects: &[Value]) -> Vec<Vec<f64>> {
+    let height = |state: &Value| state["probes"][0][2].as_f64().unwrap();
+    objects.iter().map(|o| o["steps"].as_array().unwrap().iter().map(height).collect()).collect()
+}
+
+#[test]
+fn a_cloud_with_coupled_supports_moves_as_elements_do() {
+    let (done, objects) = run(&pulled("40 ms", r#"essential = "coupling", support_scale = 1.2"#));
+    assert_eq!(done.code, 0, "{}", done.stderr);
+    let [hex8, cloud] = &heights(&objects)[..] else { panic!("{objects:?}") };
+    let largest = hex8.iter().fold(0.0f64, |l, z| l.max(z.abs()));
+    for (a, b) in hex8.iter().zip(cloud) {
+        assert!((a - b).abs() < 0.02 * largest, "{hex8:?} {cloud:?}");
+    }
+    assert!(metric(&objects[1], "energy-drift") < 1e-3);
+    assert!(!done.stdout.contains("unseen-motion"), "{}", done.stdout);
+}
+
+#[test]
+fn wide_supports_with_a_lumped_mass_warn() {
+    let (done, objects) = run(&pulled("0 s", r#"essential = "coupling", support_scale = 3.0"#));
+    assert_eq!(done.code, 0, "{}", done.stderr);
+    let warning = &objects[1]["warnings"][0];
+    assert_eq!(
+        (&warning["code"], objects[0]["warnings"].as_array().map(Vec::len)),
+        (&"unseen-motion".into(), Some(0))
+    );
+    assert!(warning["value"].as_f64().unwrap() > 0.1);
+}
+
+#[test]
+fn a_cloud_with_weak_supports_is_refused_in_explicit_dynamics() {
+    let dir = tempfile::tempdir().unwrap();
+    let path = write(&dir, "cloud.toml", &pulled("0 s", r#"essential = "penalty", support_scale = 1.6"#));
+    let said = "a cloud without coupled elements at its supports in explicit dynamics is not available";
+    assert_fails(&tissuebench(&["run", &path]), 3, said);
 }

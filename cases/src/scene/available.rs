@@ -3,7 +3,7 @@
 use catalogue::Problem;
 
 use super::error::{ErrorKind, SceneError};
-use super::method::{Dilation, Family};
+use super::method::{Dilation, Essential, Family};
 use super::procedure::{Procedure, ProcedureKind};
 use super::scene::Scene;
 use super::tool::Tool;
@@ -55,10 +55,15 @@ impl Scene {
                     add(&at("dilation"), "dilation = \"mixed\" in explicit dynamics".into(), help);
                 }
                 Family::Fem(_) | Family::External(_) => {}
-                Family::Efg(_) if explicit => {
-                    let help = "elements are: lumped parameters of smooth kernels have slow modes that no cloud has, and \
-                                parameters at supports are not displacements";
-                    add(&at("family"), "a cloud in explicit dynamics".into(), help);
+                Family::Efg(efg)
+                    if explicit && efg.essential != Essential::Coupling && !self.supports.is_empty() =>
+                {
+                    let help = "take essential = \"coupling\": its nodes on supports have displacements, which explicit steps prescribe";
+                    add(
+                        &at("essential"),
+                        "a cloud without coupled elements at its supports in explicit dynamics".into(),
+                        help,
+                    );
                 }
                 Family::Efg(efg) if efg.dilation == Dilation::Mixed => {
                     let help = "\"element-mean\", \"nodal-mean\" and \"nodal-near\" are";

@@ -49,6 +49,8 @@ const LONG_STEP: f64 = 0.01;
 /// correct, and as many fewer of strains. Strains are then accurate to 0.01 %, less than the errors by which
 /// methods are compared.
 const DIGITS: f64 = 4.0;
+/// Largest part of the kinetic energy that the displacement of a cloud may lack without a warning.
+const UNSEEN: f64 = 0.1;
 /// Fewest integration points per node without a warning. A cloud on the vertices of its tetrahedra has two to
 /// six cells per node, and one point in each cell detects all motions of the cloud. At 1.7 points per node,
 /// some clouds already have motions without strain at their points.
@@ -79,6 +81,7 @@ pub(crate) fn warnings(
     let at_rest = matches!(run.setup.procedure, Procedure::Static(_));
     found.extend(last.into_iter().filter(|_| at_rest).flat_map(untouched));
     found.extend(value(&metric::LIMIT_LOAD).filter(|_| run.solution.is_whole()).map(unstable));
+    found.extend(run.solution.unseen_motion.and_then(unseen_motion));
     found.extend(inside(run));
     found.extend(penetration::warnings(run));
     found.extend(dead_pressure::warnings(run)?);
@@ -140,6 +143,17 @@ fn few_points(run: &Solved) -> Option<Warning> {
              {POINTS_PER_NODE} suffice: take finer cells (background) or more points (integration)"
         );
         Warning::new(&warning::FEW_POINTS, each, "", message)
+    })
+}
+
+fn unseen_motion(part: f64) -> Option<Warning> {
+    (part > UNSEEN).then(|| {
+        let message = format!(
+            "{:.0} % of the kinetic energy belongs to parameters that oscillate almost without displacement, because \
+             their mass is lumped: take a smaller support_scale, or kernel = \"regularised-interpolating\"",
+            100.0 * part
+        );
+        Warning::new(&warning::UNSEEN_MOTION, part, "method.support_scale", message)
     })
 }
 

@@ -11,12 +11,13 @@ use explicit::{
 };
 use geometry::Vector3;
 use lanes::LanePath;
-use shape::Matrix3;
+use shape::{Matrix3, VolumeRows};
 use statics::nodal_forces;
 
 use super::problem::Problem;
 use super::solution::{Solution, StepHistory};
 use super::stages::Stages;
+use crate::discretise::Volume;
 use crate::error::{Failure, Key};
 use crate::outcome::timing::Meters;
 use crate::outcome::{Counters, LoadStep, Metric, ToolStep, Watch};
@@ -83,7 +84,8 @@ impl Loading {
 fn motion(problem: &Problem, asked: &Explicit, counters: &mut Counters) -> Result<Solution, Failure> {
     let Problem { setup, prepared, watch, .. } = *problem;
     let (volume, rows) = (&prepared.volume, &prepared.volume.rows);
-    let mass = lumped_mass(rows, &setup.density()?, &volume.region, Lumping::for_table(rows))?;
+    let density = setup.density()?;
+    let mass = lumped_mass(rows, &density, &volume.region, Lumping::for_table(rows))?;
     let mut force = InternalForce::new(body(setup, prepared), LanePath::best())?;
     let kernel = force.info();
     counters.mass_nodes += mass.len() as u64;
@@ -136,7 +138,9 @@ fn motion(problem: &Problem, asked: &Explicit, counters: &mut Counters) -> Resul
         Err(failure) => return Err(failure.into()),
         Ok(motion) => {
             let led = loading.led.keys().copied().collect();
-            let mut run = Run { motion, asked, setup, prepared, led, states, watch };
+            let masses = (!problem.method.interpolates)
+                .then(|| Masses { points: point_masses(volume, &density), lumped: &mass });
+            let mut run = Run { motion, asked, setup, prepared, led, masses, states, watch };
             let failure = run.march(&mut load, interval).err();
             made = run.motion.steps() as u64;
             counters.time_steps += made;
@@ -148,6 +152,7 @@ fn motion(problem: &Problem, asked: &Explicit, counters: &mut Counters) -> Resul
             failure
         }
     };
+    let unseen_motion = (!problem.method.interpolates).then(|| states.unseen_motion());
     let tool_mass = if moving.iter().any(|t| matches!(t.drive, Drive::Force(_))) { tool_mass } else { 0.0 };
     let u = states.fields.last().cloned();
     Ok(Solution {
@@ -155,8 +160,14 @@ fn motion(problem: &Problem, asked: &Explicit, counters: &mut Counters) -> Resul
         u: u.unwrap_or_else(|| vec![Vector3::zeros(); mass.len()]),
         history: Some(states.history(problem, asked, made, [mass.iter().sum(), tool_mass], failure)),
         forces: Some(kernel),
+        unseen_motion,
         ..Solution::default()
     })
+}
+
+fn point_masses(volume: &Volume, density: &[f64]) -> Vec<f64> {
+    let region = |q: usize| volume.region.get(q).map_or(0, |&region| usize::from(region));
+    volume.rows.weights().iter().enumerate().map(|(q, w)| w * density[region(q)]).collect()
 }
 
 /// The body for the kernels of internal forces.
@@ -223,6 +234,22 @@ fn divided(interval: f64, longest: f64) -> (f64, usize) {
     (interval / count, count as usize)
 }
 
+/// Masses of a cloud: those of its points and those lumped on its parameters, kg.
+struct Masses<'a> {
+    points: Vec<f64>,
+    lumped: &'a [f64],
+}
+
+impl Masses<'_> {
+    /// Kinetic energies of parameters with these velocities (m/s), J: of the lumped mass, and of the displacement.
+    fn energies(&self, volume: &VolumeRows, velocities: &[Vector3]) -> [f64; 2] {
+        let sum = |masses: &[f64], velocities: &[Vector3]| -> f64 {
+            masses.iter().zip(velocities).map(|(m, v)| 0.5 * m * v.norm_squared()).sum()
+        };
+        [sum(self.lumped, velocities), sum(&self.points, &volume.rows().apply(velocities))]
+    }
+}
+
 /// Recorded states so far.
 #[derive(Default)]
 struct States {
@@ -232,9 +259,16 @@ struct States {
     critical: f64,
     /// Largest relative error of the energy balance.
     drift: f64,
+    /// Largest kinetic energy of the lumped mass, and largest part of it that the displacement does not have, J.
+    kinetic: f64,
+    unseen: f64,
 }
 
 impl States {
+    fn unseen_motion(&self) -> f64 {
+        if self.kinetic > 0.0 { self.unseen / self.kinetic } else { 0.0 }
+    }
+
     /// Returns the history of a run with `made` steps and the masses of the body and of a tool (kg).
     fn history(
         self,
@@ -244,7 +278,7 @@ impl States {
         [mass, tool_mass]: [f64; 2],
         failure: Option<ExplicitError>,
     ) -> StepHistory {
-        let States { steps, fields, critical, drift } = self;
+        let States { steps, fields, critical, drift, .. } = self;
         let last = steps.last().cloned();
         let last = last.unwrap_or_else(|| LoadStep::at_start(problem.setup.tools.len()));
         let metrics = vec![
@@ -266,6 +300,8 @@ struct Run<'a, 'b> {
     prepared: &'b Prepared,
     /// Prescribed degrees of freedom, in the order of the integrator.
     led: Vec<(u32, u8)>,
+    /// Masses of a cloud; `None` for elements.
+    masses: Option<Masses<'b>>,
     states: States,
     watch: Option<&'b Watch>,
 }
@@ -294,6 +330,12 @@ impl Run<'_, '_> {
                     }
                 }
                 self.states.drift = self.states.drift.max(balance.drift.abs());
+                if let Some(masses) = &self.masses {
+                    let [lumped, seen] =
+                        masses.energies(&self.prepared.volume.rows, self.motion.velocities());
+                    self.states.kinetic = self.states.kinetic.max(lumped);
+                    self.states.unseen = self.states.unseen.max(lumped - seen);
+                }
                 let step = self.reported(&balance, &u, state as f64 * interval);
                 if let Some(watch) = self.watch {
                     watch.step(&step);

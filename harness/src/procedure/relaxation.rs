@@ -13,7 +13,7 @@ use shape::FixedDof;
 use statics::nodal_forces;
 
 use super::explicit::{body, led, smallest_j};
-use crate::discretise::Discretisation;
+use crate::discretise::{Discretisation, Essential};
 use crate::error::Failure;
 use crate::outcome::{Counters, LoadStep, Metric, ToolStep};
 use crate::prepare::{ConditionForces, Prepared};
@@ -61,10 +61,10 @@ pub struct Relaxed {
 /// Whether a method can continue by relaxation after its static path stalls, with the reason.
 pub(super) fn possible(method: &Discretisation) -> (bool, &'static str) {
     match method.dilation {
-        _ if !method.interpolates => (
+        _ if !method.interpolates && !matches!(method.essential, Essential::Coupling(_)) => (
             false,
-            "not available for clouds: a support by penalty with lumped parameters has no usable time step; the load \
-             path ends if the solver stalls",
+            "not available for clouds without coupled elements: a support by penalty with lumped parameters has no \
+             usable time step; the load path ends if the solver stalls",
         ),
         Dilation::Mixed => (
             false,

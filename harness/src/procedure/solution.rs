@@ -28,6 +28,9 @@ pub(crate) struct Solution {
     /// Smallest stabilisation factor of Nitsche's method, if Nitsche's method constrains the body in a linear
     /// procedure.
     pub(crate) needed_nitsche_factor: Option<f64>,
+    /// Largest kinetic energy of parameters without that of the displacement, divided by the largest kinetic
+    /// energy, in explicit dynamics of a cloud.
+    pub(crate) unseen_motion: Option<f64>,
     /// Expected correct decimal digits of a linear solution.
     pub(crate) digits: Option<f64>,
     /// History of a procedure with steps.

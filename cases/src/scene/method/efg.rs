@@ -94,7 +94,7 @@ impl EfgKeys {
 impl Efg {
     /// Reports contradictions with the procedure and the regions of the scene.
     pub(super) fn demands(&self, kind: ProcedureKind, has_regions: bool, report: &Report) {
-        // A cloud in explicit dynamics is refused elsewhere.
+        // Explicit dynamics refuses other conditions than coupling as not available yet.
         let problem = self.essential.unsupported(kind).filter(|_| kind != ProcedureKind::Explicit);
         if let Some(problem) = problem {
             let table = "essential.method";
