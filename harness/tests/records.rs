@@ -43,6 +43,30 @@ fn a_run_of_several_tables_is_run_once_and_checked_by_each() {
     assert!(set.checks.iter().all(|c| c.status == Status::Pass), "{:?}", set.checks);
 }
 
+/// Everything that a run does between reading its scene and writing its results belongs to a phase.
+#[test]
+fn the_phases_of_a_run_add_up_to_its_wall_time() {
+    let dir = tempfile::tempdir().unwrap();
+    let scene = write(&dir, "block.toml", &BLOCK.replace("cells = [2, 2, 1]", "cells = [24, 24, 12]"));
+    let out = inside(&dir, "out");
+    let start = std::time::Instant::now();
+    let done = tissuebench(&["run", &scene, "--once", "-q", "--out", &out]);
+    let wall = start.elapsed().as_secs_f64();
+    assert_eq!(done.code, 0, "{}", done.stderr);
+    let set = read_run(Path::new(&out)).unwrap();
+    let phases: Vec<&Record> = (set.records.iter())
+        .filter(|r| r.quantity == "time" && r.statistic == "repeat" && r.phase != "total")
+        .collect();
+    let names: Vec<&str> = phases.iter().map(|r| r.phase.as_str()).collect();
+    assert_eq!(names, ["assemble", "factor", "measure", "mesh", "prepare", "solve"]);
+    let sum: f64 = phases.iter().map(|r| r.value).sum();
+    // The report and the start of the process belong to no run: some tenths of a second.
+    assert!(sum <= wall && sum > 0.5 * (wall - 1.0), "{sum} of {wall} s: {names:?}");
+    let run = tissuebench(&["run", &scene, "--once", "-q", "--format", "json"]);
+    let object: serde_json::Value = serde_json::from_str(run.stdout.lines().next().unwrap()).unwrap();
+    assert!(object["phases"]["mesh"].as_f64().unwrap() > 0.0);
+}
+
 #[test]
 fn every_repeat_of_a_timing_is_kept_on_both_clocks() {
     let dir = tempfile::tempdir().unwrap();

@@ -57,6 +57,7 @@ pub use command::{Cli, Command};
 
 /// Runs the command given on the command line and returns its exit code.
 pub fn called() -> u8 {
+    crate::run::keep_freed_memory();
     match Cli::try_parse() {
         Ok(cli) => main(cli),
         Err(bad) => {

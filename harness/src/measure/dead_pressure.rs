@@ -2,7 +2,7 @@
 //! undeformed faces.
 
 use catalogue::warning;
-use geometry::{Point3, Vector3};
+use geometry::{Facet, Point3, Vector3};
 
 use super::solved::Solved;
 use crate::discretise::place::{self, Patch};
@@ -50,15 +50,28 @@ pub(super) fn warnings(run: &Solved) -> Result<Vec<Warning>, Failure> {
 fn dead(run: &Solved, load: &Load, pressure: &ScalarField) -> Result<Dead, Failure> {
     let Solved { method, prepared, solution, .. } = *run;
     let Patch { whole, cut } = place::patch(&load.key, &load.place, method.mesh())?;
-    let whole = whole.into_iter().map(|facet| place::corners(method.mesh(), facet));
-    let faces = whole.chain(cut.into_iter().map(|triangle| triangle.corners.to_vec()));
-    let acts = |face: &Vec<Point3>| face.iter().any(|x| pressure(x).is_ok_and(|p| p != 0.0));
-    let faces: Vec<Vec<Point3>> = faces.filter(acts).collect();
+    let mesh = method.mesh();
+    let acts = |face: &[Point3]| face.iter().any(|x| pressure(x).is_ok_and(|p| p != 0.0));
+    // The corners of whole faces are nodes of a method that interpolates: no point has to be located.
+    let (nodal, other): (Vec<Facet>, Vec<Facet>) = whole.into_iter().partition(|_| method.interpolates);
+    let nodal: Vec<Vec<u32>> = (nodal.into_iter())
+        .filter(|facet| acts(&place::corners(mesh, *facet)))
+        .map(|facet| mesh.facet_corners(facet).collect())
+        .collect();
+    let other = other.into_iter().map(|facet| place::corners(mesh, facet));
+    let faces = other.chain(cut.into_iter().map(|triangle| triangle.corners.to_vec()));
+    let faces: Vec<Vec<Point3>> = faces.filter(|face| acts(face)).collect();
     let points: Vec<Point3> = faces.iter().flatten().copied().collect();
     let (rows, _) = prepared.source.at_points(&points)?;
     let recorded = solution.history.iter().flat_map(|history| &history.fields);
     let mut dead = Dead::default();
     for field in recorded.chain([&solution.u]) {
+        for face in &nodal {
+            let before: Vec<Point3> = face.iter().map(|&node| mesh.points()[node as usize]).collect();
+            let now: Vec<Point3> =
+                before.iter().zip(face).map(|(x, &node)| x + field[node as usize]).collect();
+            dead.add(directed_area(&before), directed_area(&now));
+        }
         let moved = rows.rows().apply(field);
         let mut moved = points.iter().zip(&moved).map(|(x, u)| x + u);
         for face in &faces {

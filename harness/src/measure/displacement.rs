@@ -5,8 +5,8 @@ use std::time::Instant;
 use super::request::Request;
 use super::solved::{Field, Solved};
 use crate::error::Failure;
-use crate::outcome::timing::Meters;
-use crate::outcome::{Plan, StageName};
+use crate::outcome::timing::Timings;
+use crate::outcome::{Counters, Plan, StageName};
 
 /// Displacement (m) at the targets; without targets, at the method's own nodes. If the plan has no transfer,
 /// nodal parameters are displacements and nothing is evaluated.
@@ -14,7 +14,8 @@ pub(crate) fn displacement(
     run: &Solved,
     plan: &Plan,
     request: &Request,
-    meters: &mut Meters,
+    timings: &mut Timings,
+    counters: &mut Counters,
 ) -> Result<Field, Failure> {
     let Solved { method, prepared, solution, .. } = *run;
     if !plan.runs(StageName::Transfer) {
@@ -25,18 +26,18 @@ pub(crate) fn displacement(
         let (rows, outside) = prepared.source.at_points(points)?;
         Ok(Field { values: rows.rows().apply(&solution.u), outside })
     };
-    meters.counters.transfer_rows += points.len() as u64;
+    counters.transfer_rows += points.len() as u64;
     let timed = !method.interpolates && !request.targets.is_empty();
     if !timed {
         return once();
     }
     let start = Instant::now();
-    let mut field = meters.timings.time("transfer", once)?;
+    let mut field = timings.time("transfer", once)?;
     for _ in 1..request.repeats.most {
         if start.elapsed().as_secs_f64() > request.repeats.seconds {
             break;
         }
-        field = meters.timings.time("transfer", once)?;
+        field = timings.time("transfer", once)?;
     }
     Ok(field)
 }

@@ -41,12 +41,12 @@ pub(super) fn largest(run: &Solved) -> Option<[Largest; 2]> {
     let rows = &prepared.volume.rows;
     let [mut strain, mut turn] = [Largest::default(), Largest::default()];
     let mut met = false;
-    for (q, h) in rows.at().displacement_gradients(&solution.u).iter().enumerate().filter(|(q, _)| small(*q))
-    {
+    for q in (0..rows.weights().len()).filter(|q| small(*q)) {
         met = true;
+        let h = rows.at().displacement_gradient(q, &solution.u);
         let at = &rows.points()[q];
         let weight = rows.weights()[q];
-        turn.add(rotation(h), TURNED, at, weight);
+        turn.add(rotation(&h), TURNED, at, weight);
         let tensor = (h + h.transpose()) * 0.5;
         // No principal strain exceeds the norm, which costs a tenth of the eigenvalues. Few points need
         // eigenvalues.

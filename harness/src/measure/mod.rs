@@ -28,8 +28,9 @@ mod warnings;
 
 use cases::exact::Exact;
 use catalogue::metric;
-use geometry::{Matrix3, Vector3};
+use geometry::Vector3;
 use material::{Law, Material as _};
+use shape::Layout;
 use statics::LinearBody;
 
 use crate::discretise::Essential;
@@ -126,15 +127,21 @@ pub(crate) fn measure(
 }
 
 /// Smallest volume ratio J at the points of the finer quadrature; `None` at small strain. Under-integrated
-/// elements can fold between their own points.
+/// elements can fold between their own points. In linear tetrahedra J is constant, so their own points suffice.
 fn smallest_fine_j(run: &Solved) -> Result<Option<f64>, Failure> {
     let Solved { setup, prepared, solution, .. } = *run;
     if solution.history.is_none() || setup.laws.iter().all(Law::is_small_strain) {
         return Ok(None);
     }
-    let (fine, _) = prepared.fine_volume()?;
-    let gradients = fine.at().displacement_gradients(&solution.u);
-    Ok(gradients.iter().map(|h| (Matrix3::identity() + h).determinant()).reduce(f64::min))
+    let own = &prepared.volume.rows;
+    if own.layout() == Layout::LinearTetrahedra {
+        return Ok(Some(own.at().smallest_volume_ratio(&solution.u)));
+    }
+    let mut smallest = f64::INFINITY;
+    prepared.source.fine_blocks(&mut |rows| {
+        smallest = smallest.min(rows.at().smallest_volume_ratio(&solution.u));
+    })?;
+    Ok(Some(smallest))
 }
 
 /// Adds the norms of the error over the body against an exact solution.

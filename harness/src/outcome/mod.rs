@@ -120,6 +120,8 @@ pub struct Outcome {
     pub metrics: Vec<Metric>,
     /// Times per phase and repeat, the total included.
     pub phases: Vec<Timed>,
+    /// Wall-clock time of a first pass that was discarded because it touched its memory for the first time, s.
+    pub first_use: Option<f64>,
     /// Times per frame of the loop after the first solution, if the scene requests the loop.
     pub latencies: Vec<Latency>,
     /// Peak memory allocated in the run beyond its input, bytes.
@@ -190,6 +192,7 @@ impl Outcome {
             size,
             metrics: Vec::new(),
             phases: Vec::new(),
+            first_use: None,
             latencies: Vec::new(),
             memory: 0,
             process_memory: None,

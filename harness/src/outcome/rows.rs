@@ -16,6 +16,10 @@ impl Outcome {
         let mut rows: Vec<Record> = self.metrics.iter().map(|m| number(&own, m)).collect();
         rows.extend(self.metrics.iter().filter_map(|m| self.band(&own, m)));
         self.phases.iter().for_each(|timed| rows.extend(times(&own, timed)));
+        rows.extend(self.first_use.map(|seconds| Record {
+            phase: "first-use".into(),
+            ..number(&own, &Metric::new(&metric::TIME, seconds))
+        }));
         for latency in &self.latencies {
             let phase = Record { phase: latency.phase.into(), ..own.clone() }.with(&metric::TIME);
             rows.extend(latency.statistics().into_iter().map(|(statistic, unit, value)| Record {

@@ -7,7 +7,7 @@ use reports::{Seconds, Took};
 
 use super::counters::Counters;
 
-/// The phases of every run, in order.
+/// The phases of every run whose times are compared, in order.
 pub const PHASES: [&str; 6] = ["refine", "prepare", "assemble", "factor", "solve", "transfer"];
 
 /// Times of one phase, one entry per repeat.
@@ -86,6 +86,25 @@ impl Timings {
         timed.cpu.extend(cpu);
     }
 
+    /// Runs `work` and adds its time to `phase`, without the times that it adds to other phases itself.
+    pub(crate) fn time_rest<T>(&mut self, phase: &'static str, work: impl FnOnce(&mut Timings) -> T) -> T {
+        let mut inner = Timings::default();
+        let mut outer = Timings::default();
+        let result = outer.time(phase, || work(&mut inner));
+        let all = |of: fn(&Timed) -> &[f64]| inner.phases.iter().flat_map(of).sum::<f64>();
+        let (wall, cpu) = (all(|timed| &timed.wall), all(|timed| &timed.cpu));
+        let rest = &mut outer.phases[0];
+        rest.wall.iter_mut().for_each(|t| *t = (*t - wall).max(0.0));
+        rest.cpu.iter_mut().for_each(|t| *t = (*t - cpu).max(0.0));
+        self.phases.extend(inner.phases.into_iter().chain(outer.phases));
+        result
+    }
+
+    /// Wall-clock time of all phases and repeats, s.
+    pub(crate) fn wall(&self) -> f64 {
+        self.phases.iter().flat_map(|timed| &timed.wall).sum()
+    }
+
     /// Merges the last two entries of a phase, for a pass that went through the phase twice.
     pub(crate) fn join(&mut self, phase: &'static str) {
         let timed = self.of(phase);
@@ -128,6 +147,8 @@ impl Timings {
 pub(crate) struct Meters {
     /// Times, one entry per pass.
     pub(crate) timings: Timings,
+    /// Wall-clock time of the discarded first pass, which touched its memory for the first time, s.
+    pub(crate) first_use: Option<f64>,
     /// Counters of one pass.
     pub(crate) counters: Counters,
     /// Smallest stabilisation factor of Nitsche's method, found once for all passes.
@@ -181,6 +202,20 @@ mod tests {
         t.book("solve", 2.0);
         t.book("prepare", 10.0);
         assert_eq!(t.total().wall, [3.0]);
+    }
+
+    #[test]
+    fn the_rest_of_a_phase_leaves_out_what_it_times_itself() {
+        let mut t = Timings::default();
+        let pause = || std::thread::sleep(std::time::Duration::from_millis(20));
+        t.time_rest("measure", |t| {
+            pause();
+            t.book("transfer", 0.01);
+        });
+        let [transfer, measure] = t.phases() else { panic!("two phases") };
+        assert_eq!((transfer.phase, &transfer.wall[..]), ("transfer", &[0.01][..]));
+        assert!(measure.phase == "measure" && measure.wall[0] >= 0.01, "{:?}", measure.wall);
+        assert!((t.wall() - 0.01 - measure.wall[0]).abs() < 1e-12);
     }
 
     #[test]

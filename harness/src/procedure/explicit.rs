@@ -11,7 +11,7 @@ use explicit::{
 };
 use geometry::Vector3;
 use lanes::LanePath;
-use shape::{Matrix3, VolumeRows};
+use shape::VolumeRows;
 use statics::nodal_forces;
 
 use super::problem::Problem;
@@ -223,8 +223,7 @@ pub(crate) fn led(prepared: &Prepared) -> BTreeMap<(u32, u8), f64> {
 
 /// Smallest volume ratio of all quadrature points.
 pub(crate) fn smallest_j(prepared: &Prepared, u: &[Vector3]) -> f64 {
-    let gradients = prepared.volume.rows.at().displacement_gradients(u);
-    gradients.iter().map(|h| (Matrix3::identity() + h).determinant()).fold(f64::INFINITY, f64::min)
+    prepared.volume.rows.at().smallest_volume_ratio(u)
 }
 
 /// Divides an interval into equal steps no longer than `longest`; returns their length and number.

@@ -8,7 +8,7 @@ use records::Family;
 use shape::{FixedDof, GradRows, PointRows, VolumeRows};
 
 use super::group::Group;
-use super::{loaded, size};
+use super::{loaded, phases, size};
 use crate::discretise::Discretisation;
 use crate::error::Failure;
 use crate::measure::{self, Request, check_probes};
@@ -103,7 +103,10 @@ impl Group<'_> {
             ..posed.identity.clone()
         };
         let mut outcome = Outcome::new(identity, size(method, prepared, solution.dofs), plan);
-        loaded(&mut outcome, &run, &request, meters)?;
+        let Meters { timings, counters, .. } = &mut meters;
+        loaded(&mut outcome, &run, &request, timings, counters)?;
+        outcome.phases = phases(&meters, &run);
+        outcome.counters = meters.counters;
         self.hold_against(&mut outcome);
         Ok(outcome)
     }

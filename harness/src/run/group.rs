@@ -10,6 +10,7 @@ use catalogue::{metric, warning};
 use geometry::Point3;
 use interp::Scheme;
 
+use super::memory::return_freed_memory;
 use super::stored_reference::Stored;
 use super::symmetry::Mirror;
 use super::witness::own_error;
@@ -17,6 +18,7 @@ use super::{FinishedRun, run};
 use crate::discretise::Discretisation;
 use crate::error::Failure;
 use crate::measure::{self, OwnError, Repeats, Request};
+use crate::outcome::timing::Timings;
 use crate::outcome::{
     Counters, Metric, Outcome, Plan, SchemeSettings, Size as Sizes, Unfinished, Warning, Watch,
 };
@@ -291,7 +293,9 @@ impl<'a> Group<'a> {
     /// # Errors
     /// Returns the failure with the plan and the sizes, as far as they were known.
     pub fn run(&self, scenario: &Scenario, options: RunOptions) -> Result<Outcome, Unfinished> {
-        let discretisation = scenario.discretise()?;
+        return_freed_memory();
+        let mut timings = Timings::default();
+        let discretisation = timings.time("mesh", || scenario.discretise())?;
         let size = size(&discretisation);
         let setup =
             scenario.setup().map_err(|failure| Unfinished { failure, plan: Plan::default(), size })?;
@@ -321,7 +325,10 @@ impl<'a> Group<'a> {
                 solved.outcome.relaxed = solved.outcome.relaxed.map(locate);
                 let nodes = solved.outcome.size.nodes as usize;
                 self.hold_against(&mut solved.outcome);
-                solved.outcome.warn(warnings(&self.scene, &scenario.method, discretisation.mesh(), nodes));
+                let of_scene = || warnings(&self.scene, &scenario.method, discretisation.mesh(), nodes);
+                solved.outcome.warn(timings.time("mesh", of_scene));
+                timings.join("mesh");
+                solved.outcome.phases.extend_from_slice(timings.phases());
                 Ok(solved.outcome)
             }
             Err(failure) => Err(Unfinished { failure: scenario.locate(failure), plan, size }),

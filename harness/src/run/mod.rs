@@ -35,7 +35,7 @@ use repeated::repeated;
 pub use crate::measure::Repeats;
 pub use external_problem::{Found, Posed, PosedTool};
 pub use group::{Group, RunOptions, case_name};
-pub use memory::Baseline as MemoryBaseline;
+pub use memory::{Baseline as MemoryBaseline, keep_freed_memory};
 pub use stored_reference::Stored;
 
 /// Finished run with its nodal parameters.
@@ -82,17 +82,21 @@ fn on_pool(
     outcome.process_memory = process::most_memory().filter(|_| solution.program.is_none());
     outcome.memory = solution.program.as_ref().map_or(memory, |program| program.memory);
     outcome.identity.linear_solver = solution.solver().map(Into::into);
-    if request.states {
-        outcome.states = Some(states(&run, usize::MAX)?);
-    }
-    if solution.u.is_empty() {
-        unloaded(&mut outcome, &run)?;
-        outcome.phases = phases(&meters, &run);
-        outcome.counters = meters.counters;
-    } else {
-        loaded(&mut outcome, &run, request, meters)?;
-    }
-    readable(&outcome)?;
+    outcome.first_use = meters.first_use;
+    let Meters { timings, counters, .. } = &mut meters;
+    timings.time_rest("measure", |timings| {
+        if request.states {
+            outcome.states = Some(states(&run, usize::MAX)?);
+        }
+        if solution.u.is_empty() {
+            unloaded(&mut outcome, &run)?;
+        } else {
+            loaded(&mut outcome, &run, request, timings, counters)?;
+        }
+        readable(&outcome)
+    })?;
+    outcome.phases = phases(&meters, &run);
+    outcome.counters = meters.counters;
     Ok(FinishedRun { outcome, prepared, u: solution.u })
 }
 
@@ -135,7 +139,7 @@ fn passes(
     let repeats = request.repeats.most > 1 && method.outside.is_none();
     if repeats && is_first_use(before, process::system_seconds(), &meters.timings.total().cpu) {
         drop(pass);
-        meters.timings = Timings::default();
+        meters.first_use = Some(std::mem::take(&mut meters.timings).wall());
         start = Instant::now();
         pass = once(method, setup, plan, request, meters)?;
     }
@@ -198,17 +202,16 @@ fn loaded(
     outcome: &mut Outcome,
     run: &measure::Solved,
     request: &Request,
-    mut meters: Meters,
+    timings: &mut Timings,
+    counters: &mut Counters,
 ) -> Result<(), Failure> {
     let measure::Solved { setup, solution, .. } = *run;
-    let displaced = displacement(run, &outcome.plan, request, &mut meters)?;
-    outcome.phases = phases(&meters, run);
-    let mut counters = meters.counters;
+    let displaced = displacement(run, &outcome.plan, request, timings, counters)?;
     if let Some(forces) = solution.forces {
         outcome.identity.force_kernel = Some(forces.kernel.name().into());
         outcome.identity.lane_path = forces.path.map(|path| path.name().into());
     }
-    conclude(&mut outcome.plan, solution, &counters);
+    conclude(&mut outcome.plan, solution, counters);
     let recovered = Recovered::new(run, &solution.u, &solution.pressure);
     compare(outcome, run, &displaced, recovered.as_ref(), request)?;
     outcome.tools = setup.tools.iter().map(|t| t.name.clone()).collect();
@@ -224,20 +227,20 @@ fn loaded(
     let whole = solution.is_whole();
     let mut bridging = None;
     if outcome.plan.runs(StageName::Schemes) {
-        (outcome.transfers, bridging) = transfers(run, &request.at_end(whole), &mut counters)?;
+        (outcome.transfers, bridging) = transfers(run, &request.at_end(whole), counters)?;
     }
     outcome.warnings =
         warnings(run, recovered.as_ref(), &outcome.metrics, &outcome.probes, outcome.last.as_ref())?;
     outcome.warnings.extend(bridging);
     if let Some(ask) = request.repeated.filter(|_| whole && run.method.outside.is_none()) {
-        outcome.latencies = repeated(ask, run, request.probes, &mut outcome.metrics)?;
+        outcome.latencies =
+            timings.time("loop", || repeated(ask, run, request.probes, &mut outcome.metrics))?;
     }
     if request.picture {
         let mut field = picture(&outcome.identity, run, outcome.last.as_ref())?;
         field.body = Some(surface(run, &displaced, &request.at_end(whole))?);
         outcome.field = Some(field);
     }
-    outcome.counters = counters;
     Ok(())
 }
 

@@ -109,6 +109,9 @@ fn find(mesh: &Mesh, points: &[Point3]) -> Result<Vec<Option<Place>>, FemError> 
     if let Some(point) = points.iter().position(|p| !p.coords.iter().all(|c| c.is_finite())) {
         return Err(FemError::NotFinite { point });
     }
+    if points.is_empty() {
+        return Ok(Vec::new());
+    }
     let locator = Locator::new(mesh);
     Ok(points.par_iter().with_min_len(64).map(|p| locator.find(p)).collect())
 }

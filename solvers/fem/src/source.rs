@@ -13,7 +13,7 @@ use crate::linear::linear_nodes;
 use crate::points::{nearest_grad_rows, nearest_point_rows};
 use crate::rule::{SurfaceRule, VolumeRule};
 use crate::surface::{divided_surface_rows, flux_rows, outline_rows, surface_rows};
-use crate::volume::{element_dilation, pressure_rows, regions, volume_rows};
+use crate::volume::{element_dilation, pressure_rows, regions, volume_blocks, volume_rows};
 
 /// Finite elements of a mesh as a source of tables. The nodes of the mesh are the nodes of the method.
 pub struct Elements {
@@ -74,6 +74,10 @@ impl RowSource for Elements {
 
     fn fine_volume(&self) -> Result<VolumeRows, SourceError> {
         Ok(volume_rows(&self.mesh, &VolumeRule::FINE)?)
+    }
+
+    fn fine_blocks(&self, visit: &mut dyn FnMut(&VolumeRows)) -> Result<(), SourceError> {
+        Ok(volume_blocks(&self.mesh, &VolumeRule::FINE, visit)?)
     }
 
     fn fine_regions(&self) -> Vec<u16> {

@@ -18,6 +18,9 @@ pub(crate) const UNITY: Unity = Unity::Within(1e-12);
 /// Cells per task: fixed, so that the work is divided in the same way at any thread count.
 const CHUNK: usize = 512;
 
+/// Cells per block of rows that are used once: some 50 MB for hex20, with work for 16 threads.
+const BLOCK: usize = 16 * CHUNK;
+
 /// Returns shape values, gradients (1/m) and weights `w det J` (m^3) at the quadrature points of every cell.
 ///
 /// Rows have the cell's nodes in the cell's order. The cells are processed in parallel and each writes its
@@ -29,13 +32,34 @@ const CHUNK: usize = 512;
 /// cell can also fold at a corner, between these points: [`geometry::quality::check`] examines the corners
 /// too.
 pub fn volume_rows(mesh: &Mesh, rule: &VolumeRule) -> Result<VolumeRows, FemError> {
+    let rows = rows_of(mesh, &tabulate(mesh, rule)?, 0..mesh.cell_count())?;
+    Ok(rows.laid_out(layout(mesh, rule))?)
+}
+
+/// Calls `visit` with the rows of [`volume_rows`] in blocks of [`BLOCK`] cells, which take little memory.
+pub(crate) fn volume_blocks(
+    mesh: &Mesh,
+    rule: &VolumeRule,
+    visit: &mut dyn FnMut(&VolumeRows),
+) -> Result<(), FemError> {
     let tables = tabulate(mesh, rule)?;
-    let cells = mesh.cell_count();
+    for first in (0..mesh.cell_count()).step_by(BLOCK) {
+        visit(&rows_of(mesh, &tables, first..(first + BLOCK).min(mesh.cell_count()))?);
+    }
+    Ok(())
+}
+
+/// Returns the rows of a range of cells, without a known structure.
+fn rows_of(
+    mesh: &Mesh,
+    tables: &[Table; CellKind::ALL.len()],
+    cells: Range<usize>,
+) -> Result<VolumeRows, FemError> {
     let entries_of = |cell: usize| mesh.kind(cell).node_count();
     let points_of = |cell: usize| tables[mesh.kind(cell) as usize].weights.len();
 
     let mut offsets = vec![0];
-    for cell in 0..cells {
+    for cell in cells.clone() {
         let (n, mut at) = (entries_of(cell), *offsets.last().unwrap_or(&0));
         for _ in 0..points_of(cell) {
             at += n;
@@ -58,21 +82,20 @@ pub fn volume_rows(mesh: &Mesh, rule: &VolumeRule) -> Result<VolumeRows, FemErro
         values: &mut values,
         grads: &mut grads,
     };
-    let mut chunks = Vec::with_capacity(cells.div_ceil(CHUNK));
-    for first in (0..cells).step_by(CHUNK) {
-        let cells = first..(first + CHUNK).min(cells);
+    let mut chunks = Vec::with_capacity(cells.len().div_ceil(CHUNK));
+    for first in cells.clone().step_by(CHUNK) {
+        let cells = first..(first + CHUNK).min(cells.end);
         let rows = cells.clone().map(points_of).sum();
         let entries = cells.clone().map(|cell| points_of(cell) * entries_of(cell)).sum();
         chunks.push(rest.split_off(cells, rows, entries));
     }
     let results: Vec<Result<(), FemError>> =
-        chunks.into_par_iter().map(|chunk| chunk.fill(mesh, &tables)).collect();
+        chunks.into_par_iter().map(|chunk| chunk.fill(mesh, tables)).collect();
     // Errors are taken in chunk order, so that the reported cell does not depend on which thread was first.
     results.into_iter().collect::<Result<(), FemError>>()?;
 
     let rows = Rows::new(mesh.points().len(), offsets, nodes, values, UNITY)?;
-    let rows = VolumeRows::new(GradRows::new(points, rows, grads)?, weights)?;
-    Ok(rows.laid_out(layout(mesh, rule))?)
+    Ok(VolumeRows::new(GradRows::new(points, rows, grads)?, weights)?)
 }
 
 /// Returns the known structure of the rows of a mesh.

@@ -4,11 +4,12 @@ mod common;
 
 use common::{affine, all, ball, jittered, middles, mixed};
 use geometry::quadrature::{TET_RULES, TRI_RULES};
-use geometry::{CellKind, FaceKind, Facet, Matrix3, Mesh, Point3, Vector3};
+use geometry::{CellKind, FaceKind, Facet, Matrix3, Mesh, Point3, Vector3, generate};
 use proptest::prelude::*;
+use shape::RowSource as _;
 use tissuebench_fem::{
-    FemError, SurfaceRule, VolumeRule, cell_of_point, element_dilation, flux_rows, regions, surface_rows,
-    volume_rows,
+    Elements, FemError, SurfaceRule, VolumeRule, cell_of_point, element_dilation, flux_rows, regions,
+    surface_rows, volume_rows,
 };
 
 const RULES: [VolumeRule; 2] = [VolumeRule::STANDARD, VolumeRule::FINE];
@@ -324,4 +325,24 @@ proptest! {
             prop_assert!(closed.norm() < 1e-13, "{kind:?}: {closed}");
         }
     }
+}
+
+/// The blocks of the finer quadrature are its rows, one after another.
+#[test]
+fn blocks_have_the_bits_of_the_whole_table() {
+    let (low, high) = (Point3::origin(), Point3::new(1.0, 2.0, 3.0));
+    // More cells than a block has.
+    let mesh = generate::box_mesh(CellKind::Hex8, low, high, [21; 3], [1.5; 3], None).unwrap();
+    let elements = Elements::new(std::sync::Arc::new(mesh), VolumeRule::STANDARD);
+    let whole = elements.fine_volume().unwrap();
+    let (mut blocks, mut weights, mut grads, mut nodes) = (0, Vec::new(), Vec::new(), Vec::new());
+    let mut add = |rows: &shape::VolumeRows| {
+        blocks += 1;
+        weights.extend_from_slice(rows.weights());
+        grads.extend_from_slice(rows.grads());
+        nodes.extend_from_slice(rows.rows().nodes());
+    };
+    elements.fine_blocks(&mut add).unwrap();
+    assert_eq!(blocks, 2);
+    assert!(weights == whole.weights() && grads == whole.grads() && nodes == whole.rows().nodes());
 }

@@ -50,18 +50,65 @@ pub struct Quality {
     pub max_aspect: Extreme,
 }
 
-/// Measures the quality of a mesh.
+/// Checks that no cell is inverted, without measuring anything else: a tenth of the time of [`check`].
 ///
 /// # Errors
 /// An element with `det J <= 0` at a node or quadrature point. Values up to 1e-12 times the cube of the
 /// longest edge count as zero.
+pub fn upright(mesh: &Mesh) -> Result<(), InvertedElement> {
+    each_cell(mesh, |_, _, _, _| {})
+}
+
+/// Measures the quality of a mesh.
+///
+/// # Errors
+/// As for [`upright`].
 pub fn check(mesh: &Mesh) -> Result<Quality, InvertedElement> {
     let mut quality: Option<Quality> = None;
+    each_cell(mesh, |element, kind, points, Determinants { low, high, volume }| {
+        let (sharp, blunt) = dihedrals(kind, points);
+        let aspect = aspect(kind, points, volume);
+        let at = |value| Extreme { element, value };
+        let here = Quality {
+            volume,
+            min_volume: at(volume),
+            max_volume: at(volume),
+            min_det_j: at(low),
+            min_det_ratio: at(low / high),
+            min_dihedral: at(sharp),
+            max_dihedral: at(blunt),
+            max_aspect: at(aspect),
+        };
+        quality = Some(match quality.take() {
+            None => here,
+            Some(so_far) => so_far.joined(here),
+        });
+    })?;
+    Ok(quality.expect("a mesh has at least one cell"))
+}
+
+/// Smallest and largest `det J` of a cell (m^3) and its volume (m^3).
+struct Determinants {
+    low: f64,
+    high: f64,
+    volume: f64,
+}
+
+/// Calls `visit` with the index, kind, nodes and determinants of every cell that is not inverted.
+///
+/// # Errors
+/// As for [`upright`].
+fn each_cell(
+    mesh: &Mesh,
+    mut visit: impl FnMut(usize, CellKind, &[Point3], Determinants),
+) -> Result<(), InvertedElement> {
     let mut folded: Option<InvertedElement> = None;
     let probes = CellKind::ALL.map(probe_points);
+    let mut points = Vec::new();
     for element in 0..mesh.cell_count() {
         let kind = mesh.kind(element);
-        let points: Vec<Point3> = mesh.cell_points(element).copied().collect();
+        points.clear();
+        points.extend(mesh.cell_points(element).copied());
         let (rule, nodes) = &probes[kind as usize];
         let det = |xi: &[f64; 3]| element::map(kind, &points, *xi).1.determinant();
         let (mut low, mut high, mut volume) = (f64::INFINITY, f64::NEG_INFINITY, 0.0);
@@ -80,30 +127,11 @@ pub fn check(mesh: &Mesh) -> Result<Quality, InvertedElement> {
         if low.is_nan() || low <= 1e-12 * longest.powi(3) {
             let first = InvertedElement { element, det_j: low, inverted: 0, cells: mesh.cell_count() };
             folded.get_or_insert(first).inverted += 1;
-            continue;
+        } else {
+            visit(element, kind, &points, Determinants { low, high, volume });
         }
-        let (sharp, blunt) = dihedrals(kind, &points);
-        let aspect = aspect(kind, &points, volume);
-        let at = |value| Extreme { element, value };
-        let here = Quality {
-            volume,
-            min_volume: at(volume),
-            max_volume: at(volume),
-            min_det_j: at(low),
-            min_det_ratio: at(low / high),
-            min_dihedral: at(sharp),
-            max_dihedral: at(blunt),
-            max_aspect: at(aspect),
-        };
-        quality = Some(match quality {
-            None => here,
-            Some(so_far) => so_far.joined(here),
-        });
     }
-    match folded {
-        Some(bad) => Err(bad),
-        None => Ok(quality.expect("a mesh has at least one cell")),
-    }
+    folded.map_or(Ok(()), Err)
 }
 
 /// Aspect ratio as in [`Quality::max_aspect`].
@@ -167,14 +195,16 @@ impl Quality {
     }
 }
 
-/// Quadrature rule that integrates `det J` exactly, and the nodes.
+/// Quadrature rule that integrates `det J` exactly, and the nodes; no nodes if `det J` is constant.
 fn probe_points(kind: CellKind) -> (quadrature::Rule<3>, &'static [[f64; 3]]) {
     let entry = kind.entry();
-    ((entry.cell.rule)(entry.points.volume).expect("a tabulated rule"), entry.nodes)
+    let nodes = if kind == CellKind::Tet4 { &[] } else { entry.nodes };
+    ((entry.cell.rule)(entry.points.volume).expect("a tabulated rule"), nodes)
 }
 
 fn longest_edge(kind: CellKind, points: &[Point3]) -> f64 {
-    kind.edges().iter().map(|&[a, b]| nalgebra::distance(&points[a], &points[b])).fold(0.0, f64::max)
+    let squares = kind.edges().iter().map(|&[a, b]| nalgebra::distance_squared(&points[a], &points[b]));
+    squares.fold(0.0, f64::max).sqrt()
 }
 
 /// Area of the faces, each as the sum of the triangles around the mean of its corners.

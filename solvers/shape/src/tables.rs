@@ -138,16 +138,23 @@ impl GradRows {
     /// Returns the displacement gradient at each point: `H_ij = sum_I u_Ii N_I,j`.
     pub fn displacement_gradients(&self, u: &[Vector3]) -> Vec<Matrix3> {
         assert_eq!(u.len(), self.rows.node_count(), "one vector per node");
-        (0..self.rows.len())
-            .map(|q| {
-                let (nodes, grads) = self.row(q);
-                let mut h = Matrix3::zeros();
-                for (&node, g) in nodes.iter().zip(grads) {
-                    h += u[node as usize] * g.transpose();
-                }
-                h
-            })
-            .collect()
+        (0..self.rows.len()).map(|q| self.displacement_gradient(q, u)).collect()
+    }
+
+    /// Returns the displacement gradient at one point, as [`GradRows::displacement_gradients`] does at all.
+    pub fn displacement_gradient(&self, q: usize, u: &[Vector3]) -> Matrix3 {
+        let (nodes, grads) = self.row(q);
+        let mut h = Matrix3::zeros();
+        for (&node, g) in nodes.iter().zip(grads) {
+            h += u[node as usize] * g.transpose();
+        }
+        h
+    }
+
+    /// Returns the smallest volume ratio `det(1 + H)` of all points; infinite without points.
+    pub fn smallest_volume_ratio(&self, u: &[Vector3]) -> f64 {
+        let ratio = |q| (Matrix3::identity() + self.displacement_gradient(q, u)).determinant();
+        (0..self.rows.len()).map(ratio).fold(f64::INFINITY, f64::min)
     }
 }
 

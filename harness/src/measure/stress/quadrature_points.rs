@@ -11,7 +11,11 @@ use crate::measure::solved::Solved;
 pub(crate) fn own_stress(run: &Solved, u: &[Vector3], parameters: &[f64]) -> Vec<Matrix3> {
     let (laws, volume) = (&run.setup.laws, &run.prepared.volume);
     let law = |q: usize| &laws[volume.region.get(q).map_or(0, |&r| usize::from(r))];
-    let gradients = volume.rows.at().displacement_gradients(u);
+    let at = volume.rows.at();
+    if volume.groups.is_none() && volume.pressure.is_none() {
+        return (0..at.rows().len()).map(|q| cauchy(law(q), &at.displacement_gradient(q, u))).collect();
+    }
+    let gradients = at.displacement_gradients(u);
     let mut stress: Vec<Matrix3> = match &volume.groups {
         None => gradients.iter().enumerate().map(|(q, h)| cauchy(law(q), h)).collect(),
         Some(groups) => {
@@ -27,11 +31,9 @@ pub(crate) fn own_stress(run: &Solved, u: &[Vector3], parameters: &[f64]) -> Vec
             stress
         }
     };
-    if volume.groups.is_some() || volume.pressure.is_some() {
-        let pressure = mean_pressure::at_points(laws, volume, &gradients, parameters);
-        for (stress, pressure) in stress.iter_mut().zip(pressure) {
-            *stress -= Matrix3::identity() * (stress.trace() / 3.0 + pressure);
-        }
+    let pressure = mean_pressure::at_points(laws, volume, &gradients, parameters);
+    for (stress, pressure) in stress.iter_mut().zip(pressure) {
+        *stress -= Matrix3::identity() * (stress.trace() / 3.0 + pressure);
     }
     stress
 }

@@ -10,6 +10,7 @@
 
 use material::LinearElastic;
 use nalgebra::{SMatrix, SVector};
+use rayon::prelude::*;
 use shape::{Matrix3, Point3, Vector3};
 
 use super::quadrature_points::own_stress;
@@ -39,6 +40,9 @@ const QUADRATIC_RIDGE: f64 = 1e-3;
 /// rounding.
 const ROUNDING: f64 = 1e-20;
 
+/// Nodes that one task fits at least: some 0.1 ms.
+const TOGETHER: usize = 64;
+
 /// Fits of the stress in one state of a run.
 pub(crate) struct Recovered<'a> {
     run: Solved<'a>,
@@ -58,7 +62,7 @@ struct Patch {
     /// Linear fit.
     linear: Fit<LINEAR>,
     /// Quadratic part, for second-order methods.
-    quadratic: Option<Fit<QUADRATIC>>,
+    quadratic: Option<Box<Fit<QUADRATIC>>>,
     /// Scale of the coordinates, m.
     size: f64,
 }
@@ -110,7 +114,6 @@ impl<'a> Recovered<'a> {
     /// linear fits, whatever the method, because quadratic fits follow the jumps.
     pub fn jump(&self) -> Option<(f64, Point3)> {
         let volume = &self.run.prepared.volume.rows;
-        let gradients = volume.at().displacement_gradients(self.u);
         let largest = self.u.iter().map(|u| u.norm_squared()).fold(0.0, f64::max);
         let (low, high) = place::bounds(self.run.method.mesh());
         let as_strain = largest / (high - low).norm_squared();
@@ -126,7 +129,8 @@ impl<'a> Recovered<'a> {
             if part > most.0 {
                 most = (part, *x);
             }
-            scale += w * material.mu() * (gradients[q].norm_squared() + as_strain);
+            scale +=
+                w * material.mu() * (volume.at().displacement_gradient(q, self.u).norm_squared() + as_strain);
         }
         (own > ROUNDING * scale).then(|| ((off / (own + off)).sqrt(), most.1))
     }
@@ -141,16 +145,34 @@ impl<'a> Recovered<'a> {
             return Vec::new();
         }
         let rows = self.run.prepared.volume.rows.rows();
-        let mut near: Vec<Vec<(usize, f64)>> = vec![Vec::new(); self.run.method.nodes().len()];
-        for q in (0..rows.len()).filter(|&q| usize::from(self.alike[usize::from(self.region(q))]) == material)
-        {
+        let nodes = self.run.method.nodes();
+        let own = |q: &usize| usize::from(self.alike[usize::from(self.region(*q))]) == material;
+        let entries = |q: usize| {
             let (nodes, values) = rows.row(q);
-            for (&a, phi) in nodes.iter().zip(values).filter(|(_, phi)| **phi != 0.0) {
-                near[a as usize].push((q, phi.abs()));
-            }
+            nodes
+                .iter()
+                .zip(values)
+                .filter(|(_, phi)| **phi != 0.0)
+                .map(move |(&a, phi)| (a as usize, q, phi.abs()))
+        };
+        let near = || (0..rows.len()).filter(own).flat_map(entries);
+        // The points near each node, one node after another: a list for each node would take twice the memory.
+        let mut starts = vec![0; nodes.len() + 1];
+        near().for_each(|(a, ..)| starts[a + 1] += 1);
+        for a in 0..nodes.len() {
+            starts[a + 1] += starts[a];
         }
-        let nodes = self.run.method.nodes().iter().zip(&near);
-        nodes.map(|(node, points)| (!points.is_empty()).then(|| self.fitted(node, points))).collect()
+        let mut points = vec![(0, 0.0); starts[nodes.len()]];
+        let mut next = starts.clone();
+        for (a, q, phi) in near() {
+            points[next[a]] = (q, phi);
+            next[a] += 1;
+        }
+        let of = |(a, node): (usize, &Point3)| {
+            let points = &points[starts[a]..starts[a + 1]];
+            (!points.is_empty()).then(|| self.fitted(node, points))
+        };
+        nodes.par_iter().enumerate().with_min_len(TOGETHER).map(of).collect()
     }
 
     /// Least-squares polynomials for the stress at some points, weighted by volume and shape function value.
@@ -167,7 +189,8 @@ impl<'a> Recovered<'a> {
         let mut linear = nearest_fit::<LINEAR>(&bases, &mut left, RIDGE, PASSES);
         linear.set_column(0, &(mean + linear.column(0)));
         let second = self.run.method.order == 2;
-        let quadratic = second.then(|| nearest_fit::<QUADRATIC>(&bases, &mut left, QUADRATIC_RIDGE, 1));
+        let quadratic =
+            second.then(|| Box::new(nearest_fit::<QUADRATIC>(&bases, &mut left, QUADRATIC_RIDGE, 1)));
         Patch { linear, quadratic, size }
     }
 
@@ -187,7 +210,7 @@ impl Patch {
     fn at(&self, r: &Vector3) -> Matrix3 {
         let linear = self.linear_at(r);
         let Some(quadratic) = &self.quadratic else { return linear };
-        let more = tensor(&(quadratic * basis(r, self.size)));
+        let more = tensor(&(**quadratic * basis(r, self.size)));
         linear + more - Matrix3::identity() * (more.trace() / 3.0)
     }
 
