@@ -90,8 +90,7 @@ pub(super) fn serves(method: &Discretisation, setup: &Setup, asked: LinearSolver
     let pressures = method.interpolates || matches!(method.essential, Essential::Coupling(_));
     let shared = pressures
         && match method.dilation {
-            Dilation::ElementMean | Dilation::NodalMean => true,
-            Dilation::NodalNear => !method.interpolates,
+            Dilation::ElementMean | Dilation::NodalMean | Dilation::NodalNear => true,
             Dilation::Standard | Dilation::Mixed => false,
         };
     let quadratic = method.order == 2;

@@ -67,9 +67,8 @@ warnings! {
         "the factor of Nitsche's method is barely large enough for a definite form; value: the ratio of the \
          factor to the smallest sufficient factor";
     UNSEEN_MOTION: "unseen-motion", None,
-        "parameters of a cloud with a lumped mass oscillate almost without displacement, more slowly than any \
-         mode of the body; value: the largest kinetic energy that the displacement does not have, divided by \
-         the largest kinetic energy";
+        "parameters of a cloud with a lumped mass oscillate almost without displacement; value: the largest \
+         kinetic energy that the displacement does not have, divided by the largest kinetic energy";
     FEW_CONTACT_POINTS: "few-contact-points", None,
         "fewer than three contact points carry the force of a tool, so the force depends on their positions; \
          value: the number of points that carry the force";
