@@ -71,9 +71,13 @@ impl Loading {
     fn part(&self, t: f64) -> f64 {
         if t < self.over { t / self.over } else { 1.0 }
     }
-}
 
-impl Loading {
+    /// Displacement (m) of each prescribed degree of freedom over time (s).
+    fn motions(&self) -> Vec<Box<dyn Fn(f64) -> f64 + Sync + '_>> {
+        let motion = |&value: &f64| Box::new(move |t: f64| value * self.part(t)) as Box<_>;
+        self.led.values().map(motion).collect()
+    }
+
     fn new(problem: &Problem, asked: &Explicit) -> Result<Loading, Failure> {
         let Problem { prepared, .. } = *problem;
         let loads = nodal_forces(&prepared.volume.rows, &prepared.loads())?;
@@ -97,11 +101,7 @@ fn motion(problem: &Problem, asked: &Explicit, counters: &mut Counters) -> Resul
         loaded.iter().for_each(|&i| f[i] += loading.loads[i] * loading.part(t));
     };
     let loading = &loading;
-    let motions: Vec<Box<dyn Fn(f64) -> f64 + Sync>> = loading
-        .led
-        .values()
-        .map(|&value| Box::new(move |t: f64| value * loading.part(t)) as Box<_>)
-        .collect();
+    let motions = loading.motions();
     let prescribed: Vec<Prescribed> = (loading.led.keys().zip(&motions))
         .map(|(&(node, axis), motion)| Prescribed { node, axis, motion: motion.as_ref() })
         .collect();
