@@ -157,7 +157,9 @@ fn nonlinear(ask: &Repeated, run: &Solved, params: &StaticParams) -> Result<Vec<
     let contact = prepared.contact();
     with_static_problem(method, setup, prepared, contact.as_ref(), |problem| {
         let tolerance = ask.tolerance.unwrap_or(params.newton.tolerance);
-        let params = StaticParams { newton: NewtonParams { tolerance, ..params.newton }, ..*params };
+        // Factors are reused only for elements, as on a load path.
+        let keeps = if method.interpolates { NewtonParams::KEEPS_FRAMES } else { params.newton.keeps };
+        let params = StaticParams { newton: NewtonParams { tolerance, keeps, ..params.newton }, ..*params };
         let mut frames = Frames::new(problem, &params)?;
         let (mut at, mut deviation) = (0, None);
         let mut latency = timed("repeated", ask, |k| {

@@ -6,7 +6,7 @@ use super::error::StaticError;
 use super::newton::{Descent, Newton, State, near, shortest_travel};
 use super::problem::StaticProblem;
 use super::statics::StaticParams;
-use super::step::Step;
+use super::step::{StaticWork, Step};
 
 /// Sequence of equilibria ("frames"), each of which starts from the last, forwards or backwards along the
 /// loading. Residuals are relative to the largest forces so far: when tools lift off, a simulator does not
@@ -78,6 +78,11 @@ impl<'a> Frames<'a> {
                 }
             }
         }
+    }
+
+    /// Returns the counters of all frames.
+    pub fn work(&self) -> StaticWork {
+        self.newton.work()
     }
 
     /// Returns the nodal parameters of the last frame, m.

@@ -267,16 +267,18 @@ impl<'a> Newton<'a> {
     }
 
     /// Ends a search for an equilibrium whose iterations are `log`: tests whether its last tangent was
-    /// definite, if that is open, and keeps this tangent for the next frame of a loop.
+    /// definite, if that is open, and keeps this tangent for the next frame of a loop. A frame has no time for
+    /// the test: its tangent counts as definite if the last factor was.
     fn settle(&mut self, mut last: Option<Direction>, log: &mut [Iteration]) -> Result<(), StaticError> {
-        if let Some(unproven) = last.as_mut().filter(|last| !last.proven) {
+        let repeats = self.policy.repeats;
+        if let Some(unproven) = last.as_mut().filter(|last| !last.proven && !repeats) {
             self.factors.prove(unproven)?;
             // The proven tangent belongs to the last iteration that was not a chord and to all chords after
             // it.
             let own = log.iter().rposition(|i| !i.chord).unwrap_or(0);
             log[own..].iter_mut().for_each(|i| i.definite = unproven.definite);
         }
-        self.factors.kept = last.filter(|last| self.policy.repeats && last.definite);
+        self.factors.kept = last.filter(|last| repeats && last.definite);
         Ok(())
     }
 }

@@ -24,6 +24,8 @@ impl NewtonParams {
     /// renewed for each tangent, in CPU seconds): 1.5 / 2.2 at a ratio of 83 (hex20 with reduced integration,
     /// 1,201 nodes), 6.3 / 11.5 at 98 (tet10, 2,273 nodes).
     pub const KEEPS: f64 = 80.0;
+    /// The same ratio for the frames of a simulator's loop, whose tangents differ less from one to the next.
+    pub const KEEPS_FRAMES: f64 = 20.0;
 }
 
 /// Record of one Newton iteration.
@@ -128,9 +130,9 @@ pub(super) struct Policy<'a> {
 impl Policy<'_> {
     /// Whether factors with this ratio of the multiplications of a factorisation to those of a solution are
     /// large enough to be kept and to be computed in single precision. Pressure fields are excluded because
-    /// their regularisation would be lost in rounding; a simulator's loop keeps factors in another way.
+    /// their regularisation would be lost in rounding.
     pub fn keeps(&self, solutions: f64) -> bool {
-        solutions > self.params.keeps && !self.repeats && !self.saddle
+        solutions > self.params.keeps && !self.saddle
     }
 
     /// Whether Newton's method gives up: at the largest number of iterations or, except during descent, after
