@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{BLOCK, assert_fails, objects, tissuebench, write};
+use common::{BLOCK, PRESSED, assert_fails, objects, tissuebench, write};
 use serde_json::Value;
 
 /// [`BLOCK`] with elements of each kind and a cloud, by this solver.
@@ -111,6 +111,27 @@ fn nearly_incompressible_elements_that_share_dilations_are_iterated_with_pressur
     assert!(metric(&iterated, "residual").unwrap() <= 1e-8);
     // Small systems are factored.
     assert_eq!(of("auto")["linear_solver"], "sparse-llt");
+}
+
+#[test]
+fn large_tangents_of_elements_are_iterated_and_others_factored() {
+    let dir = tempfile::tempdir().unwrap();
+    let text = PRESSED
+        .replace("\"hex8\", size = { cells = [2, 2, 1] }", "\"hex8\", size = { cells = [20, 20, 10] }");
+    let text = text.replace("steps = 2", "steps = 1");
+    let args = ["run", &write(&dir, "large.toml", &text), "--method", "hex8", "--format", "json"];
+    let done = tissuebench(&args);
+    assert_eq!(done.code, 0, "{}", done.stderr);
+    let large = &objects(&done.stdout)[0];
+    assert_eq!(large["linear_solver"], "multigrid", "{large}");
+    let said = "multigrid levels, each for several iterations, and a factor where they do not converge (14553 \
+                unknowns, as costly to factor as 10291 unknowns of a cube; iterative solution from 10000)";
+    assert_eq!(factorisation(large), said);
+    let count = |name: &str| large["work"][name].as_u64().unwrap();
+    assert!(count("factorisations") < count("assemblies") && count("inner_iterations") > 0, "{large}");
+    let forced = text.replace("closure = \"2 mm\"", "force = \"1 N\"");
+    let plan = tissuebench(&["plan", &write(&dir, "forced.toml", &forced), "--method", "hex8"]).stdout;
+    assert!(plan.contains("one for each iteration, analysed once"), "{plan}");
 }
 
 #[test]

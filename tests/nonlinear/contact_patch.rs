@@ -21,21 +21,21 @@ use geometry::generate::box_mesh;
 use integration::model::*;
 use material::{Law, NeoHookean};
 use shape::{Point3, Vector3};
-use statics::{StaticParams, StaticPath, StaticProblem};
+use statics::{LinearSystems, StaticParams, StaticPath, StaticProblem};
 
 const PENALTY: f64 = 1e8;
 
 /// Presses two plates at z = 0 and z = h together, by 1 and 3 mm, and returns the path and the plates.
 fn press(model: &Model, law: &Law, touch: ContactLaw, name: &str) -> (StaticPath, Vec<Tool>) {
-    press_by(model, law, touch, name, &steps(4))
+    press_by(model, law, touch, (name, LinearSystems::Factored), &steps(4))
 }
 
-/// Does the same as [`press`] with any step parameters.
+/// Does the same as [`press`] with any solver of the linear systems and any step parameters.
 pub fn press_by(
     model: &Model,
     law: &Law,
     touch: ContactLaw,
-    name: &str,
+    (name, systems): (&str, LinearSystems),
     params: &StaticParams,
 ) -> (StaticPath, Vec<Tool>) {
     let surface = fem::surface_rows(&model.mesh, &model.mesh.boundary(), &SurfaceRule::STANDARD).unwrap();
@@ -52,8 +52,13 @@ pub fn press_by(
         .collect();
     let mut fixed = model.hold(&["x-min"], &[0], |_| Vector3::zeros());
     fixed.extend(model.hold(&["y-min"], &[1], |_| Vector3::zeros()));
-    let problem =
-        StaticProblem { fixed: &fixed, contact: Some(&contact), tools: &tools, ..model.problem(law) };
+    let problem = StaticProblem {
+        fixed: &fixed,
+        contact: Some(&contact),
+        tools: &tools,
+        systems,
+        ..model.problem(law)
+    };
     (solve(name, &problem, params), plates)
 }
 

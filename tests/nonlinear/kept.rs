@@ -12,7 +12,7 @@ use contact::ContactLaw;
 use geometry::CellKind;
 use integration::model::*;
 use material::{Law, NeoHookean};
-use statics::{NewtonParams, StaticParams};
+use statics::{LinearSystems, NewtonParams, StaticParams};
 
 use crate::contact_patch::press_by;
 
@@ -26,7 +26,14 @@ fn kept_factors_lead_to_the_same_end() {
         let rough = ContactLaw::coulomb(1e7, 0.15, 1e6).unwrap();
         let path = |keeps: f64| {
             let newton = NewtonParams { keeps, chords: false, ..steps(4).newton };
-            press_by(&model, &law, rough, &format!("{method:?}"), &StaticParams { newton, ..steps(4) }).0
+            press_by(
+                &model,
+                &law,
+                rough,
+                (&format!("{method:?}"), LinearSystems::Factored),
+                &StaticParams { newton, ..steps(4) },
+            )
+            .0
         };
         let anew = path(f64::INFINITY);
         let kept = path(0.0);

@@ -7,6 +7,7 @@ mod finite_patch;
 mod friction;
 mod hertz;
 mod homogeneous;
+mod iterated;
 mod kept;
 mod locking;
 mod manufactured;

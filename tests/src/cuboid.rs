@@ -7,7 +7,8 @@ use material::Law;
 use shape::VolumeRows;
 use shape::{FixedDof, Point3, Vector3};
 use statics::{
-    Inertia, Mass, NewtonParams, Ramp, Ramps, Solid, SolidDilation, StaticProblem, TimeParams, TimeProblem,
+    Inertia, LinearSystems, Mass, NewtonParams, Ramp, Ramps, Solid, SolidDilation, StaticProblem, TimeParams,
+    TimeProblem,
 };
 
 /// A box with its tables.
@@ -74,6 +75,7 @@ impl Cuboid {
             penalties: &[],
             contact: None,
             tools: &[],
+            systems: LinearSystems::Factored,
         }
     }
 }

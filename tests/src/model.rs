@@ -6,7 +6,9 @@ use geometry::{CellKind, Facet, Mesh};
 use material::Law;
 use shape::{DilationGroups, Rows, VolumeRows};
 use shape::{FixedDof, Point3, Vector3};
-use statics::{NewtonParams, Solid, SolidDilation, StaticParams, StaticPath, StaticProblem, solve_static};
+use statics::{
+    LinearSystems, NewtonParams, Solid, SolidDilation, StaticParams, StaticPath, StaticProblem, solve_static,
+};
 
 /// Treatment of the volume change.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -88,6 +90,7 @@ impl Model {
             penalties: &[],
             contact: None,
             tools: &[],
+            systems: LinearSystems::Factored,
         }
     }
 

@@ -1,6 +1,7 @@
 //! Choice of the solver of a linear procedure: factorisation, or iterations with multigrid.
 
-use cases::scene::{Dilation, LinearSolver};
+use cases::scene::{Dilation, LinearSolver, Static};
+use contact::Drive;
 use geometry::Point3;
 use statics::{Assembled, Factored, SolveError};
 
@@ -9,6 +10,7 @@ use crate::discretise::{Discretisation, Essential};
 use crate::error::{Failure, Key};
 use crate::outcome::timing::Meters;
 use crate::prepare::Prepared;
+use crate::scenario::PlacedTool;
 use crate::scenario::setup::Setup;
 
 /// Relative residual at which the iterations stop.
@@ -39,6 +41,11 @@ const PRESSURES: f64 = 60.0;
 /// 7.3 s); hex8, whose pressures are less well determined, takes 9.5 s (factorisation 7.1 s).
 const QUADRATIC: f64 = 0.25;
 const LINEAR: f64 = 0.34;
+
+/// Number of unknowns from which the tangents of nonlinear statics are iterated. On cubes at nu = 0.49, whole
+/// load paths take the same time at 6,000 unknowns, and 1.1 (hex8), 1.2 (tet10) and 2.0 (tet4-nodal) times as
+/// long with factors at 10,000.
+const TANGENTS: f64 = 10_000.0;
 
 /// Ratio of the unknowns of a cube that is as expensive to factor to the unknowns of the body. The cost
 /// depends on the nodes across the longest side, `n^(2/3) s`, with `s` the edge of a cube of the same
@@ -121,6 +128,30 @@ pub(super) fn serves(method: &Discretisation, setup: &Setup, asked: LinearSolver
                 ),
             )
         }
+    }
+}
+
+/// Whether the tangents of nonlinear statics are iterated, and the description of the factorisation stage in
+/// the plan.
+pub(super) fn tangents(method: &Discretisation, setup: &Setup, asked: &Static) -> (bool, String) {
+    let forced = |tool: &PlacedTool| matches!(tool.drive, Drive::Force(_));
+    let direct = !method.interpolates
+        || method.dilation == Dilation::Mixed
+        || !matches!(method.essential, Essential::Nodal)
+        || asked.limit_within.is_some()
+        || setup.tools.iter().any(forced);
+    let unknowns = 3 * method.nodes().len();
+    let of_cube = unknowns as f64 * compactness(method.nodes());
+    match !direct && of_cube >= TANGENTS {
+        true => (
+            true,
+            format!(
+                "multigrid levels, each for several iterations, and a factor where they do not converge \
+                 ({unknowns} unknowns, as costly to factor as {of_cube:.0} unknowns of a cube; iterative \
+                 solution from {TANGENTS:.0})"
+            ),
+        ),
+        false => (false, "one for each iteration, analysed once".into()),
     }
 }
 

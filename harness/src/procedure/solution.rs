@@ -23,6 +23,8 @@ pub(crate) struct Solution {
     pub(crate) residual: Option<f64>,
     /// Solver information of a linear procedure.
     pub(crate) linear: Option<SolveInfo>,
+    /// Name of the iterative solver of Newton's tangents, if one was used.
+    pub(crate) tangents: Option<&'static str>,
     /// Whether a linear procedure should have been solved by iterations but needed a factor.
     pub(crate) not_iterated: bool,
     /// Smallest stabilisation factor of Nitsche's method, if Nitsche's method constrains the body in a linear
@@ -67,7 +69,7 @@ impl Solution {
             return program.version.as_deref();
         }
         let of_vibration = self.vibration.as_ref().map(|vibration| vibration.modes.solver());
-        self.linear.as_ref().map(|info| info.path.name()).or(of_vibration)
+        self.linear.as_ref().map(|info| info.path.name()).or(of_vibration).or(self.tangents)
     }
 
     /// Force of each support on the body at the end, N; empty if unknown.

@@ -6,11 +6,13 @@ use cases::scene::{Newton, OnStall, Static};
 use catalogue::metric;
 use contact::{ContactSurface, DrivenTool};
 use material::Material as _;
+use shape::Coarser;
 use statics::{
-    NewtonParams, Solid, SolidDilation, StaticError, StaticParams, StaticPath, StaticProblem, Step,
-    solve_static,
+    LinearSystems, NewtonParams, Solid, SolidDilation, StaticError, StaticParams, StaticPath, StaticProblem,
+    Step, solve_static,
 };
 
+use super::linear_solver::tangents;
 use super::problem::Problem;
 use super::relaxation::{self, Relaxed, Start};
 use super::solution::{Solution, StepHistory};
@@ -49,7 +51,7 @@ pub(super) fn stages(method: &Discretisation, setup: &Setup, asked: &Static) -> 
     };
     Stages {
         stiffness: (true, "the tangent of every iteration".into()),
-        factorisation: (true, "one for each iteration, analysed once".into()),
+        factorisation: (true, tangents(method, setup, asked).1),
         newton: (true, newton_reason(setup, asked.steps, "load")),
         relaxation: (relaxes, why.into()),
         ..Stages::linear()
@@ -88,8 +90,10 @@ fn path(problem: &Problem, asked: &Static, counters: &mut Counters) -> Result<(S
         // jaws with 1331 nodes did. So factors are reused only for elements.
         params.newton.keeps = NewtonParams::KEEPS;
     }
+    let levels = levels(problem, asked)?;
     let path = with_static_problem(method, setup, prepared, contact.as_ref(), |problem| {
-        solve_static(problem, &params, |step, rest| {
+        let systems = systems(levels.as_ref());
+        solve_static(&StaticProblem { systems, ..problem.clone() }, &params, |step, rest| {
             supports = prepared.support_forces(&ConditionForces {
                 nodes: rest.reaction,
                 rows: &[],
@@ -145,12 +149,23 @@ fn path(problem: &Problem, asked: &Static, counters: &mut Counters) -> Result<(S
         u,
         pressure: path.pressure,
         residual: Some(residual),
+        tangents: path.solver.map(|solver| solver.name()),
         history: Some(StepHistory { steps, fields, last: end, metrics, failure }),
         forces,
         relaxed,
         ..Solution::default()
     };
     Ok((solution, limit))
+}
+
+/// Returns the linear mesh of a quadratic mesh if tangents are iterated; the outer `None` for factors.
+fn levels(problem: &Problem, asked: &Static) -> Result<Option<Option<Coarser>>, Failure> {
+    let iterates = tangents(problem.method, problem.setup, asked).0;
+    Ok(if iterates { Some(problem.prepared.source.coarser()?) } else { None })
+}
+
+fn systems(levels: Option<&Option<Coarser>>) -> LinearSystems<'_> {
+    levels.map_or(LinearSystems::Factored, |linear| LinearSystems::Iterated { linear: linear.as_ref() })
 }
 
 /// Adds the path's operations to the counters, and returns the number of linear systems solved in converged
@@ -229,6 +244,7 @@ pub(crate) fn with_static_problem<T>(
         penalties: &prepared.penalties(),
         contact,
         tools: &tools,
+        systems: LinearSystems::Factored,
     })
 }
 

@@ -37,6 +37,6 @@ pub use linear_solver::{
     Border, Cholesky, Curvature, DENSE_LIMIT, Factor, FactorError, Factorization, Kind, Solved, SolverPath,
     Symbolic, Symmetric, Unsymmetric, analyse, factor, factor_as, factor_roughly, reserve_workspaces,
 };
-pub use multigrid::{Iterations, Multigrid, PressureGroup};
+pub use multigrid::{Iterations, Multigrid, PressureGroup, TangentLevels};
 pub use pattern::{BlockPattern, Connectivity, Incidence};
 pub use stiffness::Stiffness;

@@ -13,7 +13,7 @@ use crate::problem::Assembled;
 /// Ratio of bulk to shear modulus that stays with the displacements. A smaller ratio leaves more to the
 /// pressures, whose iterations depend on the element; a larger ratio slows the cycles. From 5 to 15 the
 /// number of iterations varies by a tenth.
-const KEPT: f64 = 10.0;
+pub(crate) const KEPT: f64 = 10.0;
 
 impl Assembled<'_> {
     /// Builds the multigrid solver as [`Assembled::multigrid`] does, for nearly incompressible bodies with
@@ -36,11 +36,16 @@ impl Assembled<'_> {
         add_volume(&mut without, &table, &table.incidence(body.nodes.len()));
         let pressures: Vec<PressureGroup> = (0..groups.len())
             .filter(|&a| excess[a] > 0.0)
-            .map(|a| group(&averaged[a], excess[a], kept(a) * (1.0 + 4.0 / 3.0 / KEPT)))
+            .map(|a| group(&averaged[a], excess[a], rest(kept(a))))
             .collect();
         let levels = Multigrid::new(&without, body.nodes, self.held(), linear, &[]);
         Ok(levels.map_err(not_definite)?.with_pressures(without, &pressures))
     }
+}
+
+/// Returns the longitudinal modulus that belongs to the kept part of a bulk modulus, Pa.
+pub(crate) fn rest(kept: f64) -> f64 {
+    kept * (1.0 + 4.0 / 3.0 / KEPT)
 }
 
 fn group((volume, row): &Averaged, excess: f64, rest: f64) -> PressureGroup {

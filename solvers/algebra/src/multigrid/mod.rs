@@ -23,6 +23,7 @@ mod patch;
 mod pressure;
 mod row_sets;
 mod sweep;
+mod tangents;
 #[cfg(test)]
 mod tests;
 mod transfer;
@@ -38,11 +39,17 @@ use pressure::Pressures;
 
 pub use conjugate::Iterations;
 pub use pressure::PressureGroup;
+pub use tangents::TangentLevels;
 
 /// Multigrid hierarchy of a stiffness, for any number of right-hand sides.
 pub struct Multigrid {
     hierarchy: Hierarchy,
-    pressures: Option<Box<Pressures>>,
+    /// Pressures, and the stiffness from which the hierarchy was built.
+    pressures: Option<Box<(Pressures, Stiffness)>>,
+}
+
+fn path(with_pressures: bool) -> SolverPath {
+    if with_pressures { SolverPath::MultigridPressures } else { SolverPath::Multigrid }
 }
 
 impl Multigrid {
@@ -72,13 +79,13 @@ impl Multigrid {
     /// `excess / volume row row^T` for every group. The pressures of the groups are iterated with the
     /// displacements.
     pub fn with_pressures(self, without: Stiffness, groups: &[PressureGroup]) -> Multigrid {
-        let pressures = Pressures::new(without, groups, &self.hierarchy.held);
-        Multigrid { pressures: Some(Box::new(pressures)), ..self }
+        let pressures = Pressures::new(groups, &self.hierarchy.held);
+        Multigrid { pressures: Some(Box::new((pressures, without))), ..self }
     }
 
     /// Returns the solver path under which a solution is recorded.
     pub fn path(&self) -> SolverPath {
-        if self.pressures.is_some() { SolverPath::MultigridPressures } else { SolverPath::Multigrid }
+        path(self.pressures.is_some())
     }
 
     /// Number of unknowns.
@@ -119,9 +126,10 @@ impl Multigrid {
         b: &mut [Vector3],
         tolerance: f64,
     ) -> Result<Iterations, AlgebraError> {
-        if let Some(pressures) = &self.pressures {
+        if let Some(both) = &self.pressures {
+            let (pressures, without) = &**both;
             self.hierarchy.release(b);
-            return pressures.solve(&self.hierarchy, stiffness, b, tolerance);
+            return pressures.solve(&self.hierarchy, (without, stiffness), b, tolerance);
         }
         self.hierarchy
             .iterate(stiffness, b, tolerance, Cycle::W)

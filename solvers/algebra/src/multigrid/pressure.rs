@@ -38,9 +38,8 @@ pub struct PressureGroup {
     pub rest: f64,
 }
 
-/// Pressure groups, and the stiffness without the terms that their pressures replace.
+/// Groups whose pressures are unknowns; without groups the iteration has displacements alone.
 pub(super) struct Pressures {
-    without: Stiffness,
     offsets: Vec<usize>,
     /// Node and coefficient in the volume change; zero for constrained degrees of freedom.
     row: Vec<(u32, Vector3)>,
@@ -70,6 +69,13 @@ struct Pair {
     p: Vec<f64>,
 }
 
+/// Levels, the product with A, and the largest number of iterations.
+pub(super) struct Inner<'a> {
+    pub hierarchy: &'a Hierarchy,
+    pub product: &'a dyn Fn(&[Vector3], &mut [Vector3]),
+    pub most: usize,
+}
+
 /// Direction, its image, and the square of the image.
 struct Direction {
     way: Pair,
@@ -82,7 +88,7 @@ struct Direction {
 const CHUNK: usize = 1024;
 
 impl Pressures {
-    pub fn new(without: Stiffness, groups: &[PressureGroup], held: &[bool]) -> Pressures {
+    pub fn new(groups: &[PressureGroup], held: &[bool]) -> Pressures {
         let mut offsets = vec![0];
         let mut row = Vec::with_capacity(groups.iter().map(|group| group.row.len()).sum());
         for group in groups {
@@ -93,13 +99,16 @@ impl Pressures {
             offsets.push(row.len());
         }
         Pressures {
-            without,
             offsets,
             row,
             compliance: groups.iter().map(|g| g.volume / g.excess).collect(),
             schur: groups.iter().map(|g| g.volume / g.excess + g.volume / g.rest).collect(),
             force: groups.iter().map(|g| 0.1 * g.rest / g.volume.cbrt()).collect(),
         }
+    }
+
+    pub fn is_empty(&self) -> bool {
+        self.schur.is_empty()
     }
 
     /// Returns `B u`, the volume change of every group.
@@ -128,8 +137,8 @@ impl Pressures {
         dot(&a.u, &b.u) + p
     }
 
-    /// Solves `K x = b` in place to a residual of `tolerance |b|` or of rounding. `b` must be zero at
-    /// constrained degrees of freedom. A failure leaves `b` as it is.
+    /// Solves `K x = b` in place to a residual of `tolerance |b|` or of rounding. `without` is the stiffness A,
+    /// `stiffness` is K. `b` must be zero at constrained degrees of freedom. A failure leaves `b` as it is.
     ///
     /// # Errors
     ///
@@ -137,7 +146,7 @@ impl Pressures {
     pub fn solve(
         &self,
         hierarchy: &Hierarchy,
-        stiffness: &Stiffness,
+        (without, stiffness): (&Stiffness, &Stiffness),
         b: &mut [Vector3],
         tolerance: f64,
     ) -> Result<Iterations, AlgebraError> {
@@ -145,6 +154,8 @@ impl Pressures {
         if size == 0.0 {
             return Ok(Iterations { count: 0, residual: 0.0 });
         }
+        let product = |x: &[Vector3], out: &mut [Vector3]| without.multiply_into(x, out);
+        let inner = Inner { hierarchy, product: &product, most: MOST };
         let nodes = b.len();
         let mut x = vec![Vector3::zeros(); nodes];
         let mut image = vec![Vector3::zeros(); nodes];
@@ -154,7 +165,7 @@ impl Pressures {
         // The recursive residual drifts from the true residual. A restart takes the true residual, with the
         // pressures that belong to the displacements.
         for _ in 0..3 {
-            self.descend(hierarchy, &mut cycles, (&mut x, &mut rest), tolerance * size, &mut count);
+            self.descend(&inner, &mut cycles, (&mut x, &mut rest), tolerance * size, &mut count);
             stiffness.multiply_into(&x, &mut image);
             hierarchy.release(&mut image);
             for i in 0..nodes {
@@ -174,10 +185,25 @@ impl Pressures {
         Ok(Iterations { count, residual })
     }
 
+    /// Solves a system roughly, in place: to a recursive residual `|b - K x|` of `goal |b|`, or as far as
+    /// `inner.most` iterations lead. Returns the number of iterations and whether the goal is reached. `b` must
+    /// be zero at constrained degrees of freedom.
+    pub fn solve_roughly(&self, inner: &Inner, b: &mut [Vector3], goal: f64) -> (usize, bool) {
+        let mut x = vec![Vector3::zeros(); b.len()];
+        let mut rest = Pair { u: b.to_vec(), p: vec![0.0; self.schur.len()] };
+        let (limit, mut count) = (goal * norm(b), 0);
+        if limit > 0.0 {
+            self.descend(inner, &mut Precondition::new(b.len()), (&mut x, &mut rest), limit, &mut count);
+        }
+        let solved = self.of_displacements(&rest, &mut vec![Vector3::zeros(); b.len()]) <= limit;
+        b.copy_from_slice(&x);
+        (count, solved)
+    }
+
     /// Iterates until `|f - K u|` is at most `limit`, or up to the largest number of iterations.
     fn descend(
         &self,
-        hierarchy: &Hierarchy,
+        inner: &Inner,
         cycles: &mut Precondition,
         (x, rest): (&mut [Vector3], &mut Pair),
         limit: f64,
@@ -185,7 +211,7 @@ impl Pressures {
     ) {
         let mut kept: VecDeque<Direction> = VecDeque::with_capacity(KEPT);
         let mut scratch = vec![Vector3::zeros(); x.len()];
-        while *count < MOST {
+        while *count < inner.most {
             // The residual of the displacements alone is larger, so it is computed only when the pair's is
             // small.
             if self.dot(rest, rest).sqrt() <= limit && self.of_displacements(rest, &mut scratch) <= limit {
@@ -195,7 +221,7 @@ impl Pressures {
             // Every entry of a new direction is overwritten.
             let mut next =
                 oldest.unwrap_or_else(|| Direction { way: rest.clone(), image: rest.clone(), square: 0.0 });
-            self.direct(hierarchy, cycles, rest, &mut next);
+            self.direct(inner, cycles, rest, &mut next);
             let mut parts = self.dots(&next.image, &kept);
             parts.iter_mut().zip(&kept).for_each(|(part, before)| *part /= -before.square);
             next.way.add(&parts, kept.iter().map(|before| &before.way));
@@ -214,8 +240,9 @@ impl Pressures {
 
     /// Computes a direction for a residual, `u = C r_u` by a cycle C and `p = (B u - r_p) / schur`, and its
     /// image `[A u + B^T p, B u - (V / k) p]`.
-    fn direct(&self, hierarchy: &Hierarchy, cycles: &mut Precondition, rest: &Pair, out: &mut Direction) {
+    fn direct(&self, inner: &Inner, cycles: &mut Precondition, rest: &Pair, out: &mut Direction) {
         let Direction { way, image, .. } = out;
+        let hierarchy = inner.hierarchy;
         let cycle = cycles.apply(hierarchy, &rest.u, Cycle::V);
         let larger = LARGER * hierarchy.scale;
         way.u.iter_mut().zip(cycle).for_each(|(u, cycle)| *u = cycle * larger);
@@ -223,7 +250,7 @@ impl Pressures {
             way.p[g] = (change - rest.p[g]) / self.schur[g];
             image.p[g] = change - self.compliance[g] * way.p[g];
         }
-        self.without.multiply_into(&way.u, &mut image.u);
+        (inner.product)(&way.u, &mut image.u);
         self.add_forces(way.p.iter().copied(), &mut image.u);
         hierarchy.release(&mut image.u);
     }

@@ -1,5 +1,7 @@
 //! Checks the parts of the hierarchy against their definitions.
 
+use shape::{Matrix3, Point3};
+
 use super::aggregate::{MODES, aggregates, orthonormal};
 use super::galerkin::galerkin;
 use super::graph::Graph;
@@ -7,7 +9,10 @@ use super::level::{Cycle, Level, by_aggregates};
 use super::lower_triangle::{Block, Lower, LowerRows};
 use super::operator::Operator;
 use super::patch::Patch;
+use super::tangents::TangentLevels;
 use super::transfer::{Dense, Transfer, Weight};
+use crate::pattern::{BlockPattern, Connectivity, Incidence};
+use crate::stiffness::Stiffness;
 
 /// Grid of n x n x n nodes connected to their neighbours by springs, with the first face on ground springs.
 fn grid(n: usize) -> (Lower<3>, Vec<[[f64; MODES]; 3]>) {
@@ -270,4 +275,40 @@ fn sweeps_leave_the_residual_and_are_transposes() {
     let mut corrected = backward(&exact, &zero);
     corrected.iter_mut().flatten().zip(x.iter().flatten()).for_each(|(c, x)| *c += x);
     near(&backward(&b, &x), &corrected, "a sweep backward");
+}
+
+/// Stiffness of a grid of n x n x n nodes, each tied to its six neighbours (beyond the faces to the ground) by
+/// equal springs in all directions, minus `part` of its smallest eigenvalue on the diagonal.
+fn shifted(n: usize, part: f64) -> Stiffness {
+    let at = |i: usize| [i / (n * n), i / n % n, i % n];
+    let near = |i: usize, j: usize| at(i).iter().zip(at(j)).map(|(a, b)| a.abs_diff(b)).sum::<usize>() == 1;
+    let edges: Vec<[u32; 2]> = (0..n * n * n)
+        .flat_map(|i| [1, n, n * n].map(|step| (i, i + step)))
+        .filter(|&(i, j)| j < n * n * n && near(i, j))
+        .map(|(i, j)| [i as u32, j as u32])
+        .collect();
+    let offsets: Vec<usize> = (0..=edges.len()).map(|e| 2 * e).collect();
+    let table = Connectivity { offsets: &offsets, nodes: edges.as_flattened(), seen_by: &[] };
+    let incidence = Incidence::new(n * n * n, table, 0..edges.len());
+    let mut stiffness = Stiffness::zeros(BlockPattern::new(n * n * n, &[(table, &incidence)]));
+    let smallest = 6.0 - 6.0 * (std::f64::consts::PI / (n + 1) as f64).cos();
+    stiffness.for_each_row(|_, _, row| {
+        row.fill(-Matrix3::identity());
+        *row.last_mut().unwrap() = Matrix3::identity() * (6.0 - part * smallest);
+    });
+    stiffness
+}
+
+#[test]
+fn a_convergent_iteration_proves_a_matrix_definite_and_only_a_definite_matrix() {
+    let n = 12;
+    let nodes: Vec<Point3> = (0..n * n * n)
+        .map(|i| Point3::new((i / (n * n)) as f64, (i / n % n) as f64, (i % n) as f64))
+        .collect();
+    let of = |part| shifted(n, part);
+    let levels = TangentLevels::new(&of(0.0), &nodes, vec![false; 3 * nodes.len()], None).unwrap();
+    assert!(levels.proves_definite(&of(0.0)).is_some());
+    assert!(levels.proves_definite(&of(0.99)).is_some());
+    assert!(levels.proves_definite(&of(1.01)).is_none());
+    assert!(levels.proves_definite(&of(1.5)).is_none());
 }

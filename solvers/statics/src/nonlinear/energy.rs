@@ -1,13 +1,13 @@
 #![allow(non_snake_case)] // F, H, J, P as in the formulas
 //! Internal energy of a body, with its first and second derivatives.
 
-use material::{Material, Tangent};
+use material::Material;
 use rayon::prelude::*;
 use shape::{Matrix3, Vector3};
 
 use super::error::StaticError;
 use super::groups::Pairs;
-use super::lanes::GroupHessian;
+use super::lanes::{GroupHessian, PointTangent};
 use super::shared::Shared;
 use super::solid::{Kinematics, Solid, SolidDilation};
 use super::split::{Split, add_dilation_hessian, cofactor, flat};
@@ -28,7 +28,7 @@ pub(crate) struct Internal {
 /// Second derivatives of the energy.
 pub(crate) struct Hessian {
     /// Per point (9, 9), J: `w d2/dF2` including all terms local to the point.
-    pub point: Vec<Tangent>,
+    pub point: Vec<PointTangent>,
     /// Per group: the rows of `b n^T + n b^T`.
     pub groups: Vec<GroupHessian>,
     /// Per point with a pressure field: `w d2/(dF dp)` (3, 3), m^3, and `-w d2/dp2`, m^3/Pa.
@@ -96,7 +96,8 @@ impl Solid<'_> {
         let none = (Vec::new(), Vec::new());
         let (point, groups, pressure) = match self.dilation {
             SolidDilation::Standard => {
-                let point = points.map(|q| self.law(q).tangent(&H[q]) * weights[q]).collect();
+                let point = points.map(|q| self.law(q).tangent(&H[q]) * weights[q]);
+                let point = point.map(|D| PointTangent::new(&D)).collect();
                 (point, none.0, none.1)
             }
             SolidDilation::Groups(groups) => {
@@ -106,7 +107,7 @@ impl Solid<'_> {
             }
             SolidDilation::Mixed(rows) => {
                 let p = self.pressures(rows, p);
-                let each: Vec<(Tangent, (Matrix3, f64))> = points
+                let each: Vec<(PointTangent, (Matrix3, f64))> = points
                     .map(|q| {
                         let law = self.law(q);
                         let theta = self.mixed_dilation(q, &H[q], j_minus_1[q], p[q])?;
@@ -119,7 +120,8 @@ impl Solid<'_> {
                         let small = law.is_small_strain();
                         add_dilation_hessian(small, &H[q], p[q], &mut D);
                         let cof = cofactor(small, &H[q]);
-                        Ok((D * weights[q], ((by_p + cof) * weights[q], weights[q] / second.by_theta_theta)))
+                        let D = PointTangent::new(&(D * weights[q]));
+                        Ok((D, ((by_p + cof) * weights[q], weights[q] / second.by_theta_theta)))
                     })
                     .collect::<Result<_, StaticError>>()?;
                 let (point, pressure) = each.into_iter().unzip();

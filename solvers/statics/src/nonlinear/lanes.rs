@@ -57,20 +57,32 @@ impl BlockSum {
 /// every k the same lanes hold `D_kl`.
 #[derive(Clone, Copy)]
 #[repr(align(64))]
-pub(super) struct PointTangent([[f64; 32]; 3]);
+pub(crate) struct PointTangent([[f64; 32]; 3]);
 
 impl PointTangent {
     pub fn new(D: &Tangent) -> PointTangent {
         let mut lanes = [[0.0; 32]; 3];
-        for (k, lanes) in lanes.iter_mut().enumerate() {
-            for l in 0..3 {
-                for at in 0..9 {
-                    let place = if at < 8 { 8 * l + at } else { 24 + l };
-                    lanes[place] = D[(3 * k + at % 3, 3 * l + at / 3)];
-                }
-            }
+        for (k, l, at) in PointTangent::entries() {
+            lanes[k][PointTangent::lane(l, at)] = D[(3 * k + at % 3, 3 * l + at / 3)];
         }
         PointTangent(lanes)
+    }
+
+    /// Returns the tangent as a matrix.
+    pub fn matrix(&self) -> Tangent {
+        let mut D = Tangent::zeros();
+        for (k, l, at) in PointTangent::entries() {
+            D[(3 * k + at % 3, 3 * l + at / 3)] = self.0[k][PointTangent::lane(l, at)];
+        }
+        D
+    }
+
+    fn entries() -> impl Iterator<Item = (usize, usize, usize)> {
+        (0..3).flat_map(|k| (0..3).flat_map(move |l| (0..9).map(move |at| (k, l, at))))
+    }
+
+    fn lane(l: usize, at: usize) -> usize {
+        if at < 8 { 8 * l + at } else { 24 + l }
     }
 }
 
@@ -80,6 +92,8 @@ impl PointTangent {
 /// Here `b = dJ_a / du` (1/m), `m` is `d2 psi / dF d theta` transferred to the nodes (N), and `k` is
 /// `d2 psi / d theta2` over the group (J).
 pub(crate) struct GroupHessian {
+    /// Stiffness k of the group against its volume change, J.
+    pub bulk: f64,
     /// Rows by the nodes of the group, ascending.
     pub rows: Vec<GroupRow>,
 }
@@ -99,6 +113,13 @@ impl GroupRow {
     pub fn new(b: &Vector3, n: &Vector3) -> GroupRow {
         let by_column = |v: &Vector3| std::array::from_fn(|l| v[l / 3]);
         GroupRow { b: by_column(b), n: by_column(n), ninth: [b.z, n.z, 0.0, 0.0] }
+    }
+
+    /// Takes the part `excess` (J) of k out of `k b b^T`.
+    pub fn take(&mut self, excess: f64) {
+        let part = -0.5 * excess;
+        self.n.iter_mut().zip(&self.b).for_each(|(n, b)| *n += part * b);
+        self.ninth[1] += part * self.ninth[0];
     }
 
     /// Returns the entries of the node in `b` (1/m) and `n` (N).
@@ -220,11 +241,12 @@ mod tests {
         let g = |k: usize| Vector3::from_fn(|a, _| (2.1 * k as f64 + 0.9 * a as f64).cos());
         let points = Sorted::new(std::iter::once((0..3).map(|k| (k as u32, g(k).push(0.0)))));
         let rows = (0..3).map(|k| GroupRow::new(&g(k + 5), &g(k + 9))).collect();
-        let groups = [GroupHessian { rows }];
+        let groups = [GroupHessian { bulk: 0.0, rows }];
         let offsets = [0, 3];
         let nodes = [0, 1, 2];
         let connectivity = Connectivity { offsets: &offsets, nodes: &nodes, seen_by: &[] };
         let tangents = [PointTangent::new(&D)];
+        assert_eq!(tangents[0].matrix(), D);
         let blocks: Vec<Vec<Matrix3>> = LanePath::available()
             .into_iter()
             .map(|path| {

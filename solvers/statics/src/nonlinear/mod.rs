@@ -31,7 +31,7 @@ pub(crate) use system::SurfaceTable;
 pub use error::{Inverted, StaticError, Worst};
 pub use frames::Frames;
 pub use newton::{Iteration, NewtonParams};
-pub use problem::{PenaltySurface, StaticProblem};
+pub use problem::{LinearSystems, PenaltySurface, StaticProblem};
 pub use solid::{Solid, SolidDilation};
 pub use statics::{Rest, StaticParams, StaticPath, solve_static};
 pub use step::{StaticWork, Step};

@@ -1,7 +1,7 @@
 //! A body with loads, supports and tools.
 
 use contact::{ContactSurface, DrivenTool};
-use shape::{FixedDof, Point3, SurfaceRows, Vector3};
+use shape::{Coarser, FixedDof, Point3, SurfaceRows, Vector3};
 
 use super::solid::Solid;
 use crate::load::Load;
@@ -17,6 +17,20 @@ pub struct PenaltySurface<'a> {
     pub values: Vec<Vector3>,
     /// Penalty, Pa/m.
     pub beta: f64,
+}
+
+/// Solver of the linear systems of Newton's method.
+#[derive(Clone, Copy, Debug, Default)]
+pub enum LinearSystems<'a> {
+    /// Every tangent is factored.
+    #[default]
+    Factored,
+    /// Systems are iterated with multigrid. A tangent is factored if the iterations do not converge, if the
+    /// last tangent was not positive definite, with a pressure field, and with tools driven by force.
+    Iterated {
+        /// Linear mesh of a quadratic mesh, the next coarser level.
+        linear: Option<&'a Coarser>,
+    },
 }
 
 /// A body with loads, supports and tools. Loads are dead loads (per reference area or volume). Loads,
@@ -37,4 +51,6 @@ pub struct StaticProblem<'a> {
     pub contact: Option<&'a ContactSurface<'a>>,
     /// The tools.
     pub tools: &'a [DrivenTool<'a>],
+    /// Solver of the linear systems.
+    pub systems: LinearSystems<'a>,
 }

@@ -12,6 +12,7 @@ use shape::{Matrix3, Vector3};
 use super::energy::{Hessian, Internal};
 use super::error::StaticError;
 use super::groups::Pairs;
+use super::lanes::PointTangent;
 use super::solid::{Solid, SolidDilation};
 use super::split::{Split, cofactor, flat};
 
@@ -181,7 +182,7 @@ impl Relaxing {
             D
         })?;
         for ((point, change), w) in hessian.point.iter_mut().zip(change).zip(solid.volume.weights()) {
-            *point += change * *w;
+            *point = PointTangent::new(&(point.matrix() + change * *w));
         }
         Ok(())
     }

@@ -12,7 +12,7 @@ use shape::{DilationGroups, Matrix3, Vector3};
 
 use super::error::Inverted;
 use super::groups::Pairs;
-use super::lanes::{GroupHessian, GroupRow, Lanes, add_row};
+use super::lanes::{GroupHessian, GroupRow, Lanes, PointTangent, add_row};
 use super::solid::{Kinematics, Solid};
 use super::split::{Split, add_dilation_hessian, cofactor};
 
@@ -72,7 +72,7 @@ impl<'a> Shared<'a> {
     }
 
     /// Returns `w d2/dF2` of every point, J, and the contribution of every group.
-    pub fn hessian(&self) -> (Vec<Tangent>, Vec<GroupHessian>) {
+    pub fn hessian(&self) -> (Vec<PointTangent>, Vec<GroupHessian>) {
         match &self.parts {
             Some(parts) => self.hessian_by_point(parts),
             None => self.hessian_by_pair(),
@@ -143,8 +143,8 @@ impl<'a> Shared<'a> {
         .unzip()
     }
 
-    fn hessian_by_point(&self, parts: &[Separated]) -> (Vec<Tangent>, Vec<GroupHessian>) {
-        let (shape, point): (Vec<(f64, Matrix3)>, Vec<Tangent>) = (0..self.kinematics.H.len())
+    fn hessian_by_point(&self, parts: &[Separated]) -> (Vec<PointTangent>, Vec<GroupHessian>) {
+        let (shape, point): (Vec<(f64, Matrix3)>, Vec<PointTangent>) = (0..self.kinematics.H.len())
             .into_par_iter()
             .with_min_len(64)
             .map(|q| {
@@ -152,16 +152,18 @@ impl<'a> Shared<'a> {
                 let split = self.split(q, 0.0);
                 let (first, second) = split.second(law);
                 let scale = self.at_point(q, |a| parts[a].A[0]);
-                ((split.energy(law), first.by_F), second.by_FF * scale)
+                ((split.energy(law), first.by_F), PointTangent::new(&(second.by_FF * scale)))
             })
             .unzip();
         let energy = self.solid.group_mean(self.groups, self.pairs, |q, _| shape[q].0);
         let pressure: Vec<f64> = (parts.iter().zip(&energy)).map(|(v, e)| v.A[1] * e + v.U[1]).collect();
         let point = self.point_tangents(&pressure, point);
         // These rows are the same for all groups of a point. A meshless point has as many groups as
-        // neighbours.
+        // neighbours; a point of an element may have one, which needs no table.
         let rows = self.solid.volume.rows();
-        let mixed: Vec<Vec<Lanes>> = (0..shape.len().div_ceil(POINTS))
+        let single = (0..shape.len()).all(|q| self.pairs.of(q).len() == 1);
+        let tiles = if single { 0 } else { shape.len().div_ceil(POINTS) };
+        let mixed: Vec<Vec<Lanes>> = (0..tiles)
             .into_par_iter()
             .map(|tile| {
                 let points = tile * POINTS..((tile + 1) * POINTS).min(shape.len());
@@ -180,14 +182,23 @@ impl<'a> Shared<'a> {
                 let volume = self.solid.group_volume(self.groups, a);
                 (volume * (parts[a].A[2] * energy[a] + parts[a].U[2]), parts[a].A[1])
             },
-            |q, _, share, slot, sums| add_row(path, rows.row(q).0, of_point(q), share, slot, sums),
+            |q, _, share, slot, sums| {
+                let own: Vec<Lanes>;
+                let row = if single {
+                    own = self.mixed_rows(q, shape[q].1).collect();
+                    &own
+                } else {
+                    of_point(q)
+                };
+                add_row(path, rows.row(q).0, row, share, slot, sums);
+            },
         );
         (point, groups)
     }
 
-    fn hessian_by_pair(&self) -> (Vec<Tangent>, Vec<GroupHessian>) {
+    fn hessian_by_pair(&self) -> (Vec<PointTangent>, Vec<GroupHessian>) {
         let weights = self.solid.volume.weights();
-        let (point, each): (Vec<Tangent>, Vec<Vec<PairSecond>>) = self
+        let (point, each): (Vec<PointTangent>, Vec<Vec<PairSecond>>) = self
             .points(|q| {
                 let law = self.solid.law(q);
                 let mut D = Tangent::zeros();
@@ -199,7 +210,7 @@ impl<'a> Shared<'a> {
                     let (by_theta_theta, by_F_theta) = (second.by_theta_theta, second.by_F_theta);
                     of_pair.push(PairSecond { by_theta, by_theta_theta, by_F_theta });
                 }
-                (D, of_pair)
+                (PointTangent::new(&D), of_pair)
             })
             .into_iter()
             .unzip();
@@ -223,11 +234,13 @@ impl<'a> Shared<'a> {
     }
 
     /// Returns `w D` including the second derivative of J.
-    fn point_tangents(&self, pressure: &[f64], mut point: Vec<Tangent>) -> Vec<Tangent> {
-        point.par_iter_mut().with_min_len(64).enumerate().for_each(|(q, D)| {
+    fn point_tangents(&self, pressure: &[f64], mut point: Vec<PointTangent>) -> Vec<PointTangent> {
+        point.par_iter_mut().with_min_len(64).enumerate().for_each(|(q, point)| {
+            let mut D = point.matrix();
             let p = self.at_point(q, |a| pressure[a]);
-            add_dilation_hessian(self.solid.law(q).is_small_strain(), &self.kinematics.H[q], p, D);
-            *D *= self.solid.volume.weights()[q];
+            add_dilation_hessian(self.solid.law(q).is_small_strain(), &self.kinematics.H[q], p, &mut D);
+            D *= self.solid.volume.weights()[q];
+            *point = PointTangent::new(&D);
         });
         point
     }
@@ -290,7 +303,7 @@ impl<'a> Shared<'a> {
                         let b = b / volume;
                         GroupRow::new(&b, &(m * factor + b * (0.5 * k)))
                     };
-                    GroupHessian { rows: sums.iter().map(of_node).collect() }
+                    GroupHessian { bulk: k, rows: sums.iter().map(of_node).collect() }
                 };
                 groups.zip(&*scratch).map(|(a, (_, sums))| row(a, sums)).collect()
             })

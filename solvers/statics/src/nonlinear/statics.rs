@@ -1,5 +1,6 @@
 //! Quasi-static loading: load steps with cut-back and regrowth, each solved by Newton's method.
 
+use algebra::SolverPath;
 use contact::{ContactCounts, ContactHistory};
 use shape::Vector3;
 
@@ -45,6 +46,8 @@ pub struct StaticPath {
     pub counts: ContactCounts,
     /// Counters of the whole solution.
     pub work: StaticWork,
+    /// Iterative solver of the tangents; `None` if every step was found by a factor.
+    pub solver: Option<SolverPath>,
     /// Reason of an early end.
     pub failure: Option<StaticError>,
 }
@@ -138,10 +141,11 @@ pub fn solve_static(
     }
     let counts = newton.counts();
     let work = newton.work();
+    let solver = newton.solver();
     let cut_back = stepper.cut_back;
     if failure.is_none() && !problem.tools.is_empty() {
         newton.check_rigid(&state)?;
     }
     let State { u, pressure, history, .. } = state;
-    Ok(StaticPath { steps, u, pressure, history, cut_back, counts, work, failure })
+    Ok(StaticPath { steps, u, pressure, history, cut_back, counts, work, solver, failure })
 }

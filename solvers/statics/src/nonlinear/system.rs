@@ -8,7 +8,7 @@ use shape::{Matrix3, Vector3};
 
 use super::energy::{Hessian, Internal};
 use super::groups::Pairs;
-use super::lanes::{BlockSum, PointTangent, Vector4, group_products, point_products};
+use super::lanes::{BlockSum, Vector4, group_products, point_products};
 use super::solid::{Solid, SolidDilation};
 use super::sorted_rows::Sorted;
 
@@ -90,7 +90,8 @@ pub(crate) struct System<'a> {
     /// For each pressure node, its pairs (point, value).
     pressure_of: Vec<Vec<(u32, f64)>>,
     pub surfaces: Vec<SurfaceTable>,
-    stiffness: Stiffness,
+    /// The last assembled tangent of the displacements.
+    pub stiffness: Stiffness,
     /// Index of each degree of freedom among the unknowns, [`CONSTRAINED`] if prescribed; pressures follow.
     pub place: Vec<usize>,
     /// Number of free displacement degrees of freedom.
@@ -178,19 +179,16 @@ impl<'a> System<'a> {
             .collect()
     }
 
-    /// Assembles the tangent matrix from the second derivatives `hessian` of the energy and the stiffness
-    /// of the surfaces. Point `q` of surface `s` adds `N_I N_J D` to the block of the nodes I and J, with the
-    /// symmetric part `D` of `surface[s][q]` (N/m). For a traction `t` at the position `x` this stiffness is
-    /// `-w dt/dx` with the weight `w`. Returns the upper triangle over the free
-    /// displacements, followed by the pressures.
-    pub fn assemble(&mut self, hessian: &Hessian, surface: &[Vec<Matrix3>]) -> Symmetric {
+    /// Assembles the tangent of the displacements from the second derivatives `hessian` of the energy and the
+    /// stiffness of the surfaces. Point `q` of surface `s` adds `N_I N_J D` to the block of the nodes I and J,
+    /// with the symmetric part `D` of `surface[s][q]` (N/m). For a traction `t` at the position `x` this
+    /// stiffness is `-w dt/dx` with the weight `w`.
+    pub fn assemble(&mut self, hessian: &Hessian, surface: &[Vec<Matrix3>]) {
         let System { pairs, points, points_of, groups_of, surfaces, stiffness, .. } = self;
         let groups = pairs.as_ref().map(Pairs::connectivity).zip(groups_of.as_ref());
         let path = LanePath::best();
-        let tangents: Vec<PointTangent> =
-            hessian.point.par_iter().with_min_len(64).map(PointTangent::new).collect();
         let gather = |seen: &[(u32, u32)], slot: &[u32], sums: &mut [BlockSum]| {
-            point_products(path, points, &tangents, seen, slot, sums);
+            point_products(path, points, &hessian.point, seen, slot, sums);
         };
         let all = 0..points.len();
         let per_tile = TILE * points.len() / points.nodes.len().max(1) + 1;
@@ -214,11 +212,11 @@ impl<'a> System<'a> {
                 }
             }
         });
-        self.reduced(hessian)
     }
 
-    /// Returns the upper triangle over the free degrees of freedom, followed by the pressures.
-    fn reduced(&mut self, hessian: &Hessian) -> Symmetric {
+    /// Returns the upper triangle of the assembled tangent over the free degrees of freedom, followed by the
+    /// pressures.
+    pub fn reduced(&mut self, hessian: &Hessian) -> Symmetric {
         let mut matrix = Symmetric::displacements(&self.stiffness, &self.place, self.free);
         let nodes = self.solid.node_count();
         let mut sum = vec![Vector3::zeros(); nodes];
@@ -272,6 +270,30 @@ impl<'a> System<'a> {
             }
         }
         matrix
+    }
+
+    /// Returns the skew parts of `surface` that are not zero, as (surface, point, block).
+    pub fn skew_points(&self, surface: &[Vec<Matrix3>]) -> Vec<(usize, usize, Matrix3)> {
+        let of_table = |(s, blocks): (usize, &Vec<Matrix3>)| {
+            let skew = move |(q, block): (usize, &Matrix3)| (s, q, (block - block.transpose()) * 0.5);
+            blocks
+                .iter()
+                .enumerate()
+                .map(skew)
+                .filter(|point| point.2 != Matrix3::zeros())
+                .collect::<Vec<_>>()
+        };
+        surface.iter().enumerate().flat_map(of_table).collect()
+    }
+
+    /// Adds the product with the skew parts `skew` ([`System::skew_points`]) to `out`, N.
+    pub fn add_skew(&self, skew: &[(usize, usize, Matrix3)], u: &[Vector3], out: &mut [Vector3]) {
+        for &(s, q, block) in skew {
+            let (nodes, values) = self.surfaces[s].rows.row(q);
+            let at: Vector3 = nodes.iter().zip(values).map(|(&node, v)| u[node as usize] * *v).sum();
+            let force = block * at;
+            nodes.iter().zip(values).for_each(|(&node, v)| out[node as usize] += force * *v);
+        }
     }
 
     /// Returns the entries `(row, column, value)` that the skew parts of `surface` add to the symmetric

@@ -1,9 +1,13 @@
 //! The step of an iteration.
 
-use algebra::{AlgebraError, Factorization, Unsymmetric};
+use algebra::{Factorization, Unsymmetric};
 
-/// A factored tangent over the free unknowns and the displacements of the tools that have a border.
+use super::levels::SkewPoints;
+
+/// A tangent ready to be solved, over the free unknowns and the displacements of the tools that have a border.
 pub(super) enum Factored {
+    /// The assembled tangent, iterated, with its skew part.
+    Iterated(SkewPoints),
     Symmetric(Factorization),
     Unsymmetric(Unsymmetric),
 }
@@ -28,7 +32,7 @@ impl Factored {
     /// constrained.
     pub fn stable(&self) -> bool {
         match self {
-            Factored::Symmetric(_) => true,
+            Factored::Symmetric(_) | Factored::Iterated(_) => true,
             Factored::Unsymmetric(f) => f.stable(),
         }
     }
@@ -36,13 +40,5 @@ impl Factored {
     /// Whether a factor in single precision proves the tangent to be definite.
     pub fn is_clear(&self) -> bool {
         matches!(self, Factored::Unsymmetric(f) if f.is_clear())
-    }
-
-    /// Solves in place and returns the number of iterations.
-    pub fn solve(&self, b: &mut [f64], goal: f64) -> Result<usize, AlgebraError> {
-        match self {
-            Factored::Symmetric(f) => f.solve(b).map(|_| 0),
-            Factored::Unsymmetric(f) => f.solve(b, goal),
-        }
     }
 }

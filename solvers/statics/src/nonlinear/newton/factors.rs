@@ -8,6 +8,7 @@ use algebra::{
 };
 
 use super::direction::{Direction, Factored};
+use super::levels::Levels;
 use super::policy::{Descent, NewtonParams, Policy};
 use crate::error::SolveError;
 use crate::nonlinear::error::StaticError;
@@ -37,6 +38,8 @@ pub(super) struct Factors {
     symbolic: Option<Option<Arc<Symbolic>>>,
     /// The last factor, if it is large enough to be kept.
     factor: Option<Arc<Factor>>,
+    /// Memory of the systems that are iterated.
+    pub levels: Levels,
     /// Last direction of negative curvature of a tangent.
     curvature: Curvature,
     /// The last direction of a simulator's loop, with which the next frame starts.
@@ -47,7 +50,7 @@ pub(super) struct Factors {
     pub doubtful: bool,
     /// Whether factors are computed in double precision.
     pub exact: bool,
-    /// Relative residual to which unsymmetric systems are solved.
+    /// Relative residual to which systems are solved iteratively.
     pub forcing: f64,
     /// Counters, without those of the forces.
     pub work: StaticWork,
@@ -58,6 +61,7 @@ impl Factors {
         Factors {
             symbolic: None,
             factor: None,
+            levels: Levels::default(),
             curvature: Curvature::default(),
             kept: None,
             indefinite: false,
@@ -112,25 +116,22 @@ impl Factors {
         Ok(Ok((Factored::Unsymmetric(near), step)))
     }
 
-    /// Tests by a factor of its own whether the tangent of a step with a kept or rounded factor is definite.
-    /// This factor is kept next. The test uses single precision, and double precision if rounding leaves the
-    /// result open.
-    pub fn prove(&mut self, last: &mut Direction) -> Result<(), StaticError> {
-        let Factored::Unsymmetric(near) = &last.factored else { return Ok(()) };
-        let matrix = near.matrix();
-        last.proven = true;
+    /// Tests by a factor of its own whether a tangent is definite that was solved with a kept or rounded
+    /// factor, or iterated. This factor is kept next. The test uses single precision, and double precision if
+    /// rounding leaves the result open.
+    pub fn prove(&mut self, matrix: &Symmetric) -> Result<bool, StaticError> {
+        self.analyse(matrix)?;
         if !self.doubtful {
             self.exact = false;
             if let Ok(factor) = self.numbers(matrix, matrix.kind())
                 && factor.is_clear(matrix)
             {
-                last.definite = true;
                 self.factor = Some(factor);
-                return Ok(());
+                return Ok(true);
             }
         }
         self.exact = true;
-        last.definite = match self.numbers(matrix, matrix.kind()) {
+        let definite = match self.numbers(matrix, matrix.kind()) {
             Ok(factor) => {
                 self.factor = Arc::into_inner(factor).map(|factor| Arc::new(factor.rounded()));
                 true
@@ -139,7 +140,15 @@ impl Factors {
             Err(FactorError::Other(AlgebraError::NearlySingular { .. } | AlgebraError::ZeroPivot)) => false,
             Err(FactorError::Other(error)) => return Err(error.into()),
         };
-        self.doubtful = !last.definite;
+        self.doubtful = !definite;
+        Ok(definite)
+    }
+
+    /// Analyses the structure that all tangents have in common.
+    fn analyse(&mut self, matrix: &Symmetric) -> Result<(), AlgebraError> {
+        if self.symbolic.is_none() {
+            self.symbolic = Some(algebra::analyse(matrix, DENSE_LIMIT)?);
+        }
         Ok(())
     }
 
@@ -167,15 +176,15 @@ impl Factors {
         skew: Skew,
         borders: Vec<Border>,
     ) -> Result<Factored, StaticError> {
-        if self.symbolic.is_none() {
-            self.symbolic = Some(algebra::analyse(&matrix, DENSE_LIMIT)?);
-        }
+        self.analyse(&matrix)?;
         self.exact = !self.keeps(policy) || !borders.is_empty() || policy.descent == Descent::Smooth;
         let (factor, kind) = match policy.descent {
             Descent::Down => self.lifted(policy, &mut matrix)?,
             Descent::Smooth | Descent::Nearest | Descent::Guarded => self.as_it_is(policy, &matrix)?,
         };
         self.doubtful = self.indefinite;
+        // Iterations that failed on an indefinite tangent may succeed on a definite one.
+        self.levels.failed &= !self.indefinite;
         if self.keeps(policy) {
             self.factor = Some(factor.clone());
         }
@@ -271,13 +280,20 @@ impl Factors {
         Err(SolveError::NotPositiveDefinite.into())
     }
 
-    /// Solves with the assembled matrix, whose pressures are scaled.
+    /// Solves with the assembled matrix, whose pressures are scaled. A system that is iterated may be solved
+    /// less accurately than [`Factors::forcing`].
     pub fn solve(&mut self, factored: &Factored, system: &System, b: &mut [f64]) -> Result<(), SolveError> {
         self.work.solves += 1;
         let scale = system.pressure_scale;
         let pressures = system.free..system.dim();
         b[pressures.clone()].iter_mut().for_each(|p| *p *= scale);
-        self.work.inner += factored.solve(b, self.forcing)? as u64;
+        match factored {
+            Factored::Symmetric(f) => f.solve(b).map(drop)?,
+            Factored::Unsymmetric(f) => self.work.inner += f.solve(b, self.forcing)? as u64,
+            Factored::Iterated(skew) => {
+                self.work.inner += self.levels.chord(system, skew, b, self.forcing) as u64;
+            }
+        }
         b[pressures].iter_mut().for_each(|p| *p *= scale);
         Ok(())
     }

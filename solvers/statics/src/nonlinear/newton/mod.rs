@@ -4,6 +4,8 @@ mod direction;
 mod drive;
 mod equations;
 mod factors;
+mod iterative;
+mod levels;
 mod policy;
 mod rigid;
 mod search;
@@ -14,10 +16,11 @@ mod tests;
 mod tool_checks;
 mod tools;
 
+use algebra::SolverPath;
 use contact::{ContactCounts, Drive, ToolState};
 use shape::Vector3;
 
-use self::direction::Direction;
+use self::direction::{Direction, Factored};
 use self::equations::{Balance, Equations};
 use self::factors::Factors;
 use self::policy::{Policy, chord_suffices};
@@ -86,6 +89,11 @@ impl<'a> Newton<'a> {
     /// Returns the counters so far, including failed steps and trials.
     pub fn work(&self) -> StaticWork {
         StaticWork { forces: self.equations.evaluations, ..self.factors.work }
+    }
+
+    /// Returns the iterative solver of tangents, if it has found a step.
+    pub fn solver(&self) -> Option<SolverPath> {
+        self.factors.levels.path
     }
 
     /// Sets the terms that the next step adds to the forces of statics.
@@ -232,7 +240,7 @@ impl<'a> Newton<'a> {
             let moves = self.equations.prescribed_move(state, time);
             let residual = self.equations.residual(&balance, &state.u, time, tolerance);
             if moves.is_none() && residual <= tolerance {
-                self.settle(last, &mut log[first..])?;
+                self.settle(last, state, &balance, &mut log[first..])?;
                 log.push(Iteration { residual, energy: 0.0, length: 0.0, definite: true, chord: false });
                 return Ok(balance);
             }
@@ -250,7 +258,7 @@ impl<'a> Newton<'a> {
                 && moves.is_none()
                 && chord_suffices(&log[first..], residual, tolerance);
             self.factors.indefinite = false;
-            self.factors.forcing = self.policy.forcing(residual, chord, self.factors.keeps(&self.policy));
+            self.factors.forcing = self.policy.forcing(residual, chord, self.loosest());
             let direction = match last.take().filter(|_| chord) {
                 Some(last) => self.again(last, state, &balance, time)?,
                 None => self.direction(state, &balance, time, moves.as_deref())?,
@@ -269,16 +277,46 @@ impl<'a> Newton<'a> {
     /// Ends a search for an equilibrium whose iterations are `log`: tests whether its last tangent was
     /// definite, if that is open, and keeps this tangent for the next frame of a loop. A frame has no time for
     /// the test: its tangent counts as definite if the last factor was.
-    fn settle(&mut self, mut last: Option<Direction>, log: &mut [Iteration]) -> Result<(), StaticError> {
+    fn settle(
+        &mut self,
+        mut last: Option<Direction>,
+        state: &State,
+        balance: &Balance,
+        log: &mut [Iteration],
+    ) -> Result<(), StaticError> {
+        self.factors.levels.failed = false;
         let repeats = self.policy.repeats;
         if let Some(unproven) = last.as_mut().filter(|last| !last.proven && !repeats) {
-            self.factors.prove(unproven)?;
+            self.prove(unproven, state, balance)?;
             // The proven tangent belongs to the last iteration that was not a chord and to all chords after
             // it.
             let own = log.iter().rposition(|i| !i.chord).unwrap_or(0);
             log[own..].iter_mut().for_each(|i| i.definite = unproven.definite);
         }
         self.factors.kept = last.filter(|last| repeats && last.definite);
+        Ok(())
+    }
+
+    /// Tests whether the tangent of a direction is definite. If iterations do not prove this of their tangent,
+    /// the tangent at the equilibrium is factored.
+    fn prove(&mut self, last: &mut Direction, state: &State, balance: &Balance) -> Result<(), StaticError> {
+        let Newton { equations, factors, .. } = self;
+        last.definite = match &last.factored {
+            Factored::Symmetric(_) => return Ok(()),
+            Factored::Unsymmetric(near) => factors.prove(near.matrix())?,
+            Factored::Iterated(_) => match factors.levels.prove_definite(&equations.system) {
+                Some(iterations) => {
+                    factors.work.inner += iterations as u64;
+                    true
+                }
+                None => {
+                    let (matrix, ..) = equations.linearise(state, balance, None)?;
+                    factors.work.assemblies += 1;
+                    factors.prove(&matrix)?
+                }
+            },
+        };
+        last.proven = true;
         Ok(())
     }
 }

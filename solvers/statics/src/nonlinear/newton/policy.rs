@@ -145,16 +145,14 @@ impl Policy<'_> {
     }
 
     /// Returns the relative residual to which systems that are solved iteratively are solved: those with
-    /// sliding friction, and those with a kept factor (`keeps`). A tenth of the residual preserves the order
-    /// of convergence (Dembo, Eisenstat & Steihaug 1982). Far from equilibrium further digits would be
-    /// useless.
-    pub fn forcing(&self, residual: f64, chord: bool, keeps: bool) -> f64 {
-        let forcing = (0.1 * residual).clamp(1e-7, 1e-2);
-        if !keeps {
-            return forcing;
-        }
+    /// sliding friction, and those solved only as accurately as the next step needs, at most to `loosest`. A
+    /// tenth of the residual preserves the order of convergence (Dembo, Eisenstat & Steihaug 1982). Far from
+    /// equilibrium further digits would be useless.
+    pub fn forcing(&self, residual: f64, chord: bool, loosest: Option<f64>) -> f64 {
+        let Some(loosest) = loosest else { return (0.1 * residual).clamp(1e-7, 1e-2) };
         // The tolerance needs no further digits.
-        let forcing = forcing.max((0.1 * self.params.tolerance / residual).min(1e-2));
+        let enough = (0.1 * self.params.tolerance / residual).min(loosest);
+        let forcing = (0.1 * residual).clamp(1e-7, loosest).max(enough);
         if chord { forcing.max(CHORD) } else { forcing }
     }
 }

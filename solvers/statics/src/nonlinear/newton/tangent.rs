@@ -10,13 +10,14 @@ use super::factors::Skew;
 use super::policy::Descent;
 use super::state::State;
 use crate::error::SolveError;
+use crate::nonlinear::energy::Hessian;
 use crate::nonlinear::error::StaticError;
 
 impl Equations<'_> {
     /// Returns the stiffness of every surface point, N/m, by surface: `-w dt/dx` with the weight `w`, the
     /// traction `t` and the position `x`. Surfaces constrained by penalty come first, then the contact
     /// surface, then the points of the mass table with the tangent of the inertia.
-    fn surface_blocks(&self, balance: &Balance) -> Vec<Vec<Matrix3>> {
+    pub(super) fn surface_blocks(&self, balance: &Balance) -> Vec<Vec<Matrix3>> {
         let mut blocks: Vec<Vec<Matrix3>> = (self.problem.penalties.iter())
             .map(|h| {
                 let constrained = Vector3::from_fn(|a, _| if h.axes[a] { h.beta } else { 0.0 });
@@ -42,23 +43,38 @@ impl Equations<'_> {
 
     /// Returns the tangent in a state, its unsymmetric part, and the right-hand side for the unknowns.
     /// `prescribed_move` is the move of constrained degrees of freedom in the same iteration.
-    fn linearise(
+    pub(super) fn linearise(
         &mut self,
         state: &State,
         balance: &Balance,
         prescribed_move: Option<&[Vector3]>,
     ) -> Result<(Symmetric, Skew, Vec<f64>), StaticError> {
-        let pairs = self.system.pairs.as_ref();
-        let mut hessian = self.problem.solid.hessian(pairs, &state.u, &state.pressure)?;
+        let hessian = self.hessian(state)?;
+        let blocks = self.surface_blocks(balance);
+        self.system.assemble(&hessian, &blocks);
+        let matrix = self.system.reduced(&hessian);
+        let skew = self.system.skew(&blocks);
+        let mut right_pressure = balance.pressure.clone();
+        if let Some(moves) = prescribed_move {
+            self.system.subtract_held_pressure(&hessian, moves, &mut right_pressure);
+        }
+        let right = self.right(balance, prescribed_move);
+        Ok((matrix, skew, self.system.gather(&right, &right_pressure)))
+    }
+
+    /// Returns the second derivatives of the energy in a state.
+    pub(super) fn hessian(&self, state: &State) -> Result<Hessian, StaticError> {
+        let (solid, pairs) = (&self.problem.solid, self.system.pairs.as_ref());
+        let mut hessian = solid.hessian(pairs, &state.u, &state.pressure)?;
         if let Some(relaxing) = self.terms.as_ref().and_then(|t| t.relaxing.as_ref()) {
-            let solid = &self.problem.solid;
             relaxing.relax_tangent(solid, pairs, &state.u, &state.pressure, &mut hessian)?;
         }
-        let blocks = self.surface_blocks(balance);
-        let matrix = self.system.assemble(&hessian, &blocks);
-        let skew = self.system.skew(&blocks);
+        Ok(hessian)
+    }
+
+    /// Returns the nodal forces of the right-hand side, N, for the assembled tangent.
+    pub(super) fn right(&self, balance: &Balance, prescribed_move: Option<&[Vector3]>) -> Vec<Vector3> {
         let mut right = balance.out.clone();
-        let mut right_pressure = balance.pressure.clone();
         if let Some(moves) = prescribed_move {
             for (r, k) in right.iter_mut().zip(self.system.held_part(moves)) {
                 *r -= k;
@@ -69,9 +85,8 @@ impl Equations<'_> {
                 let mass = self.system.surfaces.last().expect("inertia has a mass table");
                 inertia.give_back(mass, moves, &mut right);
             }
-            self.system.subtract_held_pressure(&hessian, moves, &mut right_pressure);
         }
-        Ok((matrix, skew, self.system.gather(&right, &right_pressure)))
+        right
     }
 }
 
@@ -84,6 +99,11 @@ impl Newton<'_> {
         time: f64,
         prescribed_move: Option<&[Vector3]>,
     ) -> Result<Direction, StaticError> {
+        if self.iterates()
+            && let Some(direction) = self.iterated(state, balance, time, prescribed_move)?
+        {
+            return Ok(direction);
+        }
         let (matrix, skew, right) = self.equations.linearise(state, balance, prescribed_move)?;
         let policy = &self.policy;
         let factors = &mut self.factors;
@@ -137,7 +157,7 @@ impl Newton<'_> {
 
     /// Builds the direction of a solution: free unknowns, then the displacements of the tools that have a
     /// border.
-    fn finish(&self, last: Direction, mut step: Vec<f64>, state: &State, time: f64) -> Direction {
+    pub(super) fn finish(&self, last: Direction, mut step: Vec<f64>, state: &State, time: f64) -> Direction {
         let moves = step.split_off(self.equations.system.dim());
         let mut closures = vec![0.0; self.equations.problem.tools.len()];
         for (k, closure) in closures.iter_mut().enumerate() {

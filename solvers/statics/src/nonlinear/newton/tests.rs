@@ -9,7 +9,7 @@ use shape::{FixedDof, Point3, Vector3};
 use super::Newton;
 use super::policy::{Descent, Iteration, NewtonParams, patience};
 use super::state::State;
-use crate::nonlinear::problem::StaticProblem;
+use crate::nonlinear::problem::{LinearSystems, StaticProblem};
 use crate::nonlinear::solid::{Solid, SolidDilation};
 
 /// A column of 20 x 1 x 1 with both ends constrained except that one end may sway, compressed by 1 %. This is
@@ -17,6 +17,15 @@ use crate::nonlinear::solid::{Solid, SolidDilation};
 /// equilibrium is not stable.
 #[test]
 fn an_unstable_column_stays_straight_or_goes_down_the_energy() {
+    column(LinearSystems::Factored);
+}
+
+#[test]
+fn iterations_find_an_unstable_column_unstable() {
+    column(LinearSystems::Iterated { linear: None });
+}
+
+fn column(systems: LinearSystems) {
     const PRESSED: f64 = -0.01;
     let top = Point3::new(20.0, 1.0, 1.0);
     let mesh = box_mesh(CellKind::Hex20, Point3::origin(), top, [10, 1, 1], [1.0; 3], None).unwrap();
@@ -41,6 +50,7 @@ fn an_unstable_column_stays_straight_or_goes_down_the_energy() {
         penalties: &[],
         contact: None,
         tools: &[],
+        systems,
     };
     let params = NewtonParams { tolerance: 1e-9, iterations: 25, chords: true, keeps: f64::INFINITY };
     let mut newton = Newton::new(&problem, &params).unwrap();
