@@ -127,7 +127,8 @@ pub(crate) fn measure(
 }
 
 /// Smallest volume ratio J at the points of the finer quadrature; `None` at small strain. Under-integrated
-/// elements can fold between their own points. In linear tetrahedra J is constant, so their own points suffice.
+/// elements can fold between their own points. In linear tetrahedra J is constant, so their own points
+/// suffice.
 fn smallest_fine_j(run: &Solved) -> Result<Option<f64>, Failure> {
     let Solved { setup, prepared, solution, .. } = *run;
     if solution.history.is_none() || setup.laws.iter().all(Law::is_small_strain) {

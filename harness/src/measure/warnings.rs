@@ -81,7 +81,7 @@ pub(crate) fn warnings(
     let at_rest = matches!(run.setup.procedure, Procedure::Static(_));
     found.extend(last.into_iter().filter(|_| at_rest).flat_map(untouched));
     found.extend(value(&metric::LIMIT_LOAD).filter(|_| run.solution.is_whole()).map(unstable));
-    found.extend(run.solution.unseen_motion.and_then(unseen_motion));
+    found.extend(run.solution.spurious_motion.and_then(spurious_motion));
     found.extend(inside(run));
     found.extend(penetration::warnings(run));
     found.extend(dead_pressure::warnings(run)?);
@@ -146,14 +146,14 @@ fn few_points(run: &Solved) -> Option<Warning> {
     })
 }
 
-fn unseen_motion(part: f64) -> Option<Warning> {
+fn spurious_motion(part: f64) -> Option<Warning> {
     (part > UNSEEN).then(|| {
         let message = format!(
             "{:.0} % of the kinetic energy belongs to parameters that oscillate almost without displacement, because \
              their mass is lumped: take a smaller support_scale, or kernel = \"regularised-interpolating\"",
             100.0 * part
         );
-        Warning::new(&warning::UNSEEN_MOTION, part, "method.support_scale", message)
+        Warning::new(&warning::SPURIOUS_MOTION, part, "method.support_scale", message)
     })
 }
 

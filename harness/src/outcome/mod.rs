@@ -120,7 +120,8 @@ pub struct Outcome {
     pub metrics: Vec<Metric>,
     /// Times per phase and repeat, the total included.
     pub phases: Vec<Timed>,
-    /// Wall-clock time of a first pass that was discarded because it touched its memory for the first time, s.
+    /// Wall-clock time of a first pass that was discarded because it touched its memory for the first time,
+    /// s.
     pub first_use: Option<f64>,
     /// Times per frame of the loop after the first solution, if the scene requests the loop.
     pub latencies: Vec<Latency>,

@@ -152,7 +152,7 @@ fn motion(problem: &Problem, asked: &Explicit, counters: &mut Counters) -> Resul
             failure
         }
     };
-    let unseen_motion = (!problem.method.interpolates).then(|| states.unseen_motion());
+    let spurious_motion = (!problem.method.interpolates).then(|| states.spurious_motion());
     let tool_mass = if moving.iter().any(|t| matches!(t.drive, Drive::Force(_))) { tool_mass } else { 0.0 };
     let u = states.fields.last().cloned();
     Ok(Solution {
@@ -160,7 +160,7 @@ fn motion(problem: &Problem, asked: &Explicit, counters: &mut Counters) -> Resul
         u: u.unwrap_or_else(|| vec![Vector3::zeros(); mass.len()]),
         history: Some(states.history(problem, asked, made, [mass.iter().sum(), tool_mass], failure)),
         forces: Some(kernel),
-        unseen_motion,
+        spurious_motion,
         ..Solution::default()
     })
 }
@@ -240,7 +240,8 @@ struct Masses<'a> {
 }
 
 impl Masses<'_> {
-    /// Kinetic energies of parameters with these velocities (m/s), J: of the lumped mass, and of the displacement.
+    /// Kinetic energies of parameters with these velocities (m/s), J: of the lumped mass, and of the
+    /// displacement.
     fn energies(&self, volume: &VolumeRows, velocities: &[Vector3]) -> [f64; 2] {
         let sum = |masses: &[f64], velocities: &[Vector3]| -> f64 {
             masses.iter().zip(velocities).map(|(m, v)| 0.5 * m * v.norm_squared()).sum()
@@ -258,13 +259,14 @@ struct States {
     critical: f64,
     /// Largest relative error of the energy balance.
     drift: f64,
-    /// Largest kinetic energy of the lumped mass, and largest part of it that the displacement does not have, J.
+    /// Largest kinetic energy of the lumped mass, and largest part of it that the displacement does not have,
+    /// J.
     kinetic: f64,
     unseen: f64,
 }
 
 impl States {
-    fn unseen_motion(&self) -> f64 {
+    fn spurious_motion(&self) -> f64 {
         if self.kinetic > 0.0 { self.unseen / self.kinetic } else { 0.0 }
     }
 

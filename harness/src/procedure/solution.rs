@@ -32,7 +32,7 @@ pub(crate) struct Solution {
     pub(crate) needed_nitsche_factor: Option<f64>,
     /// Largest kinetic energy of parameters without that of the displacement, divided by the largest kinetic
     /// energy, in explicit dynamics of a cloud.
-    pub(crate) unseen_motion: Option<f64>,
+    pub(crate) spurious_motion: Option<f64>,
     /// Expected correct decimal digits of a linear solution.
     pub(crate) digits: Option<f64>,
     /// History of a procedure with steps.

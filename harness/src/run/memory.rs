@@ -91,8 +91,9 @@ fn ask_for_large_pages(block: *mut u8, size: usize) {
 fn ask_for_large_pages(_: *mut u8, _: usize) {}
 
 /// Lets this process keep the memory that it frees, until `return_freed_memory`. By default, glibc returns
-/// every large block to the system, which clears each page again before its next use. For 985,527 unknowns with
-/// tet4 the system then cleared 3.43 GB instead of 1.35 GB, in 1.5 to 2.8 s of CPU time instead of 0.5 to 1.3 s.
+/// every large block to the system, which clears each page again before its next use. For 985,527 unknowns
+/// with tet4 the system then cleared 3.43 GB instead of 1.35 GB, in 1.5 to 2.8 s of CPU time instead of 0.5
+/// to 1.3 s.
 ///
 /// One heap serves all threads, because a heap of a single thread is limited to 64 MB. The mimalloc allocator
 /// cleared 3.8 GB.

@@ -31,7 +31,7 @@ pub(crate) fn coarse(body: &Body) -> Result<Mesh, Failure> {
 
 /// Checks a mesh for inversion, and that a mesh file is of the body.
 fn sound(body: &Body, mesh: Mesh, size: &Size, jitter: Option<Jitter>) -> Result<Mesh, Failure> {
-    quality::upright(&mesh).map_err(|bad| inverted(bad, size, jitter))?;
+    quality::check_inversion(&mesh).map_err(|bad| inverted(bad, size, jitter))?;
     if let Size::File(file) = size {
         same_body::check(body, file, &mesh)?;
     }

@@ -280,8 +280,8 @@ fn no_meaning_is_read_out_of_names() {
     }
 }
 
-/// Literals of the reports and the harness that are a heading, a statistic, a key or a word of a sentence, and
-/// have the name of a metric.
+/// Literals of the reports and the harness that are a heading, a statistic, a key or a word of a sentence,
+/// and have the name of a metric.
 const WORDS: [(&str, &[&str]); 25] = [
     ("harness/src/cli/ci/listing.rs", &["memory"]),
     ("harness/src/cli/init/args.rs", &["load"]),

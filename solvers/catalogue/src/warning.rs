@@ -66,7 +66,7 @@ warnings! {
     NITSCHE_FACTOR: "nitsche-factor", None,
         "the factor of Nitsche's method is barely large enough for a definite form; value: the ratio of the \
          factor to the smallest sufficient factor";
-    UNSEEN_MOTION: "unseen-motion", None,
+    SPURIOUS_MOTION: "spurious-motion", None,
         "parameters of a cloud with a lumped mass oscillate almost without displacement; value: the largest \
          kinetic energy that the displacement does not have, divided by the largest kinetic energy";
     FEW_CONTACT_POINTS: "few-contact-points", None,

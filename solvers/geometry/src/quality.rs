@@ -55,14 +55,14 @@ pub struct Quality {
 /// # Errors
 /// An element with `det J <= 0` at a node or quadrature point. Values up to 1e-12 times the cube of the
 /// longest edge count as zero.
-pub fn upright(mesh: &Mesh) -> Result<(), InvertedElement> {
+pub fn check_inversion(mesh: &Mesh) -> Result<(), InvertedElement> {
     each_cell(mesh, |_, _, _, _| {})
 }
 
 /// Measures the quality of a mesh.
 ///
 /// # Errors
-/// As for [`upright`].
+/// As for [`check_inversion`].
 pub fn check(mesh: &Mesh) -> Result<Quality, InvertedElement> {
     let mut quality: Option<Quality> = None;
     each_cell(mesh, |element, kind, points, Determinants { low, high, volume }| {
@@ -97,7 +97,7 @@ struct Determinants {
 /// Calls `visit` with the index, kind, nodes and determinants of every cell that is not inverted.
 ///
 /// # Errors
-/// As for [`upright`].
+/// As for [`check_inversion`].
 fn each_cell(
     mesh: &Mesh,
     mut visit: impl FnMut(usize, CellKind, &[Point3], Determinants),

@@ -53,8 +53,8 @@ fn the_worst_element_is_named() {
             .collect();
         let spoiled = Mesh::new(mesh.points().to_vec(), &cells).unwrap();
         let error = quality::check(&spoiled).unwrap_err();
-        assert_eq!(quality::upright(&spoiled), Err(error), "{}", kind.name());
-        assert_eq!(quality::upright(&mesh), Ok(()), "{}", kind.name());
+        assert_eq!(quality::check_inversion(&spoiled), Err(error), "{}", kind.name());
+        assert_eq!(quality::check_inversion(&mesh), Ok(()), "{}", kind.name());
         assert_eq!(error.element, bad, "{}", kind.name());
         assert_eq!((error.inverted, error.cells), (1, mesh.cell_count()));
         assert!(error.det_j <= 0.0 && error.to_string().contains("element 11 is inverted"));

@@ -76,8 +76,8 @@ pub trait RowSource: Send + Sync {
     /// Computes a finer quadrature, for error norms and consistent masses.
     fn fine_volume(&self) -> Result<VolumeRows, SourceError>;
 
-    /// Calls `visit` with the finer quadrature, in blocks if the source can compute it so: all of its rows take
-    /// several times the memory of the method's own.
+    /// Calls `visit` with the finer quadrature, in blocks if the source can compute it so: all of its rows
+    /// take several times the memory of the method's own.
     fn fine_blocks(&self, visit: &mut dyn FnMut(&VolumeRows)) -> Result<(), SourceError> {
         visit(&self.fine_volume()?);
         Ok(())

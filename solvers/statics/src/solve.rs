@@ -211,8 +211,8 @@ impl<'a> Factored<'a> {
     }
 
     /// Returns `K^-1 M v` with supports at rest, without refinement, for a step of a power iteration that
-    /// corrects its own errors. `kv` is `K v`, `mv` is `M v`, and `alpha` approximates their ratio. Iterations
-    /// start from `v / alpha` and reduce its residual to a tenth.
+    /// corrects its own errors. `kv` is `K v`, `mv` is `M v`, and `alpha` approximates their ratio.
+    /// Iterations start from `v / alpha` and reduce its residual to a tenth.
     pub(crate) fn inverse_step(
         &self,
         v: Vec<Vector3>,

@@ -156,7 +156,8 @@ impl<'a> Recovered<'a> {
                 .map(move |(&a, phi)| (a as usize, q, phi.abs()))
         };
         let near = || (0..rows.len()).filter(own).flat_map(entries);
-        // The points near each node, one node after another: a list for each node would take twice the memory.
+        // The points near each node, one node after another: a list for each node would take twice the
+        // memory.
         let mut starts = vec![0; nodes.len() + 1];
         near().for_each(|(a, ..)| starts[a + 1] += 1);
         for a in 0..nodes.len() {

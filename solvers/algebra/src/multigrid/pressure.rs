@@ -137,8 +137,9 @@ impl Pressures {
         dot(&a.u, &b.u) + p
     }
 
-    /// Solves `K x = b` in place to a residual of `tolerance |b|` or of rounding. `without` is the stiffness A,
-    /// `stiffness` is K. `b` must be zero at constrained degrees of freedom. A failure leaves `b` as it is.
+    /// Solves `K x = b` in place to a residual of `tolerance |b|` or of rounding. `without` is the stiffness
+    /// A, `stiffness` is K. `b` must be zero at constrained degrees of freedom. A failure leaves `b` as it
+    /// is.
     ///
     /// # Errors
     ///
@@ -186,8 +187,8 @@ impl Pressures {
     }
 
     /// Solves a system roughly, in place: to a recursive residual `|b - K x|` of `goal |b|`, or as far as
-    /// `inner.most` iterations lead. Returns the number of iterations and whether the goal is reached. `b` must
-    /// be zero at constrained degrees of freedom.
+    /// `inner.most` iterations lead. Returns the number of iterations and whether the goal is reached. `b`
+    /// must be zero at constrained degrees of freedom.
     pub fn solve_roughly(&self, inner: &Inner, b: &mut [Vector3], goal: f64) -> (usize, bool) {
         let mut x = vec![Vector3::zeros(); b.len()];
         let mut rest = Pair { u: b.to_vec(), p: vec![0.0; self.schur.len()] };

@@ -69,8 +69,8 @@ impl TangentLevels {
     ///
     /// While no direction has negative curvature, all Ritz values are positive, and the residual polynomial,
     /// the product of `1 - lambda / ritz`, is at least one for a negative eigenvalue. The part of the
-    /// right-hand side along its eigenvector therefore stays in the residual. If the residual falls below this
-    /// part, there is no negative eigenvalue.
+    /// right-hand side along its eigenvector therefore stays in the residual. If the residual falls below
+    /// this part, there is no negative eigenvalue.
     pub fn proves_definite(&self, stiffness: &Stiffness) -> Option<usize> {
         // A fixed sequence without pattern: multiples of the golden ratio.
         let entry = |i: usize| (i as f64 * 0.618_033_988_749_895).fract() - 0.5;

@@ -277,8 +277,8 @@ fn sweeps_leave_the_residual_and_are_transposes() {
     near(&backward(&b, &x), &corrected, "a sweep backward");
 }
 
-/// Stiffness of a grid of n x n x n nodes, each tied to its six neighbours (beyond the faces to the ground) by
-/// equal springs in all directions, minus `part` of its smallest eigenvalue on the diagonal.
+/// Stiffness of a grid of n x n x n nodes, each tied to its six neighbours (beyond the faces to the ground)
+/// by equal springs in all directions, minus `part` of its smallest eigenvalue on the diagonal.
 fn shifted(n: usize, part: f64) -> Stiffness {
     let at = |i: usize| [i / (n * n), i / n % n, i % n];
     let near = |i: usize, j: usize| at(i).iter().zip(at(j)).map(|(a, b)| a.abs_diff(b)).sum::<usize>() == 1;

@@ -61,7 +61,7 @@ pub fn box_mesh(
     }
     let mesh = into_kind(hexahedra(points, cells)?, kind);
     if jitter.is_some() || grading != [1.0; 3] {
-        quality::upright(&mesh)?;
+        quality::check_inversion(&mesh)?;
     }
     Ok(mesh)
 }

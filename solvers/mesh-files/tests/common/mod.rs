@@ -13,8 +13,8 @@ pub fn read(name: &str, content: impl AsRef<[u8]>) -> Result<Mesh, String> {
     read.map(|(mesh, _)| mesh).map_err(|bad| bad.to_string())
 }
 
-/// Asserts that a mesh file with any one of the changes `from` to `to` is rejected with a message that has the
-/// given words. Words with `...` between them may be apart.
+/// Asserts that a mesh file with any one of the changes `from` to `to` is rejected with a message that has
+/// the given words. Words with `...` between them may be apart.
 pub fn assert_refused<'a>(
     name: &str,
     text: &str,

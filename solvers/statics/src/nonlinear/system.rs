@@ -180,8 +180,8 @@ impl<'a> System<'a> {
     }
 
     /// Assembles the tangent of the displacements from the second derivatives `hessian` of the energy and the
-    /// stiffness of the surfaces. Point `q` of surface `s` adds `N_I N_J D` to the block of the nodes I and J,
-    /// with the symmetric part `D` of `surface[s][q]` (N/m). For a traction `t` at the position `x` this
+    /// stiffness of the surfaces. Point `q` of surface `s` adds `N_I N_J D` to the block of the nodes I and
+    /// J, with the symmetric part `D` of `surface[s][q]` (N/m). For a traction `t` at the position `x` this
     /// stiffness is `-w dt/dx` with the weight `w`.
     pub fn assemble(&mut self, hessian: &Hessian, surface: &[Vec<Matrix3>]) {
         let System { pairs, points, points_of, groups_of, surfaces, stiffness, .. } = self;

@@ -4,7 +4,8 @@ use algebra::{Factorization, Unsymmetric};
 
 use super::levels::SkewPoints;
 
-/// A tangent ready to be solved, over the free unknowns and the displacements of the tools that have a border.
+/// A tangent ready to be solved, over the free unknowns and the displacements of the tools that have a
+/// border.
 pub(super) enum Factored {
     /// The assembled tangent, iterated, with its skew part.
     Iterated(SkewPoints),

@@ -39,9 +39,9 @@ impl Levels {
         (self.levels, self.lost) = (levels, 0.0);
     }
 
-    /// Solves a system in place to a relative residual of `goal`, or as far as the iterations lead. Returns the
-    /// number of iterations and whether the goal is reached. `fresh` states that the levels belong to this very
-    /// tangent.
+    /// Solves a system in place to a relative residual of `goal`, or as far as the iterations lead. Returns
+    /// the number of iterations and whether the goal is reached. `fresh` states that the levels belong to
+    /// this very tangent.
     pub fn iterate(
         &mut self,
         system: &System,

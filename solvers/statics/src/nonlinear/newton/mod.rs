@@ -275,8 +275,8 @@ impl<'a> Newton<'a> {
     }
 
     /// Ends a search for an equilibrium whose iterations are `log`: tests whether its last tangent was
-    /// definite, if that is open, and keeps this tangent for the next frame of a loop. A frame has no time for
-    /// the test: its tangent counts as definite if the last factor was.
+    /// definite, if that is open, and keeps this tangent for the next frame of a loop. A frame has no time
+    /// for the test: its tangent counts as definite if the last factor was.
     fn settle(
         &mut self,
         mut last: Option<Direction>,
@@ -297,8 +297,8 @@ impl<'a> Newton<'a> {
         Ok(())
     }
 
-    /// Tests whether the tangent of a direction is definite. If iterations do not prove this of their tangent,
-    /// the tangent at the equilibrium is factored.
+    /// Tests whether the tangent of a direction is definite. If iterations do not prove this of their
+    /// tangent, the tangent at the equilibrium is factored.
     fn prove(&mut self, last: &mut Direction, state: &State, balance: &Balance) -> Result<(), StaticError> {
         let Newton { equations, factors, .. } = self;
         last.definite = match &last.factored {
