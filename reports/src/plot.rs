@@ -1,8 +1,11 @@
 //! Data of a figure, which is drawn on paper, written as CSV next to the figure, and redrawn by the page.
 
+use catalogue::metric::Metric;
 use records::Family;
 use records::cell::csv_line;
 use serde::Serialize;
+
+use crate::quantity::unit;
 
 /// A pair of axes with its curves.
 #[derive(Clone, Debug)]
@@ -15,21 +18,55 @@ pub(crate) struct Plot {
     pub(crate) curves: Vec<Curve>,
 }
 
-/// A labelled axis.
+/// An axis.
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct Scale {
-    /// Label with its unit.
-    pub(crate) label: String,
+    name: String,
+    unit: &'static str,
     pub(crate) log: bool,
+    shows: Shows,
+}
+
+/// What the values of an axis are. The page writes its tick labels accordingly.
+#[derive(Clone, Copy, Debug, Serialize)]
+#[serde(rename_all = "kebab-case")]
+enum Shows {
+    Numbers,
+    Times,
+    RelativeErrors,
+    /// `1/(1 - 2 nu)` of Poisson's ratios `nu`, which spreads nearly incompressible materials.
+    PoissonRatios,
 }
 
 impl Scale {
-    pub(crate) fn log(label: &str) -> Scale {
-        Scale { label: label.into(), log: true }
+    pub(crate) fn log(name: &str, unit: &'static str) -> Scale {
+        Scale { log: true, ..Scale::linear(name, unit) }
     }
 
-    pub(crate) fn linear(label: &str) -> Scale {
-        Scale { label: label.into(), log: false }
+    pub(crate) fn linear(name: &str, unit: &'static str) -> Scale {
+        Scale { name: name.into(), unit, log: false, shows: Shows::Numbers }
+    }
+
+    /// Logarithmic scale of times in seconds.
+    pub(crate) fn times(name: &str) -> Scale {
+        Scale { shows: Shows::Times, ..Scale::log(name, "s") }
+    }
+
+    /// Logarithmic scale of an error.
+    pub(crate) fn errors(of: &'static Metric) -> Scale {
+        let of = of.whole();
+        let shows = if unit(of) == "1" { Shows::RelativeErrors } else { Shows::Numbers };
+        Scale { shows, ..Scale::log(&of.label(), unit(of)) }
+    }
+
+    /// Logarithmic scale of Poisson's ratios `nu`, with positions `1/(1 - 2 nu)`.
+    pub(crate) fn poisson_ratios() -> Scale {
+        Scale { shows: Shows::PoissonRatios, ..Scale::log("Poisson's ratio ν, as 1/(1 − 2ν)", "1") }
+    }
+
+    /// Name with the unit.
+    pub(crate) fn label(&self) -> String {
+        format!("{} [{}]", self.name, self.unit)
     }
 }
 
@@ -60,9 +97,9 @@ pub(crate) fn labels(plots: &[Plot]) -> Vec<(String, Family)> {
 pub(crate) fn csv(plots: &[Plot]) -> String {
     let mut out = csv_line(&["case", "panel", "series", "what", "x", "y", "x axis", "y axis", "run"]);
     for plot in plots {
+        let axes = (plot.x.label(), plot.y.label());
         let mut row = |curve: &Curve, what: &str, at: (f64, f64), run: &str| {
             let (x, y) = (format!("{:e}", at.0), format!("{:e}", at.1));
-            let axes = (&plot.x.label, &plot.y.label);
             out.push_str(&csv_line(&[
                 &plot.case,
                 &plot.title,
@@ -70,8 +107,8 @@ pub(crate) fn csv(plots: &[Plot]) -> String {
                 what,
                 &x,
                 &y,
-                axes.0,
-                axes.1,
+                &axes.0,
+                &axes.1,
                 run,
             ]));
         };

@@ -4,6 +4,7 @@ use catalogue::metric::{self, Metric};
 use records::{Family, Purpose};
 
 use crate::fronts::{Clock, QUESTIONS, Question, WANTED, band, counts, point};
+use crate::plot::Scale;
 use crate::seconds::Seconds;
 use crate::select::{Run, Series, chosen, kernels, labels, series};
 
@@ -50,12 +51,12 @@ pub(crate) struct Ask {
 }
 
 impl Ask {
-    /// Label of the time axis, with its unit.
-    pub(crate) fn time(&self) -> String {
-        match self.clock {
-            Clock::First => format!("{} [s]", self.by.name()),
-            Clock::Repeated => "repeated solve, 99 % within [s]".into(),
-        }
+    /// Scale of the times.
+    pub(crate) fn time(&self) -> Scale {
+        Scale::times(match self.clock {
+            Clock::First => self.by.name(),
+            Clock::Repeated => "repeated solve, 99 % within",
+        })
     }
 }
 

@@ -58,6 +58,11 @@ impl<'a> Run<'a> {
         }
     }
 
+    /// Wall time of the first pass, s, if it was discarded because it used its memory for the first time.
+    pub(crate) fn first_use(&self) -> Option<f64> {
+        self.timed(&metric::TIME, "first-use", "value")
+    }
+
     /// Median time of the whole run, s: its `total`, or else the sum of its phases.
     pub(crate) fn total(&self) -> Option<f64> {
         self.time("total", "median").or_else(|| {

@@ -51,29 +51,27 @@ function ticks(axis: Axis, ends: [number, number], room: number): number[] {
   return axis.log ? logTicks(...ends, Math.max(3, room)) : linearTicks(...ends, Math.max(3, room));
 }
 
-const inSeconds = (axis: Axis) => /\[s\]/.test(axis.label);
-const isError = (axis: Axis) => /error.* \[1\]$/.test(axis.label);
-
-/** Whether an axis shows Poisson's ratio. Its positions are 1/(1 − 2ν), which spreads nearly incompressible
- * materials; its labels are ν. */
-const isPoisson = (axis: Axis) => axis.label.startsWith("1/(1 − 2ν)");
 const poisson = (spread: number) => String(Number((0.5 - 0.5 / spread).toPrecision(4)));
 
-function tickText(axis: Axis): (value: number) => string {
-  if (isPoisson(axis)) return poisson;
-  if (inSeconds(axis) && axis.log) return (v) => duration(v, 1).replace(/\.0+ /, " ");
-  if (isError(axis) && axis.log) return (v) => (v > 0.99e-6 ? `${tick(100 * v)} %` : tick(v));
-  return axis.log ? tick : (v) => digits(v, 3).replace(/(\.\d*?)0+$/, "$1").replace(/\.$/, "");
+function tickText({ log, shows }: Axis): (value: number) => string {
+  switch (shows) {
+    case "poisson-ratios": return poisson;
+    case "times": return (v) => duration(v, 1).replace(/\.0+ /, " ");
+    case "relative-errors": return (v) => (v > 0.99e-6 ? `${tick(100 * v)} %` : tick(v));
+    case "numbers": return log ? tick : (v) => digits(v, 3).replace(/(\.\d*?)0+$/, "$1").replace(/\.$/, "");
+  }
 }
 
-/** Name of an axis, without the unit if the tick labels have units. */
-const axisName = (axis: Axis) => (isPoisson(axis) ? "Poisson's ratio ν, spaced as 1/(1 − 2ν)" : axis.log && (inSeconds(axis) || isError(axis)) ? axis.label.replace(/ \[(s|1)\]/, "") : axis.label);
+/** Name of an axis, with the unit if the tick labels have none. */
+const axisName = ({ name, unit, shows }: Axis) => (shows === "numbers" && unit ? `${name} [${unit}]` : name);
 
-function value(axis: Axis, v: number): string {
-  if (isPoisson(axis)) return poisson(v);
-  if (inSeconds(axis)) return duration(v);
-  if (isError(axis)) return percent(v, 3);
-  return digits(v, 4);
+function value({ shows, unit }: Axis, v: number): string {
+  switch (shows) {
+    case "poisson-ratios": return poisson(v);
+    case "times": return duration(v);
+    case "relative-errors": return percent(v, 3);
+    case "numbers": return unit && unit !== "1" ? `${digits(v, 4)} ${unit}` : digits(v, 4);
+  }
 }
 
 /** Lines of a point's tooltip. */
@@ -82,7 +80,7 @@ function said(point: Point, chart: Chart): string {
   const run = point.run;
   const nodes = run === null ? "" : `\n${whole(page.runs.nodes[run])} nodes`;
   const around = point.spread ? ` ± ${duration(point.spread, 2)}` : "";
-  const short = (axis: Axis) => axisName(axis).split(/[,[]/)[0].trim();
+  const short = (axis: Axis) => axis.name.split(",")[0];
   return `${name(point.label)}${nodes}\n${short(chart.x)} ${value(chart.x, point.x)}${around}\n${short(chart.y)} ${value(chart.y, point.exact ?? point.y)}`;
 }
 
@@ -94,10 +92,11 @@ function card(point: Point): (Node | string)[] {
   const errors = Object.entries(r.errors)
     .filter(([, { values }]) => values[at] !== null)
     .map(([quantity, { unit, values }]) => `${quantity} ${unit === "1" ? percent(values[at]!, 3) : `${digits(values[at]!, 2)} ${unit}`}`);
-  const clock = page.asks.find((a) => a.case === r.case[at] && !a.repeated)?.time.split(",")[0] ?? "run time";
+  const clock = page.asks.find((a) => a.case === r.case[at] && !a.repeated)?.time.name.split(",")[0] ?? "run time";
   const facts = [
     `${whole(r.nodes[at])} nodes`, `${whole(r.elements[at])} cells`, `${whole(r.dofs[at])} unknowns`, r.settings[at],
     r.solver[at] && `solved by ${r.solver[at]}`, r.seconds[at] !== null && `${clock} ${duration(r.seconds[at]!)}`,
+    r.first_use[at] !== null && `${duration(r.first_use[at]!)} in the first use of its memory`,
     r.memory[at] !== null && `memory ${digits(r.memory[at]! / 2 ** 20, 3)} MiB`,
   ].filter(Boolean);
   const record = page.records

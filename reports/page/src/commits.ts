@@ -2,7 +2,7 @@
 
 import * as Plot from "@observablehq/plot";
 import type { Chart, Point } from "./chart";
-import { name, page, type Commit } from "./data";
+import { name, page, type Axis, type Commit } from "./data";
 import { h } from "./dom";
 import { isOff } from "./state";
 import { digits, duration } from "./text";
@@ -10,17 +10,19 @@ import { digits, duration } from "./text";
 interface Measure { title: string; axis: string; value: (c: Commit) => number | null; moved: (c: Commit) => boolean }
 
 export const MEASURES: Measure[] = [
-  { title: "Errors over commits", axis: "mean error relative to the first commit [1]", value: (c) => c.error, moved: (c) => c.errors_moved },
-  { title: "Times over commits", axis: "CPU time relative to the first commit [1]", value: (c) => c.time, moved: (c) => c.times_moved },
+  { title: "Errors over commits", axis: "mean error relative to the first commit", value: (c) => c.error, moved: (c) => c.errors_moved },
+  { title: "Times over commits", axis: "CPU time relative to the first commit", value: (c) => c.time, moved: (c) => c.times_moved },
 ];
 
 const QUIET = new Map([[true, "machine quiet"], [false, "machine not quiet"], [null, "not known whether the machine was quiet"]]);
+
+const linear = (name: string, unit: string): Axis => ({ name, unit, log: false, shows: "numbers" });
 
 /** Largest number of characters of a label below an axis. */
 const LONGEST = 24;
 
 const about = (c: Commit, value: number, axis: string) =>
-  `commit ${c.name}\n${axis.replace(" [1]", "")}: ${digits(value, 4)}\n${c.runs} runs, ${duration(c.seconds)}\n${QUIET.get(c.quiet)}${c.moved && `\n${c.moved}`}`;
+  `commit ${c.name}\n${axis}: ${digits(value, 4)}\n${c.runs} runs, ${duration(c.seconds)}\n${QUIET.get(c.quiet)}${c.moved && `\n${c.moved}`}`;
 
 /** Short form of a name: the first seven digits of a commit, or at most `LONGEST` characters of a label. */
 const short = (name: string) => (/^[0-9a-f]{12}\+?$/.test(name) ? name.slice(0, 7) : name.length > LONGEST ? `${name.slice(0, LONGEST - 1)}…` : name);
@@ -35,7 +37,7 @@ export function over(measure: Measure): Chart {
   const lines = shown.map((t) => points(t.commits, t.label));
   const longest = page.trends.reduce((a, b) => (b.commits.length > a.commits.length ? b : a));
   return {
-    title: measure.title, x: { label: "commit", log: false }, y: { label: measure.axis, log: false }, lines, height: 300,
+    title: measure.title, x: linear("commit", ""), y: linear(measure.axis, "1"), lines, height: 300,
     named: longest.commits.map((c) => short(c.name)),
     see: { x: [0, longest.commits.length - 1], y: [1] },
     under: () => [Plot.ruleY([1], { stroke: "currentColor", strokeOpacity: 0.4, strokeDasharray: "4 3" })],

@@ -7,11 +7,12 @@ export interface Line {
 }
 
 export interface Ask {
-  case: string; title: string; what: string; repeated: boolean; time: string; error: string; scalar: boolean; kernels: boolean;
+  case: string; title: string; what: string; repeated: boolean; cpu: boolean; time: Axis; error: Axis; scalar: boolean; kernels: boolean;
   reference: string | null; band: number | null; rank: (boolean | number)[]; lines: Line[];
 }
 
-export interface Axis { label: string; log: boolean }
+/** Unit `""` is not written. Positions of `poisson-ratios` are 1/(1 − 2ν), which spreads nearly incompressible materials. */
+export interface Axis { name: string; unit: string; log: boolean; shows: "numbers" | "times" | "relative-errors" | "poisson-ratios" }
 
 export interface Curve { label: number; xy: number[]; band?: [number, number, number][]; runs?: number[] }
 
@@ -30,7 +31,7 @@ export interface Picture { name: string; case: string; title: string; caption: s
 
 export interface Runs {
   id: string[]; case: string[]; method: string[]; label: number[]; poisson: number[]; nodes: number[]; elements: number[];
-  dofs: number[]; settings: string[]; solver: string[]; seconds: (number | null)[]; memory: (number | null)[];
+  dofs: number[]; settings: string[]; solver: string[]; seconds: (number | null)[]; first_use: (number | null)[]; memory: (number | null)[];
   /** Errors by quantity, in their own unit; `1` for relative errors. */
   errors: Record<string, { unit: string; values: (number | null)[] }>;
 }

@@ -70,8 +70,7 @@ export function chart(ask: Ask, error: number | null, off?: (label: string) => b
   const found = error === null ? [] : within(all, error).slice(0, 1);
   return {
     title: `${ask.what} of ${ask.title}: run time against error`,
-    x: { label: ask.time, log: true },
-    y: { label: ask.error.includes("[1]") ? ask.error : `${ask.error} [1]`, log: true },
+    x: ask.time, y: ask.error,
     lines: all,
     joined: !ask.kernels,
     see: { x: near.map((d) => d[2]), y: error === null ? [] : [error] },
@@ -137,7 +136,7 @@ export function question(place: HTMLElement) {
       ask.scalar && "A single number can be right by chance: a run counts with at least a third of its displacement's error, at the top of the thin line.",
       chance.length && `Right by chance, not counted at ${percent(error, 1)}: ${[...new Set(chance.map((p) => name(p.label)))].join(", ")}.`,
       ask.reference && `The reference is ${ask.reference}.`,
-      page.machine.quiet === false && `The machine was not quiet: ${ask.time.startsWith("CPU") ? "runs are compared by CPU time" : "times may be too long"}.`,
+      page.machine.quiet === false && `The machine was not quiet: ${ask.cpu ? "runs are compared by CPU time" : "times may be too long"}.`,
     ].filter(Boolean).join(" ");
     const make = () => chart(asked()!, Number(state.within));
     if (redraw) redraw(); else redraw = put(plot, make);

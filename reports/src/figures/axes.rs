@@ -80,7 +80,8 @@ impl Axis {
 
     /// Creates an axis of the given scale, from zero if it is linear.
     pub(crate) fn of(scale: &Scale, values: impl Iterator<Item = f64>) -> Axis {
-        if scale.log { Axis::log(&scale.label, values) } else { Axis::linear(&scale.label, values, true) }
+        let label = scale.label();
+        if scale.log { Axis::log(&label, values) } else { Axis::linear(&label, values, true) }
     }
 
     /// Creates an axis of named steps from zero, of length 1 (to the right) or -1 (downwards).

@@ -12,7 +12,7 @@ use super::style::{find, styles};
 use crate::plot::{self, Curve, Plot, Scale};
 use crate::select::{Run, by_case};
 
-const SCALES: &str = "support radius / node spacing [1]";
+const SCALES: &str = "support radius / node spacing";
 
 /// Condition number of the moment matrix: one panel per case, one line per kernel and basis.
 pub(super) fn conditioning(runs: &[Run]) -> Vec<Figure> {
@@ -25,8 +25,8 @@ pub(super) fn conditioning(runs: &[Run]) -> Vec<Figure> {
     let plot = |(case, curves): (String, Vec<Curve>)| Plot {
         title: case.clone(),
         case,
-        x: Scale::linear(SCALES),
-        y: Scale::log("condition number [1]"),
+        x: Scale::linear(SCALES, "1"),
+        y: Scale::log("condition number", "1"),
         curves,
     };
     let plots: Vec<Plot> = panels(runs, point, label).into_iter().map(plot).collect();
@@ -61,7 +61,7 @@ pub(super) fn neighbours(runs: &[Run]) -> Vec<Figure> {
     if curves.is_empty() {
         return Vec::new();
     }
-    let (x, y) = (Scale::linear(SCALES), Scale::linear("neighbours [1]"));
+    let (x, y) = (Scale::linear(SCALES, "1"), Scale::linear("neighbours", "1"));
     let plots = vec![Plot { case: String::new(), title: "Neighbours".into(), x, y, curves }];
     vec![Figure {
         name: "neighbours".into(),
@@ -140,7 +140,7 @@ fn drawing(plots: &[Plot], note: &str) -> Drawing {
         let scales = || plot.curves.iter().flat_map(|curve| curve.points.iter().map(|p| p.0));
         let styles = &styles;
         Content {
-            x: Axis::linear(&plot.x.label, scales(), false).with_ticks(ticks(scales().collect())),
+            x: Axis::linear(&plot.x.label(), scales(), false).with_ticks(ticks(scales().collect())),
             series: Box::new(move |chart| {
                 let x = chart.x_range();
                 for (i, curve) in plot.curves.iter().enumerate() {

@@ -11,10 +11,7 @@ use super::grid::{Content, multiples};
 use super::style::styles;
 use crate::order::ROUNDING;
 use crate::plot::{self, Curve, Plot, Scale};
-use crate::quantity::label;
 use crate::select::{Run, Series, chosen, labels, series};
-
-const SPACING: &str = "node spacing h [mm]";
 
 /// Figures of each error (L2, energy, pressure), on one or more pages.
 pub(super) fn figures(runs: &[Run]) -> Vec<Figure> {
@@ -69,7 +66,7 @@ fn figure(error: &'static Metric, page: usize, panels: &[Paned]) -> Figure {
     Figure {
         name: paged(&format!("convergence-{}", error.name), page),
         title: continued(
-            &format!("Convergence of the {}", label(error).trim_end_matches(" [1]")),
+            &format!("Convergence of the {}", error.whole().label()),
             page,
         ),
         caption: "Error against node spacing on logarithmic axes; the grey fan shows the theoretical slopes of the \
@@ -83,8 +80,8 @@ fn plotted((title, case, lines): &Paned, error: &'static Metric) -> Plot {
     Plot {
         case: case.clone(),
         title: title.clone(),
-        x: Scale::log(SPACING),
-        y: Scale::log(&label(error)),
+        x: Scale::log("node spacing h", "mm"),
+        y: Scale::errors(error),
         curves: lines.iter().map(|l| l.0.clone()).collect(),
     }
 }

@@ -12,7 +12,6 @@ use super::grid::{Content, multiples};
 use super::style::{Style, find, styles};
 use crate::fronts::{Clock, DEADLINES, Deadline, FLOOR, FRONT, Question, pareto};
 use crate::plot::{self, Curve, Plot, Scale};
-use crate::quantity::label;
 use crate::questions::{Ask, Line, Timed, asks};
 use crate::seconds::Seconds;
 use crate::select::Run;
@@ -64,8 +63,8 @@ fn plotted(ask: &Ask) -> Plot {
     Plot {
         case: ask.case.clone(),
         title: format!("{}: {}", ask.title, ask.question.name),
-        x: Scale::log(&ask.time()),
-        y: Scale::log(&label(ask.error)),
+        x: ask.time(),
+        y: Scale::errors(ask.error),
         curves: ask.lines.iter().map(curve).collect(),
     }
 }
@@ -81,13 +80,13 @@ fn has_front(lines: &[Line]) -> bool {
 
 fn y_axis(panel: &Ask) -> Axis {
     let errors = all(&panel.lines).map(|r| r.error.max(FLOOR));
-    Axis::log(&label(panel.error), decade(errors.collect()).into_iter())
+    Axis::of(&Scale::errors(panel.error), decade(errors.collect()).into_iter())
 }
 
 fn content<'a>(panel: &'a Ask, clock: Clock, styles: &'a [Style]) -> Content<'a> {
     let (title, lines, kernels) = (&panel.title, &panel.lines, panel.kernels);
     let (scale, x) = match clock {
-        Clock::First => (1.0, Axis::log(&panel.time(), all(lines).map(|r| r.seconds))),
+        Clock::First => (1.0, Axis::of(&panel.time(), all(lines).map(|r| r.seconds))),
         Clock::Repeated => {
             let near = near(&panel.lines).into_iter().map(|d| d.seconds);
             let times = all(lines).map(|r| 1e3 * r.seconds).chain(near.map(|t| 1e3 * t));

@@ -15,6 +15,12 @@ use crate::select::{Run, by_case, labels, series};
 
 /// Grey of an uncertainty band, light enough for every line on it.
 const UNCERTAIN: RGBColor = RGBColor(0xd6, 0xd6, 0xd6);
+/// Name and unit of an axis.
+type Named = (&'static str, &'static str);
+
+const CLOSURE: Named = ("closure", "mm");
+const FORCE: Named = ("tool force", "N");
+const TIME: Named = ("time", "s");
 const ENERGIES: [(&Metric, &str); 9] = [
     (&metric::EXTERNAL_WORK, "work of loads and tools"),
     (&metric::WORK_ON_BODY, "work on the body"),
@@ -48,9 +54,9 @@ pub(super) fn forces(runs: &[Run]) -> Vec<Figure> {
         let closing = each(&metric::CLOSURE, 1e3);
         let off = against(case, &closing);
         let is = &case[0].is.case;
-        panels.push(Pane::new(is, "", ("closure [mm]", "tool force [N]"), closing));
-        panels.push(Pane::new(is, ", over time", ("time [s]", "tool force [N]"), each(&metric::TIME, 1.0)));
-        panels.push(Pane::new(is, ", minus the reference", ("closure [mm]", "difference of force [N]"), off));
+        panels.push(Pane::new(is, "", (CLOSURE, FORCE), closing));
+        panels.push(Pane::new(is, ", over time", (TIME, FORCE), each(&metric::TIME, 1.0)));
+        panels.push(Pane::new(is, ", minus the reference", (CLOSURE, ("difference of force", "N")), off));
     }
     figures(
         metric::TOOL_FORCE.name,
@@ -93,7 +99,7 @@ pub(super) fn energies(runs: &[Run]) -> Vec<Figure> {
             // An energy that remains zero has no line, which would only lie on the axis.
             let lines = lines.filter(drawn).filter(|l| l.points.iter().any(|p| p.1 != 0.0));
             let of = format!(", {name}");
-            panels.push(Pane::new(&s.is().case, &of, ("time [s]", "energy [mJ]"), lines.collect()));
+            panels.push(Pane::new(&s.is().case, &of, (TIME, ("energy", "mJ")), lines.collect()));
         }
     }
     figures(
@@ -119,7 +125,7 @@ pub(super) fn spectra(runs: &[Run]) -> Vec<Figure> {
                 let points = curve(s.finest(), &metric::MODE, &metric::OMEGA_RATIO);
                 line(name, s.finest(), points)
             });
-            let axes = ("mode [1]", "computed over exact frequency [1]");
+            let axes = (("mode", "1"), ("computed over exact frequency", "1"));
             panels.push(Pane::new(
                 &case[0].is.case,
                 &format!(", {mass} mass"),
@@ -152,12 +158,12 @@ struct Pane {
     /// Part of the title after the case.
     of: String,
     /// Names and units of both axes.
-    axes: (&'static str, &'static str),
+    axes: (Named, Named),
     curves: Vec<Curve>,
 }
 
 impl Pane {
-    fn new(case: &str, of: &str, axes: (&'static str, &'static str), curves: Vec<Curve>) -> Pane {
+    fn new(case: &str, of: &str, axes: (Named, Named), curves: Vec<Curve>) -> Pane {
         Pane { case: case.into(), of: of.into(), axes, curves }
     }
 }
@@ -166,8 +172,8 @@ fn figures(name: &str, title: &str, caption: &str, panels: Vec<Pane>) -> Vec<Fig
     let plotted = |Pane { case, of, axes, curves }: Pane| Plot {
         title: format!("{case}{of}"),
         case,
-        x: Scale::linear(axes.0),
-        y: Scale::linear(axes.1),
+        x: Scale::linear(axes.0.0, axes.0.1),
+        y: Scale::linear(axes.1.0, axes.1.1),
         curves,
     };
     let plots: Vec<Plot> = panels.into_iter().filter(|p| !p.curves.is_empty()).map(plotted).collect();

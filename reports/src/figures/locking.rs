@@ -10,7 +10,6 @@ use super::grid::{Content, multiples};
 use super::style::styles;
 use crate::fronts::FLOOR;
 use crate::plot::{self, Curve, Plot, Scale};
-use crate::quantity::label;
 use crate::select::{Run, competing, labels};
 
 /// A quantity that shows locking.
@@ -32,9 +31,6 @@ static MEASURES: [Measure; 3] = [
     Measure { metric: &metric::PRESSURE, what: "pressure" },
     Measure { metric: &metric::TIP, what: "tip deflection" },
 ];
-
-/// Label of the axis of a ratio.
-const RATIO: &str = "tip deflection / exact [1]";
 
 /// A method as `(label, family, runs of one size by ascending Poisson's ratio)`.
 pub(crate) type Sweep<'r> = (String, Family, Vec<Run<'r>>);
@@ -107,8 +103,7 @@ fn figure(page: usize, panels: &[(String, &'static Measure, Vec<Sweep>)]) -> Fig
         let points = || plot.curves.iter().flat_map(|curve| &curve.points);
         let content = Content {
             title: format!("{case}: {}", measure.what),
-            x: Axis::log("Poisson's ratio ν [1], as 1/(1 − 2ν)", points().map(|p| p.0))
-                .with_ticks(spread_out(&ratios)),
+            x: Axis::of(&plot.x, points().map(|p| p.0)).with_ticks(spread_out(&ratios)),
             // A ratio is compared with one.
             y: Axis::of(&plot.y, points().map(|p| p.1).chain((!measure.is_error()).then_some(1.0))),
             ..Content::of(plot, &styles)
@@ -137,11 +132,15 @@ fn plotted((case, measure, sweeps): &(String, &'static Measure, Vec<Sweep>)) -> 
         let (points, ids) = own.map(|(r, y)| ((stiffness(r.is.poisson), y), r.is.run.clone())).unzip();
         Curve::new(name.clone(), *family, points, ids)
     };
-    let y = if measure.is_error() { Scale::log(&label(measure.metric)) } else { Scale::linear(RATIO) };
+    let y = if measure.is_error() {
+        Scale::errors(measure.metric)
+    } else {
+        Scale::linear("tip deflection / exact", "1")
+    };
     Plot {
         case: case.clone(),
         title: format!("{case}: {} against Poisson's ratio", measure.what),
-        x: Scale::log("1/(1 − 2ν) [1], from compressible to incompressible"),
+        x: Scale::poisson_ratios(),
         y,
         curves: sweeps.iter().map(curve).collect(),
     }

@@ -38,8 +38,8 @@ pub(super) fn figure(runs: &[Run]) -> Option<Figure> {
     let plot = Plot {
         case: String::new(),
         title: format!("Within {}", wanted()),
-        x: Scale::log("time over that of the fastest method [1]"),
-        y: Scale::linear("share of its cases [1]"),
+        x: Scale::log("time over that of the fastest method", "1"),
+        y: Scale::linear("share of its cases", "1"),
         curves,
     };
     let styles = styles(&plot::labels(std::slice::from_ref(&plot)));

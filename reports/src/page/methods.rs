@@ -50,6 +50,7 @@ pub(super) struct RunColumns {
     settings: Vec<String>,
     solver: Vec<String>,
     seconds: Vec<Option<f32>>,
+    first_use: Vec<Option<f32>>,
     memory: Vec<Option<f64>>,
     errors: BTreeMap<&'static str, ErrorColumn>,
 }
@@ -103,6 +104,7 @@ impl Methods {
         runs.settings.push(settings.join(", "));
         runs.solver.push(is.linear_solver.clone().unwrap_or_default());
         runs.seconds.push(run.total().map(|t| t as f32));
+        runs.first_use.push(run.first_use().map(|t| t as f32));
         runs.memory.push(run.memory());
         for error in ERRORS {
             let of = error.whole();

@@ -5,8 +5,9 @@ use serde::Serialize;
 
 use super::methods::Methods;
 use crate::fronts::Clock;
-use crate::quantity::label;
+use crate::plot::Scale;
 use crate::questions::{Ask, Line, Timed};
+use crate::seconds::Seconds;
 
 #[derive(Serialize)]
 pub(super) struct AskView {
@@ -16,10 +17,10 @@ pub(super) struct AskView {
     what: &'static str,
     /// Whether the time is that of one solve in a prepared loop.
     repeated: bool,
-    /// Label of the time axis.
-    time: String,
-    /// Label of the error axis.
-    error: String,
+    /// Whether the times are those of all processors.
+    cpu: bool,
+    time: Scale,
+    error: Scale,
     scalar: bool,
     kernels: bool,
     /// Description of the reference of the runs and its own error.
@@ -65,8 +66,9 @@ impl AskView {
             title: ask.title.clone(),
             what: ask.question.name,
             repeated: ask.clock == Clock::Repeated,
+            cpu: ask.clock == Clock::First && ask.by == Seconds::Cpu,
             time: ask.time(),
-            error: label(ask.error),
+            error: Scale::errors(ask.error),
             scalar: ask.question.scalar,
             kernels: ask.kernels,
             reference: references.iter().find(of_case).map(described).or_else(|| ask.reference.clone()),

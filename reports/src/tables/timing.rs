@@ -18,7 +18,8 @@ pub(super) fn phases(runs: &[Run], machine: &Machine) -> Table {
             "On {}, {} threads. Times are wall-clock times (median ± interquartile range over repeats; no range for a \
              single repeat). If the machine was not quiet, or a run of the case had a wall-clock time of more than \
              1.2 times its CPU time, times are CPU times (median). If runs were concurrent, times are the shortest \
-             wall-clock time of the repeats. Memory is the peak of the method beyond the input (mesh, cloud, \
+             wall-clock time of the repeats. The first use is the wall-clock time of a first pass that was left out of the \
+             times because it used its memory for the first time: a single run takes this time. Memory is the peak of the method beyond the input (mesh, cloud, \
              reference), and the peak of the whole process. Transfer schemes have a separate table",
             machine.processor(),
             machine.threads
@@ -37,6 +38,7 @@ pub(super) fn phases(runs: &[Run], machine: &Machine) -> Table {
             ("solve [ms]", Spread),
             ("transfer [ms]", Spread),
             ("total [ms]", Spread),
+            ("first use [ms]", Number),
             ("memory [MB]", Number),
             ("process [MB]", Number),
         ],
@@ -58,6 +60,7 @@ pub(super) fn phases(runs: &[Run], machine: &Machine) -> Table {
             Cell::Text(run.by.word()),
         ];
         cells.extend(times.iter().map(|(m, s)| Cell::Spread(thousandths(*m), thousandths(*s))));
+        cells.push(Cell::Digits(thousandths(run.first_use()), 3));
         cells.extend(
             [run.memory(), run.memory_of_process()].map(|bytes| Cell::Digits(bytes.map(|b| b / 1e6), 3)),
         );
