@@ -118,15 +118,20 @@ fn finer_clouds_open_slits_as_elements_do() {
 #[test]
 fn schemes_that_take_values_from_across_a_slit_are_warned_about() {
     let dir = tempfile::tempdir().unwrap();
-    let warning = |tip: f64, schemes: &[&str]| {
+    let gauss = r#"basis = "linear", integration = { rule = "gauss", points = 4 }, essential = "penalty""#;
+    let warning = |method: &str, tip: f64, schemes: &[&str]| {
         let path = write(&dir, "slit.msh", &slit(2, tip, 0.3, 0.0));
+        let method = match method {
+            "cloud" => format!("{CLOUD}, support_scale = 1.6, {gauss}"),
+            element => format!(r#"family = "fem", element = "{element}""#),
+        };
         let probes: Vec<String> = (0..6)
             .flat_map(|k| [14.4, 15.6].map(|x| format!(r#"["{x} mm", "4 mm", "{} mm"]"#, 10 + k)))
             .collect();
         let schemes: Vec<String> =
             schemes.iter().map(|name| format!(r#"{{ to = "probes", scheme = "{name}" }}"#)).collect();
         let scene = format!(
-            r#"{}method = [{{ id = "gauss", {CLOUD}, size = {{ file = "{path}" }}, support_scale = 1.6, basis = "linear", integration = {{ rule = "gauss", points = 4 }}, essential = "penalty" }}]
+            r#"{}method = [{{ id = "one", {method}, size = {{ file = "{path}" }} }}]
 output = {{ probes = [{}], transfer = [{}] }}
 "#,
             head(&path),
@@ -139,12 +144,15 @@ output = {{ probes = [{}], transfer = [{}] }}
         let warnings = run["warnings"].as_array().unwrap();
         warnings.iter().find(|w| w["code"] == "gap-bridged").cloned()
     };
-    let found = warning(5.4, &["shepard", "barycentric", "mls-linear"]).unwrap();
-    let message = found["message"].as_str().unwrap();
-    assert!(message.contains("of 12 targets") && message.contains("(shepard, mls-linear)"), "{message}");
-    assert!(found["value"].as_f64().unwrap() > 0.1, "{found}");
-    assert!(warning(5.4, &["barycentric"]).is_none());
-    assert!(warning(99.0, &["shepard", "mls-linear"]).is_none(), "no slit");
+    for method in ["cloud", "tet4", "tet10"] {
+        let found = warning(method, 5.4, &["shepard", "barycentric", "mls-linear"]).expect(method);
+        let message = found["message"].as_str().unwrap();
+        let bridging = message.contains("of 12 targets") && message.contains("(shepard, mls-linear)");
+        assert!(bridging, "{method}: {message}");
+        assert!(found["value"].as_f64().unwrap() > 0.1, "{method}: {found}");
+        assert!(warning(method, 5.4, &["barycentric"]).is_none(), "{method}");
+        assert!(warning(method, 99.0, &["shepard", "mls-linear"]).is_none(), "{method}: no slit");
+    }
 }
 
 /// A block with a rod on its top.

@@ -269,8 +269,8 @@ impl RunKeys {
 }
 
 /// Limits on the runs of a study and on the scenes along its axes, which are all read before the first run.
-const MOST_RUNS: f64 = 50_000.0;
-const MOST_SCENES: usize = 500;
+const MOST_RUNS: f64 = 100_000.0;
+const MOST_SCENES: usize = 5000;
 
 /// Reports the run table at which a study exceeds the limits; returns the numbers of runs and scenes so far.
 fn few_enough(run: &Run, scene: &Scene, (runs, scenes): (f64, usize), report: &Report) -> (f64, usize) {

@@ -90,7 +90,7 @@ fn displacement(
 ) -> Result<Vec<Vector3>, Failure> {
     let order = mesh.uniform_kind().map_or(1, CellKind::order);
     let method = Discretisation::of_elements(mesh, order, false, Dilation::Standard);
-    let plan = plan(&method, setup, Wanted { targets: false, schemes: false });
+    let plan = plan(&method, setup, Wanted::default());
     let start = Instant::now();
     let prepared = prepare(&method, setup, &plan, &mut meters.counters)?.under(fixed, forces);
     meters.timings.book("prepare", start.elapsed().as_secs_f64());

@@ -75,7 +75,7 @@ pub(crate) struct Request<'a> {
     pub(crate) probes: &'a [Point3],
     /// Points where displacements are compared; the method's own nodes if empty.
     pub(crate) targets: &'a [Point3],
-    /// Transfer schemes that interpolate a cloud's displacement to the targets.
+    /// Transfer schemes that interpolate a method's displacement to the targets.
     pub(crate) schemes: &'a [(SchemeSettings, Scheme)],
     /// Whether the surface displacement is kept for pictures.
     pub(crate) picture: bool,

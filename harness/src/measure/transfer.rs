@@ -1,9 +1,11 @@
-//! Transfer of a cloud's displacement to other points by common schemes, compared with the method's own shape
-//! functions.
+//! Transfer of a method's nodal displacement to other points by common schemes, compared with the method's own
+//! shape functions.
 
 use std::time::Instant;
 
 use catalogue::{metric, warning};
+use efg::across_gaps;
+use geometry::generate::tets_on_nodes;
 use geometry::{Point3, Vector3};
 use shape::{RowBlocks, Rows};
 
@@ -18,9 +20,11 @@ use crate::outcome::{Counters, Metric, SchemeSettings, Transfer, Warning, push};
 /// Name of the method's own shape functions among the schemes; they need no transfer.
 pub const OWN_ROWS: &str = "own-rows";
 
-/// Difference from the cloud's own displacement above which a target with nodes across a gap counts, relative
+/// Difference from the method's own displacement above which a target with nodes across a gap counts, relative
 /// to the largest displacement of the targets.
 const JUMP: f64 = 0.01;
+/// Distance, in node spacings, within which nodes across a gap are searched.
+const REACH: f64 = 2.0;
 /// Sum of the weights of nodes across a gap above which a target has such nodes.
 const BRIDGE: f64 = 0.01;
 
@@ -28,7 +32,7 @@ const BRIDGE: f64 = 0.01;
 /// resolution of the clock.
 const APPLIES: usize = 20;
 
-/// Transfers from the cloud's nodes to the targets by every requested scheme, then by the method's own shape
+/// Transfers from the method's nodes to the targets by every requested scheme, then by the method's own shape
 /// functions. The schemes interpolate the displacement at the nodes, not the nodal parameters, which are not
 /// displacements.
 ///
@@ -44,18 +48,23 @@ pub fn transfers(
     let Solved { method, prepared, solution, .. } = *run;
     let u = &solution.u;
     let nodes = method.nodes();
-    let at_nodes = prepared.source.at_points(nodes)?.0.rows().apply(u);
+    let at_nodes = match method.interpolates {
+        true => u.clone(),
+        false => prepared.source.at_points(nodes)?.0.rows().apply(u),
+    };
     let own = prepared.source.at_points(request.targets)?.0.rows().apply(u);
     let linear = |points: &[Point3]| -> Vec<Vector3> { points.iter().map(linear_field).collect() };
-    let across = prepared.source.across_gaps(request.targets)?;
+    let cells = tets_on_nodes(method.mesh());
+    let across = across_gaps(nodes, &cells, REACH * prepared.spacing, request.targets)
+        .map_err(shape::SourceError::from)?;
     let mut bridged: Vec<Bridged> = Vec::new();
     let transfers: Result<Vec<Transfer>, Failure> = request
         .schemes
         .iter()
         .map(|(settings, scheme)| {
             let name = scheme.name();
-            // Barycentric interpolation needs a mesh whose nodes are those of the cloud.
-            let mesh = Some(method.mesh()).filter(|mesh| mesh.points() == nodes);
+            // Barycentric interpolation needs tetrahedra on the nodes.
+            let mesh = Some(&cells).filter(|cells| cells.points() == nodes);
             let build = || scheme.rows(nodes, mesh, request.targets);
             let ((rows, info), timing) = timed(request, build, |(rows, _)| rows.rows(), &at_nodes)?;
             counters.transfer_tables += 1;
@@ -72,7 +81,7 @@ pub fn transfers(
             }
             if let Some(beside) = request.beside {
                 push_difference(&mut metrics, &metric::BESIDE_RMS, &field, &beside.targets);
-                // The other method's field, evaluated at this cloud's nodes and interpolated back, isolates
+                // The other method's field, evaluated at this method's nodes and interpolated back, isolates
                 // the error of the transfer.
                 if let Some(at) = &beside.at {
                     let moved = rows.rows().apply(&at(nodes)?);
@@ -107,14 +116,14 @@ pub fn transfers(
 /// A scheme that takes values from across a gap.
 struct Bridged {
     scheme: &'static str,
-    /// Number of targets that have such values and differ from the cloud's own by more than [`JUMP`].
+    /// Number of targets that have such values and differ from the method's own by more than [`JUMP`].
     targets: usize,
     /// Largest of these differences, relative to the largest displacement of the targets.
     largest: f64,
 }
 
 impl Bridged {
-    /// Compares the displacement of a scheme with the cloud's own at the targets that have nodes across a gap
+    /// Compares the displacement of a scheme with the method's own at the targets that have nodes across a gap
     /// in their rows; `None` if they agree.
     fn new(
         scheme: &'static str,
@@ -143,7 +152,7 @@ fn bridging(bridged: &[Bridged], own: &[Vector3]) -> Option<Warning> {
     let whole = own.iter().map(|u| u.norm()).fold(0.0, f64::max);
     let message = format!(
         "transfer schemes ({}) use nodes across a gap of the body: with {:?} the displacement at {} of {} targets differs by up to {:.4} mm \
-         ({:.1} % of the largest) from that of the cloud. Use \"barycentric\", or the cloud's own shape functions ({OWN_ROWS})",
+         ({:.1} % of the largest) from that of the method. Use \"barycentric\", or the method's own shape functions ({OWN_ROWS})",
         bridged.iter().map(|each| each.scheme).collect::<Vec<_>>().join(", "),
         worst.scheme,
         worst.targets,

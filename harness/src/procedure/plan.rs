@@ -10,10 +10,12 @@ use crate::outcome::{Counters, Plan, StageName};
 use crate::scenario::setup::Setup;
 
 /// Requests for the method's displacement at points other than its own nodes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Wanted {
-    /// Whether displacements are requested at points that are not the method's nodes.
+    /// Whether displacements are requested at targets, which need not be the method's nodes.
     pub(crate) targets: bool,
+    /// Whether the targets are the nodes of a method whose nodal values are displacements.
+    pub(crate) own_nodes: bool,
     /// Whether transfer schemes are to be compared.
     pub(crate) schemes: bool,
 }
@@ -42,7 +44,7 @@ pub(crate) fn plan(method: &Discretisation, setup: &Setup, wanted: Wanted) -> Pl
     add(StageName::Contact, contact(setup));
     add(StageName::Friction, friction(setup));
     add(StageName::Transfer, transfer(method, wanted));
-    add(StageName::Schemes, schemes(method, wanted));
+    add(StageName::Schemes, schemes(wanted));
     if let Some(why) = stages.no_transfer {
         plan.skip(StageName::Transfer, why);
         plan.skip(StageName::Schemes, why);
@@ -187,12 +189,11 @@ fn transfer(method: &Discretisation, wanted: Wanted) -> (bool, String) {
     (runs, why.into())
 }
 
-fn schemes(method: &Discretisation, wanted: Wanted) -> (bool, String) {
-    let cloud = !method.interpolates;
-    let why = match (wanted.schemes, cloud) {
-        (true, true) => "requested, for a comparison",
-        (true, false) => "the reference nodes are nodes of the elements",
+fn schemes(wanted: Wanted) -> (bool, String) {
+    let why = match (wanted.schemes, wanted.own_nodes) {
+        (true, false) => "requested, for a comparison",
+        (true, true) => "the targets are the nodes of the elements",
         (false, _) => "none requested",
     };
-    (wanted.schemes && cloud, why.into())
+    (wanted.schemes && !wanted.own_nodes, why.into())
 }

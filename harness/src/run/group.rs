@@ -199,7 +199,7 @@ impl<'a> Group<'a> {
             return Err(Failure::Run(format!("no mesh of {id} coarser than its {most} nodes can be made")));
         }
         let setup = scenario.setup().map_err(failed)?;
-        let plan = plan(&discretisation, &setup, Wanted { targets: true, schemes: false });
+        let plan = plan(&discretisation, &setup, Wanted { targets: true, ..Wanted::default() });
         let solved = run(scenario.identity(), plan, &discretisation, &setup, &self.request())
             .map_err(|failure| failed(scenario.locate(failure)))?;
         *counters += solved.outcome.counters;
@@ -234,7 +234,8 @@ impl<'a> Group<'a> {
     /// Solves a method once, without repeats and without a comparison.
     fn solved(&self, scenario: &Scenario, discretisation: &Discretisation) -> Result<FinishedRun, Failure> {
         let setup = scenario.setup()?;
-        let plan = plan(discretisation, &setup, Wanted { targets: !self.targets.is_empty(), schemes: false });
+        let plan =
+            plan(discretisation, &setup, Wanted { targets: !self.targets.is_empty(), ..Wanted::default() });
         let request = Request { watch: self.watch.as_deref(), ..Request::alone(&self.probes, &self.targets) };
         run(scenario.identity(), plan, discretisation, &setup, &request)
             .map_err(|failure| scenario.locate(failure))
@@ -299,7 +300,7 @@ impl<'a> Group<'a> {
         let size = size(&discretisation);
         let setup =
             scenario.setup().map_err(|failure| Unfinished { failure, plan: Plan::default(), size })?;
-        let plan = plan(&discretisation, &setup, self.wanted());
+        let plan = plan(&discretisation, &setup, self.wanted(&discretisation));
         let integrated = match options.split.filter(|_| scenario.method.is_cloud()) {
             Some(rule) => {
                 let fail = |failure| Unfinished { failure, plan: plan.clone(), size };
@@ -308,7 +309,7 @@ impl<'a> Group<'a> {
             None => None,
         };
         let request = Request {
-            schemes: self.schemes_for(&discretisation),
+            schemes: &self.schemes,
             picture: options.picture,
             states: options.states,
             repeats: self.repeats,
@@ -382,19 +383,16 @@ impl<'a> Group<'a> {
     pub fn plan(&self, scenario: &Scenario) -> Result<(Plan, Sizes), Failure> {
         let (discretisation, setup) = (scenario.discretise()?, scenario.setup()?);
         region_check::check(&discretisation, &setup).map_err(|failure| scenario.locate(failure))?;
-        Ok((plan(&discretisation, &setup, self.wanted()), size(&discretisation)))
+        Ok((plan(&discretisation, &setup, self.wanted(&discretisation)), size(&discretisation)))
     }
 
-    fn wanted(&self) -> Wanted {
+    fn wanted(&self, method: &Discretisation) -> Wanted {
         // The targets count before the reference has run, so that the plan matches the run.
         let nodes_of_reference =
             matches!(self.scene.reference, Some(Reference::Method { .. } | Reference::Record(_)));
         let targets = nodes_of_reference || !self.targets.is_empty();
-        Wanted { targets, schemes: targets && !self.schemes.is_empty() }
-    }
-
-    fn schemes_for(&self, method: &Discretisation) -> &[(SchemeSettings, Scheme)] {
-        if method.interpolates { &[] } else { &self.schemes }
+        let own_nodes = method.interpolates && self.targets == method.nodes();
+        Wanted { targets, own_nodes, schemes: targets && !self.schemes.is_empty() }
     }
 }
 

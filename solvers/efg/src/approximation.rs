@@ -200,20 +200,6 @@ impl Approximation {
         Ok(Approximation { gaps, ..self })
     }
 
-    /// Returns, for each point, the nodes (ascending) within the largest support radius to which the path
-    /// through the body has a detour. The list is empty for a body without gaps.
-    pub(crate) fn across_gaps(&self, points: &[Point3]) -> Result<Vec<Vec<u32>>, EfgError> {
-        let Some(gaps) = &self.gaps else { return Ok(Vec::new()) };
-        let nodes = &self.nodes[..self.supports.balls.len()];
-        let reach = self.supports.widest();
-        let across = |(x, cell): (&Point3, u32)| {
-            let detours = gaps.detours(x, cell, nodes, reach);
-            let near = |&n: &u32| detours[n as usize] > 0.0 && (nodes[n as usize] - x).norm() < reach;
-            (0..nodes.len() as u32).filter(near).collect()
-        };
-        Ok(points.par_iter().zip(gaps.cells(points, &self.nodes)?).map(across).collect())
-    }
-
     /// Couples the cloud to linear finite elements at the listed vertices (ascending) of a tet4 mesh.
     ///
     /// The vertices become nodes after those of the cloud, with the hat functions `N_h` of the cells as shape

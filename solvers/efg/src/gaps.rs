@@ -23,6 +23,7 @@ use shape::{Point3, Vector3};
 
 use crate::detour::Detour;
 use crate::error::EfgError;
+use crate::mls::Ball;
 use crate::row_list::RowList;
 use crate::supports::Supports;
 use ways::{Graph, Ways};
@@ -60,6 +61,29 @@ struct Cut {
     at: [f64; 4],
 }
 
+/// Returns, for each point (m), the nodes (ascending) within `reach` (m) across a gap of the body, whose tet4
+/// cells are given: the path through the body is more than 1.5 times as long as the straight line. The list
+/// is empty for a body without gaps.
+///
+/// # Errors
+/// A point that is not finite, or a cell that is not a tetrahedron or has no volume.
+pub fn across_gaps(
+    nodes: &[Point3],
+    cells: &Mesh,
+    reach: f64,
+    points: &[Point3],
+) -> Result<Vec<Vec<u32>>, EfgError> {
+    let balls = nodes.iter().map(|node| Ball { at: (*node).into(), radius: reach }).collect();
+    let supports = Supports { balls, ellipsoids: Vec::new() };
+    let Some(gaps) = Gaps::find(nodes, &supports, cells)? else { return Ok(Vec::new()) };
+    let across = |(x, cell): (&Point3, u32)| {
+        let detours = gaps.detours(x, cell, nodes, reach);
+        let near = |&n: &u32| detours[n as usize] > 0.0 && (nodes[n as usize] - x).norm() < reach;
+        (0..nodes.len() as u32).filter(near).collect()
+    };
+    Ok(points.par_iter().zip(gaps.cells(points, nodes)?).map(across).collect())
+}
+
 /// A boundary face: its centre, outward unit normal, and the radius of the ball around it, m.
 struct Face {
     centre: Point3,
@@ -79,10 +103,14 @@ impl Gaps {
             (0..background.cell_count()).map(|cell| [0, 1, 2, 3].map(|k| background.cell(cell)[k])).collect();
         let homes = if nodes == background.points() {
             // Assigned by number, because touching pieces have cells at the same place.
-            let mut homes = vec![0; nodes.len()];
+            let mut homes = vec![u32::MAX; nodes.len()];
             for (cell, corners) in corners.iter().enumerate() {
                 corners.iter().for_each(|&vertex| homes[vertex as usize] = cell as u32);
             }
+            let others: Vec<usize> = (0..nodes.len()).filter(|&n| homes[n] == u32::MAX).collect();
+            let places: Vec<Point3> = others.iter().map(|&n| nodes[n]).collect();
+            let found = locator.locate(&places)?;
+            others.iter().zip(found).for_each(|(&n, place)| homes[n] = place.cell);
             homes
         } else {
             locator.locate(nodes)?.into_iter().map(|place| place.cell).collect()

@@ -51,6 +51,7 @@ pub use coupling::{border_vertices, coupled_nodes};
 pub use ellipsoid::Ellipsoid;
 pub use error::EfgError;
 pub use facets::{flux_rows, surface_rows};
+pub use gaps::across_gaps;
 pub use gauss::{gauss_regions, gauss_rows};
 pub use grid::{GridInfo, grid_rows};
 pub use info::MlsInfo;

@@ -339,10 +339,6 @@ impl RowSource for CloudSource {
     fn gradients_at(&self, points: &[Point3]) -> Result<GradRows, SourceError> {
         Ok(self.near(points, |points| self.approximation.grad_rows(points))?.0)
     }
-
-    fn across_gaps(&self, points: &[Point3]) -> Result<Vec<Vec<u32>>, SourceError> {
-        Ok(self.approximation.across_gaps(points)?)
-    }
 }
 
 fn diagnostics(info: &MlsInfo) -> Vec<(&'static Metric, f64)> {

@@ -17,7 +17,7 @@ mod wedges;
 
 pub use ball::{Drawn, ball_mesh, half_kidney_mesh, kidney_mesh};
 pub use boxes::{Jitter, box_mesh};
-pub use convert::{converted, is_convertible, raise_order, to_tets, turned};
+pub use convert::{converted, is_convertible, raise_order, tets_on_nodes, to_tets, turned};
 pub use cylinder::cylinder_mesh;
 pub use shell::{ShellExtent, sphere_shell_mesh};
 

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 
 use tissuebench_geometry::generate::{
     Drawn, GenerateError, Jitter, ShellExtent, ball_mesh, box_mesh, cylinder_mesh, half_kidney_mesh,
-    kidney_mesh, raise_order, sphere_shell_mesh, to_tets,
+    kidney_mesh, raise_order, sphere_shell_mesh, tets_on_nodes, to_tets,
 };
 use tissuebench_geometry::shapes::{Kidney, Shape};
 use tissuebench_geometry::{CellKind, Facet, Mesh, Point3, Vector3, quality};
@@ -196,6 +196,17 @@ fn curved_nodes_lie_on_their_surfaces() {
         on(&cylinder_mesh(kind, 0.3, 0.8, [3, 2], 1.0).unwrap(), "top", &|p| p.z, 0.8);
         on(&kidney_mesh(kind, 3).unwrap(), "surface", &|p| Kidney.level(p), 0.0);
     }
+}
+
+#[test]
+fn tetrahedra_on_the_nodes_of_quadratic_cells_keep_the_numbers() {
+    let linear = unit_box(CellKind::Hex8, [3, 2, 1], None);
+    let quadratic = raise_order(&linear);
+    let (few, all) = (to_tets(&linear), tets_on_nodes(&quadratic));
+    assert_eq!(all.points(), quadratic.points());
+    assert_eq!(all.cell_count(), few.cell_count());
+    // Corners come first in a mesh whose order was raised.
+    assert!((0..all.cell_count()).all(|cell| all.cell(cell) == few.cell(cell)));
 }
 
 #[test]

@@ -120,10 +120,4 @@ pub trait RowSource: Send + Sync {
 
     /// Computes shape values and gradients at points, as [`at_points`](RowSource::at_points) does.
     fn gradients_at(&self, points: &[Point3]) -> Result<GradRows, SourceError>;
-
-    /// Returns, for each point, the nodes nearby (ascending) across a gap of the body: the path through the
-    /// body is much longer than the straight line. The list is empty if there are no gaps.
-    fn across_gaps(&self, _points: &[Point3]) -> Result<Vec<Vec<u32>>, SourceError> {
-        Ok(Vec::new())
-    }
 }

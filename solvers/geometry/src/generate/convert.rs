@@ -42,12 +42,26 @@ pub fn converted(mesh: Mesh, kind: CellKind) -> Option<Mesh> {
 /// through its lowest-numbered node (Dompierre et al. 1999), so neighbours agree on the cut and the mesh is
 /// conforming for any arrangement. In a box numbered along its axes this is Kuhn's subdivision.
 pub fn to_tets(mesh: &Mesh) -> Mesh {
+    let (nodes, first) = cut_all(mesh);
+    divided(mesh, TET, nodes, &first)
+}
+
+/// Divides a mesh into the linear tetrahedra of [`to_tets`], in one region. All nodes keep their numbers; nodes
+/// along the edges of quadratic cells belong to no tetrahedron.
+pub fn tets_on_nodes(mesh: &Mesh) -> Mesh {
+    let (nodes, _) = cut_all(mesh);
+    let kinds = vec![TET; nodes.len() / 4];
+    Mesh::from_flat(mesh.points().to_vec(), kinds, nodes).expect("parts of valid cells are valid")
+}
+
+/// Returns the corners of the tetrahedra of all cells; cell `c` has the tetrahedra `first[c]..first[c + 1]`.
+fn cut_all(mesh: &Mesh) -> (Vec<u32>, Vec<usize>) {
     let (mut nodes, mut first) = (Vec::new(), vec![0]);
     for cell in 0..mesh.cell_count() {
         cut(mesh.kind(cell), mesh.cell(cell), &mut nodes);
         first.push(nodes.len() / 4);
     }
-    divided(mesh, TET, nodes, &first)
+    (nodes, first)
 }
 
 fn cut(kind: CellKind, nodes: &[u32], tets: &mut Vec<u32>) {
