@@ -51,7 +51,7 @@ fn plates_push_with_the_force_that_their_closure_takes() {
         // The penetration is the same at both plates.
         let height = 20e-3 - 3e-3 + 2.0 * metric(object, "penetration");
         let exact = -uniaxial(height / 20e-3) * 1.6e-3;
-        // The cloud's sides are constrained by a penalty of 1e4 E / h.
+        // The cloud's sides are constrained by a penalty of 1e3 E / h.
         let tolerance = if id == "efg" { 1e-3 } else { 1e-7 };
         let found = metric(object, "tool-force");
         assert!((found / exact - 1.0).abs() < tolerance, "{id}: {found} {exact}");
