@@ -19,7 +19,7 @@ use cases::scene::Procedure;
 use crate::error::Failure;
 use crate::outcome::timing::Meters;
 
-pub(crate) use plan::{Wanted, conclude, plan};
+pub(crate) use plan::{Schemes, Wanted, conclude, plan};
 pub(crate) use problem::Problem;
 pub(crate) use refine::refined;
 pub(crate) use solution::{Solution, StepHistory, Vibration};

@@ -14,10 +14,19 @@ use crate::scenario::setup::Setup;
 pub(crate) struct Wanted {
     /// Whether displacements are requested at targets, which need not be the method's nodes.
     pub(crate) targets: bool,
-    /// Whether the targets are the nodes of a method whose nodal values are displacements.
-    pub(crate) own_nodes: bool,
-    /// Whether transfer schemes are to be compared.
-    pub(crate) schemes: bool,
+    pub(crate) schemes: Schemes,
+}
+
+/// Whether transfer schemes are to be compared, and why not.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) enum Schemes {
+    #[default]
+    NotRequested,
+    /// The targets are the nodes of a method whose nodal values are displacements.
+    OwnNodes,
+    /// The run is the reference of the others.
+    OfReference,
+    Compared,
 }
 
 /// Poisson's ratio below which a volumetric projection is not worth its cost (kappa < 10 mu).
@@ -190,10 +199,13 @@ fn transfer(method: &Discretisation, wanted: Wanted) -> (bool, String) {
 }
 
 fn schemes(wanted: Wanted) -> (bool, String) {
-    let why = match (wanted.schemes, wanted.own_nodes) {
-        (true, false) => "requested, for a comparison",
-        (true, true) => "the targets are the nodes of the elements",
-        (false, _) => "none requested",
+    let why = match wanted.schemes {
+        Schemes::NotRequested => "none requested",
+        Schemes::OwnNodes => "the targets are the nodes of the elements",
+        Schemes::OfReference => {
+            "this run is the reference, with which transferred displacements are compared"
+        }
+        Schemes::Compared => "requested, for a comparison",
     };
-    (wanted.schemes && !wanted.own_nodes, why.into())
+    (wanted.schemes == Schemes::Compared, why.into())
 }

@@ -23,7 +23,7 @@ use crate::outcome::{
     Counters, Metric, Outcome, Plan, SchemeSettings, Size as Sizes, Unfinished, Warning, Watch,
 };
 use crate::prepare::region_check;
-use crate::procedure::{Wanted, plan};
+use crate::procedure::{Schemes, Wanted, plan};
 use crate::scenario::{Scenario, point, rule, tools, warnings};
 
 /// Data shared by all runs of a scene at one Poisson's ratio: probes, targets, transfer schemes and
@@ -300,7 +300,7 @@ impl<'a> Group<'a> {
         let size = size(&discretisation);
         let setup =
             scenario.setup().map_err(|failure| Unfinished { failure, plan: Plan::default(), size })?;
-        let plan = plan(&discretisation, &setup, self.wanted(&discretisation));
+        let plan = plan(&discretisation, &setup, self.wanted(scenario, &discretisation));
         let integrated = match options.split.filter(|_| scenario.method.is_cloud()) {
             Some(rule) => {
                 let fail = |failure| Unfinished { failure, plan: plan.clone(), size };
@@ -383,16 +383,21 @@ impl<'a> Group<'a> {
     pub fn plan(&self, scenario: &Scenario) -> Result<(Plan, Sizes), Failure> {
         let (discretisation, setup) = (scenario.discretise()?, scenario.setup()?);
         region_check::check(&discretisation, &setup).map_err(|failure| scenario.locate(failure))?;
-        Ok((plan(&discretisation, &setup, self.wanted(&discretisation)), size(&discretisation)))
+        Ok((plan(&discretisation, &setup, self.wanted(scenario, &discretisation)), size(&discretisation)))
     }
 
-    fn wanted(&self, method: &Discretisation) -> Wanted {
+    fn wanted(&self, scenario: &Scenario, method: &Discretisation) -> Wanted {
         // The targets count before the reference has run, so that the plan matches the run.
         let nodes_of_reference =
             matches!(self.scene.reference, Some(Reference::Method { .. } | Reference::Record(_)));
         let targets = nodes_of_reference || !self.targets.is_empty();
-        let own_nodes = method.interpolates && self.targets == method.nodes();
-        Wanted { targets, own_nodes, schemes: targets && !self.schemes.is_empty() }
+        let schemes = match &self.scene.reference {
+            _ if !targets || self.schemes.is_empty() => Schemes::NotRequested,
+            _ if method.interpolates && self.targets == method.nodes() => Schemes::OwnNodes,
+            Some(Reference::Method { id, size: None }) if *id == scenario.method.id => Schemes::OfReference,
+            _ => Schemes::Compared,
+        };
+        Wanted { targets, schemes }
     }
 }
 
