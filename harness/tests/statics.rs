@@ -232,6 +232,27 @@ fn a_reference_that_ends_early_is_compared_with_as_far_as_it_came() {
 }
 
 #[test]
+fn a_cloud_keeps_a_large_factor_and_reaches_the_same_force() {
+    let dir = tempfile::tempdir().unwrap();
+    let run = |cells: &str| {
+        let text = PRESSED.replace("[3, 3, 2]", cells);
+        let done =
+            tissuebench(&["run", &write(&dir, "cloud.toml", &text), "--method", "efg", "--format", "json"]);
+        assert_eq!(done.code, 0, "{}", done.stderr);
+        let object = objects(&done.stdout).remove(0);
+        let work = |name: &str| object["work"][name].as_u64().unwrap();
+        let factors = [work("factorisations"), work("assemblies"), work("inner_iterations")];
+        (factors, metric(&object, "tool-force"))
+    };
+    // 144 and 2178 unknowns: a dense factor of every tangent, and a sparse factor for several.
+    let ([small, tangents, none], coarse) = run("[3, 3, 2]");
+    assert!(small >= tangents && none == 0, "{small} {tangents} {none}");
+    let ([large, tangents, some], fine) = run("[10, 10, 5]");
+    assert!(large < tangents && some > 0, "{large} {tangents} {some}");
+    assert!((fine / coarse - 1.0).abs() < 1e-3, "{fine} {coarse}");
+}
+
+#[test]
 fn bad_static_scenes_name_file_line_and_key() {
     let dir = tempfile::tempdir().unwrap();
     let law = "law = \"neo-hookean\", young = \"20 kPa\", poisson = 0.45";

@@ -182,7 +182,13 @@ fn a_slow_tool_with_inertia_presses_as_a_static_one() {
             .unwrap();
     let tools = [DrivenTool { tool: &tool, drive: Drive::Closure(4e-3) }];
     let body = StaticProblem { contact: Some(&contact), tools: &tools, ..block.body(&laws, &fixed) };
-    let newton = NewtonParams { tolerance: 1e-9, iterations: 25, chords: true, keeps: f64::INFINITY };
+    let newton = NewtonParams {
+        tolerance: 1e-9,
+        iterations: 25,
+        chords: true,
+        keeps: f64::INFINITY,
+        loosest: Some(NewtonParams::LOOSEST),
+    };
     let quasi =
         StaticParams { steps: 20, smallest: 1.0 / 64.0, newton, augmentations: 0, limit_within: None };
     let still = solve_static(&body, &quasi, |_, _| ()).unwrap();
@@ -314,7 +320,13 @@ fn what_ends_early_is_named() {
     let body = StaticProblem { loads: &loads, ..block.body(&laws, &fixed) };
     let mass = block.consistent(DENSITY);
     let problem = moving(&body, &mass, &[], &[]);
-    let newton = NewtonParams { tolerance: 1e-11, iterations: 2, chords: true, keeps: f64::INFINITY };
+    let newton = NewtonParams {
+        tolerance: 1e-11,
+        iterations: 2,
+        chords: true,
+        keeps: f64::INFINITY,
+        loosest: Some(NewtonParams::LOOSEST),
+    };
     let path =
         solve_in_time(&problem, &TimeParams { newton, smallest: 0.5, ..params(0.1, 5, 1.0) }, |_, _, _| ())
             .unwrap();

@@ -24,8 +24,8 @@ fn kept_factors_lead_to_the_same_end() {
         let model = Model::block(method, cells);
         let law = Law::NeoHookean(NeoHookean::new(YOUNG, 0.45).unwrap());
         let rough = ContactLaw::coulomb(1e7, 0.15, 1e6).unwrap();
-        let path = |keeps: f64| {
-            let newton = NewtonParams { keeps, chords: false, ..steps(4).newton };
+        let path = |keeps: f64, loosest: Option<f64>| {
+            let newton = NewtonParams { keeps, loosest, chords: false, ..steps(4).newton };
             press_by(
                 &model,
                 &law,
@@ -35,35 +35,37 @@ fn kept_factors_lead_to_the_same_end() {
             )
             .0
         };
-        let anew = path(f64::INFINITY);
-        let kept = path(0.0);
-        assert_eq!(anew.steps.len(), kept.steps.len());
-        for (a, b) in anew.steps.iter().zip(&kept.steps) {
-            assert_eq!(
-                (a.stable, a.gave_way),
-                (b.stable, b.gave_way),
-                "{method:?}: {:?} {:?}",
-                a.iterations,
-                b.iterations
-            );
-            for (a, b) in a.tools.iter().zip(&b.tools) {
-                assert!(
-                    (a.force - b.force).norm() < 1e-8 * a.force.norm(),
-                    "{method:?}: {} {}",
-                    a.force,
-                    b.force
+        let anew = path(f64::INFINITY, None);
+        for loosest in [Some(NewtonParams::LOOSEST), None] {
+            let kept = path(0.0, loosest);
+            assert_eq!(anew.steps.len(), kept.steps.len());
+            for (a, b) in anew.steps.iter().zip(&kept.steps) {
+                assert_eq!(
+                    (a.stable, a.gave_way),
+                    (b.stable, b.gave_way),
+                    "{method:?}: {:?} {:?}",
+                    a.iterations,
+                    b.iterations
                 );
+                for (a, b) in a.tools.iter().zip(&b.tools) {
+                    assert!(
+                        (a.force - b.force).norm() < 1e-8 * a.force.norm(),
+                        "{method:?}: {} {}",
+                        a.force,
+                        b.force
+                    );
+                }
             }
+            let far = anew.u.iter().zip(&kept.u).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
+            assert!(far < 1e-8 * 3e-3, "{method:?}: {far}");
+            assert!(anew.work.factorisations >= anew.work.assemblies, "{:?}", anew.work);
+            // One factor in double precision at the end of each step shows that the step is stable.
+            let work = kept.work;
+            assert!(
+                work.factorisations < work.assemblies && work.factorisations >= 4 && work.inner > 0,
+                "{work:?} {:?}",
+                anew.work
+            );
         }
-        let far = anew.u.iter().zip(&kept.u).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
-        assert!(far < 1e-8 * 3e-3, "{method:?}: {far}");
-        assert!(anew.work.factorisations >= anew.work.assemblies, "{:?}", anew.work);
-        // One factor in double precision at the end of each step shows that the step is stable.
-        let work = kept.work;
-        assert!(
-            work.factorisations < work.assemblies && work.factorisations >= 4 && work.inner > 0,
-            "{work:?} {:?}",
-            anew.work
-        );
     }
 }

@@ -28,7 +28,13 @@ const POISSON: f64 = 0.4999;
 /// Step parameters. The rounding of a residual grows with kappa / mu = 5000: 3e-11 for these meshes.
 fn params(count: usize) -> StaticParams {
     StaticParams {
-        newton: NewtonParams { tolerance: 1e-9, iterations: 30, chords: true, keeps: f64::INFINITY },
+        newton: NewtonParams {
+            tolerance: 1e-9,
+            iterations: 30,
+            chords: true,
+            keeps: f64::INFINITY,
+            loosest: Some(NewtonParams::LOOSEST),
+        },
         ..steps(count)
     }
 }

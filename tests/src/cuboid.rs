@@ -99,7 +99,13 @@ pub fn params(end: f64, steps: usize, rho_inf: f64) -> TimeParams {
         smallest: 1e-3,
         accuracy: None,
         rho_inf,
-        newton: NewtonParams { tolerance: 1e-11, iterations: 20, chords: true, keeps: f64::INFINITY },
+        newton: NewtonParams {
+            tolerance: 1e-11,
+            iterations: 20,
+            chords: true,
+            keeps: f64::INFINITY,
+            loosest: Some(NewtonParams::LOOSEST),
+        },
         augmentations: 0,
     }
 }

@@ -144,7 +144,13 @@ pub fn steps(steps: usize) -> StaticParams {
     StaticParams {
         steps,
         smallest: 1.0 / 64.0,
-        newton: NewtonParams { tolerance: 1e-11, iterations: 30, chords: true, keeps: f64::INFINITY },
+        newton: NewtonParams {
+            tolerance: 1e-11,
+            iterations: 30,
+            chords: true,
+            keeps: f64::INFINITY,
+            loosest: Some(NewtonParams::LOOSEST),
+        },
         augmentations: 0,
         limit_within: None,
     }

@@ -41,7 +41,7 @@ pub(crate) fn static_params(asked: &Static) -> StaticParams {
 /// Parameters of Newton's method that factor every tangent.
 pub(super) fn newton_params(newton: &Newton) -> NewtonParams {
     let Newton { tolerance, iterations, .. } = *newton;
-    NewtonParams { tolerance, iterations, chords: true, keeps: f64::INFINITY }
+    NewtonParams { tolerance, iterations, chords: true, keeps: f64::INFINITY, loosest: None }
 }
 
 pub(super) fn stages(method: &Discretisation, setup: &Setup, asked: &Static) -> Stages {
@@ -85,11 +85,10 @@ fn path(problem: &Problem, asked: &Static, counters: &mut Counters) -> Result<(S
     let mut limit = Limit::default();
     let mut before = LoadStep::at_start(setup.tools.len());
     let mut params = static_params(asked);
-    if method.interpolates {
-        // A cloud on which tools slide may reach another equilibrium by inexact steps, as the kidney between
-        // jaws with 1331 nodes did. So factors are reused only for elements.
-        params.newton.keeps = NewtonParams::KEEPS;
-    }
+    params.newton.keeps = NewtonParams::KEEPS;
+    // A cloud on which tools slide may reach another equilibrium by inexact steps, as the kidney between jaws
+    // with 1331 nodes did.
+    params.newton.loosest = method.interpolates.then_some(NewtonParams::LOOSEST);
     let levels = levels(problem, asked)?;
     let path = with_static_problem(method, setup, prepared, contact.as_ref(), |problem| {
         let systems = systems(levels.as_ref());

@@ -159,7 +159,8 @@ fn nonlinear(ask: &Repeated, run: &Solved, params: &StaticParams) -> Result<Vec<
         let tolerance = ask.tolerance.unwrap_or(params.newton.tolerance);
         // Factors are reused only for elements, as on a load path.
         let keeps = if method.interpolates { NewtonParams::KEEPS_FRAMES } else { params.newton.keeps };
-        let params = StaticParams { newton: NewtonParams { tolerance, keeps, ..params.newton }, ..*params };
+        let newton = NewtonParams { tolerance, keeps, loosest: Some(NewtonParams::LOOSEST), ..params.newton };
+        let params = StaticParams { newton, ..*params };
         let mut frames = Frames::new(problem, &params)?;
         let (mut at, mut deviation) = (0, None);
         let mut latency = timed("repeated", ask, |k| {

@@ -13,7 +13,13 @@ use tissuebench_statics::{
 fn benches(c: &mut Criterion) {
     let mut group = c.benchmark_group("newton");
     group.sample_size(10);
-    let newton = NewtonParams { tolerance: 1e-9, iterations: 25, chords: true, keeps: NewtonParams::KEEPS };
+    let newton = NewtonParams {
+        tolerance: 1e-9,
+        iterations: 25,
+        chords: true,
+        keeps: NewtonParams::KEEPS,
+        loosest: Some(NewtonParams::LOOSEST),
+    };
     let params =
         StaticParams { steps: 1, smallest: 1.0 / 64.0, newton, augmentations: 0, limit_within: None };
     let laws = [Law::NeoHookean(NeoHookean::new(20e3, 0.49).unwrap())];

@@ -88,12 +88,12 @@ impl Newton<'_> {
             && (0..tools).all(|k| equations.force(k, 1.0).is_none())
     }
 
-    /// Largest relative residual to which systems may be solved; `None` for factors of their own.
+    /// Largest relative residual to which systems may be solved; `None` if the next step's needs do not count.
     pub(super) fn loosest(&self) -> Option<f64> {
         if self.iterates() {
             return Some(LOOSEST);
         }
-        self.factors.keeps(&self.policy).then_some(1e-2)
+        self.policy.params.loosest.filter(|_| self.factors.keeps(&self.policy))
     }
 
     /// Computes the Newton step by iterations; `None` if they do not converge.

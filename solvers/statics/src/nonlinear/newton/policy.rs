@@ -14,9 +14,11 @@ pub struct NewtonParams {
     /// Convergence is then no longer quadratic, but the run is a quarter faster (the published kidney, tet4).
     pub chords: bool,
     /// Cost ratio of factorisation to solution (in multiplications) above which factors are kept from one
-    /// tangent to the next and computed in single precision. Systems are then solved iteratively, to the
-    /// accuracy that the next step needs.
+    /// tangent to the next and computed in single precision. Systems are then solved iteratively.
     pub keeps: f64,
+    /// Largest relative residual to which these systems are solved if the next step needs no more; `None`
+    /// solves them as accurately as those with sliding friction.
+    pub loosest: Option<f64>,
 }
 
 impl NewtonParams {
@@ -26,6 +28,8 @@ impl NewtonParams {
     pub const KEEPS: f64 = 80.0;
     /// The same ratio for the frames of a simulator's loop, whose tangents differ less from one to the next.
     pub const KEEPS_FRAMES: f64 = 20.0;
+    /// Largest relative residual of a system with a kept factor.
+    pub const LOOSEST: f64 = 1e-2;
 }
 
 /// Record of one Newton iteration.

@@ -52,7 +52,8 @@ fn column(systems: LinearSystems) {
         tools: &[],
         systems,
     };
-    let params = NewtonParams { tolerance: 1e-9, iterations: 25, chords: true, keeps: f64::INFINITY };
+    let params =
+        NewtonParams { tolerance: 1e-9, iterations: 25, chords: true, keeps: f64::INFINITY, loosest: None };
     let mut newton = Newton::new(&problem, &params).unwrap();
     // Compressed straight, with a sway of a millionth of the length.
     let mut start = State::start(&problem);
