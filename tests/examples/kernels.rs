@@ -32,6 +32,8 @@ fn main() -> ExitCode {
         ("explicit-tet4", |times| force(CellKind::Tet4, false, times)),
         ("explicit-tet4-nodal", |times| force(CellKind::Tet4, true, times)),
         ("explicit-hex8", |times| force(CellKind::Hex8, false, times)),
+        ("explicit-hex20", |times| force(CellKind::Hex20, false, times)),
+        ("explicit-tet10", |times| force(CellKind::Tet10, false, times)),
         ("contact-jaw", jaw),
         ("transfer-apply", transfer),
     ];
@@ -173,7 +175,8 @@ fn assembled_cloud(times: usize) {
 }
 
 fn force(kind: CellKind, projected: bool, times: usize) {
-    let held = Held::new(kind, 10);
+    // About a thousand elements to six thousand; the points of a quadratic element are many.
+    let held = Held::new(kind, if kind.order() == 1 { 10 } else { 5 });
     let laws = [Law::NeoHookean(NeoHookean::new(20e3, 0.495).unwrap())];
     let groups = projected.then_some(&held.nodal);
     let body = ExplicitBody { volume: &held.volume, laws: &laws, region: &[], groups };

@@ -3,11 +3,11 @@
 
 use explicit::{ExplicitBody, InternalForce};
 use geometry::CellKind;
+use geometry::generate::box_mesh;
 use integration::block::{Block, gradient};
 use lanes::LanePath;
 use material::{Law, Material as _, NeoHookean};
-use shape::DilationGroups;
-use shape::Vector3;
+use shape::{DilationGroups, Matrix3, Point3, Vector3};
 
 /// Laws of two regions of different stiffness, mixed point by point.
 fn laws() -> [Law; 2] {
@@ -29,7 +29,7 @@ fn regions(block: &Block) -> Vec<u16> {
 
 /// Returns a bent, twisted and stretched state with strains of about 0.2, times `amount`.
 fn deformed(block: &Block, amount: f64) -> Vec<Vector3> {
-    let field = |x: &shape::Point3| {
+    let field = |x: &Point3| {
         let wave = Vector3::new((150.0 * x.y).sin(), (120.0 * x.z).cos(), (180.0 * x.x).sin()) * 1e-3;
         (gradient() * 5.0 * x.coords + wave) * amount
     };
@@ -119,10 +119,42 @@ fn hexahedra_agree_with_the_plain_loop() {
 
 #[test]
 fn rows_of_other_lengths_agree_with_the_plain_loop() {
-    for kind in [CellKind::Tet10, CellKind::Hex20] {
-        paths_agree(&Block::new(kind, [3, 3, 2]), None, "rows");
-    }
     paths_agree(&ragged(), None, "rows");
+    paths_agree(&Block::new(CellKind::Wedge15, [3, 3, 2]), None, "rows");
+}
+
+#[test]
+fn quadratic_cells_agree_with_the_plain_loop() {
+    let reduced = fem::VolumeRule::reduced();
+    for (kind, rule, name) in [
+        (CellKind::Tet10, fem::VolumeRule::STANDARD, "tet10"),
+        (CellKind::Hex20, fem::VolumeRule::STANDARD, "hex20"),
+        (CellKind::Hex20, reduced, "hex20"),
+    ] {
+        let mut block = Block::new(kind, [3, 3, 2]);
+        block.volume = fem::volume_rows(&block.mesh, &rule).unwrap();
+        let points = rule.points(kind);
+        let region = |q: usize| u16::from(q / points % 5 > 2);
+        paths_agree_by(&block, None, name, &region);
+        let groups = fem::element_dilation(&block.mesh, &rule).unwrap();
+        paths_agree_by(&block, Some(&groups), &format!("{name} mean dilation"), &region);
+        // Laws that change within an element are evaluated point by point.
+        paths_agree(&block, None, "rows");
+    }
+}
+
+/// The first cell is the reference of all others: a flat cell in a turned body costs no digits.
+#[test]
+fn a_flat_first_cell_serves_as_reference() {
+    for (kind, kernel) in [(CellKind::Tet10, "tet10"), (CellKind::Hex20, "hex20")] {
+        let max = Point3::new(0.05, 0.04, 0.02);
+        let cells = box_mesh(kind, Point3::origin(), max, [3, 3, 2], [1.0, 1.0, 10.0], None);
+        let turn = Matrix3::new(0.36, 0.48, -0.8, -0.8, 0.6, 0.0, 0.48, 0.64, 0.6);
+        let mut block = Block::new(kind, [1; 3]);
+        block.mesh = cells.unwrap().moved(|x| turn * x).unwrap();
+        block.volume = fem::volume_rows(&block.mesh, &fem::VolumeRule::STANDARD).unwrap();
+        paths_agree_of(&laws(), &block, None, kernel, &|_| 0);
+    }
 }
 
 /// Rows of various lengths, as in a meshless cloud: the points of a tet4 mesh have averaged rows of up to
@@ -201,7 +233,8 @@ fn bits_do_not_depend_on_threads() {
     let block = |kind, cells| Block::new(kind, cells);
     let tet4 = block(CellKind::Tet4, [12, 9, 9]);
     let hex8 = block(CellKind::Hex8, [12, 11, 9]);
-    let tet10 = block(CellKind::Tet10, [5, 5, 4]);
+    let tet10 = block(CellKind::Tet10, [9, 9, 6]);
+    let ragged = ragged();
     let nodal = DilationGroups::nodal(&tet4.volume).unwrap();
     let mean = fem::element_dilation(&hex8.mesh, &fem::VolumeRule::STANDARD).unwrap();
     let mut all = vec![laws()];
@@ -211,7 +244,8 @@ fn bits_do_not_depend_on_threads() {
         (&tet4, Some(&nodal), "tet4 nodal dilation"),
         (&hex8, None, "hex8"),
         (&hex8, Some(&mean), "hex8 mean dilation"),
-        (&tet10, None, "rows"),
+        (&tet10, None, "tet10"),
+        (&ragged, None, "rows"),
     ];
     for ((block, groups, kernel), laws) in tables.into_iter().flat_map(|t| all.iter().map(move |l| (t, l))) {
         let law = laws[0].name();
@@ -239,7 +273,7 @@ fn bits_do_not_depend_on_threads() {
 
 #[test]
 fn a_point_inside_out_is_named() {
-    for kind in [CellKind::Tet4, CellKind::Hex8] {
+    for kind in [CellKind::Tet4, CellKind::Hex8, CellKind::Tet10] {
         let block = Block::new(kind, [5, 4, 3]);
         let mean = fem::element_dilation(&block.mesh, &fem::VolumeRule::STANDARD).unwrap();
         for groups in [None, Some(&mean)] {

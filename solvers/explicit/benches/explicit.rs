@@ -11,6 +11,8 @@
 //! | tet4 nodal dilation | 176 (two passes) | 380 | 8.8 ns | 9.5 ns |
 //! | hex8 | 656 (8 x 9 map, 8 weights, 8 short nodes) | 2100 | 33 ns | 53 ns |
 //! | hex8 mean dilation | 656 (one pass) | 2500 | 33 ns | 63 ns |
+//! | tet10 | 340 (4 x 9 map, 4 weights, 10 short nodes) | 2200 | 17 ns | 55 ns |
+//! | hex20 | 2200 (27 x 9 map, 27 weights, 20 short nodes) | 25500 | 110 ns | 640 ns |
 //! | EFG, 31 neighbours | 806 (31 x (3 gradients + short node)) | 860 | 40 ns | 22 ns |
 //!
 //! The measured distance of each kernel to these bounds shows its bottleneck:
@@ -21,10 +23,14 @@
 //!   Copies of nodes and their sums, outside the kernel, take 5 ns. The kernel alone takes 52 ns (62), a
 //!   whole evaluation 58 ns (68), the best of 20 samples next to busy neighbours. Out of cache, hex8 waits
 //!   for memory: 130 ns (130).
+//! - tet10, hex20: products. The table of reference derivatives takes 19400 of the 25500 flops of hex20. At
+//!   two product vectors of eight per cycle of 4 GHz (AMD family 26, AVX-512) these take 150 ns, and the law
+//!   at 27 points some 80 ns: measured 260 ns in cache and 350 ns out of cache (AVX2 500 and 560), tet10 38
+//!   and 44 ns (65 and 71), next to busy neighbours. The kernel of rows, with 14 KB per element of hex20, takes
+//!   770 and 1560 ns (AVX2 950 and 1320).
 //! - EFG: loads, eight per neighbour (53 ns in cache, 90 ns out of cache).
 //!
-//! Other laws are covered by the benchmark `laws`. Quadratic elements, which use the EFG kernel, are not
-//! covered. Cases of the plain loop are not covered either: dilation of EFG rows, and of the linear and the
+//! Other laws are covered by the benchmark `laws`. Cases of the plain loop are not covered either: dilation of EFG rows, and of the linear and the
 //! St. Venant-Kirchhoff law.
 
 mod common;
@@ -66,9 +72,16 @@ fn benches(c: &mut Criterion) {
     let mut group = c.benchmark_group("explicit");
     group.sample_size(20).measurement_time(Duration::from_secs(2)).warm_up_time(Duration::from_millis(300));
     let laws = [Law::NeoHookean(NeoHookean::new(20e3, 0.495).unwrap())];
-    for (kind, cells, per_cell) in
-        [(CellKind::Tet4, 10, 6), (CellKind::Tet4, 26, 6), (CellKind::Hex8, 18, 1), (CellKind::Hex8, 46, 1)]
-    {
+    for (kind, cells, per_cell) in [
+        (CellKind::Tet4, 10, 6),
+        (CellKind::Tet4, 26, 6),
+        (CellKind::Hex8, 18, 1),
+        (CellKind::Hex8, 46, 1),
+        (CellKind::Tet10, 8, 6),
+        (CellKind::Tet10, 16, 6),
+        (CellKind::Hex20, 8, 1),
+        (CellKind::Hex20, 20, 1),
+    ] {
         let (volume, groups, u) = solid(kind, cells);
         for groups in [None, Some(&groups)] {
             let body = ExplicitBody { volume: &volume, laws: &laws, region: &[], groups };

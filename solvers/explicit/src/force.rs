@@ -5,26 +5,26 @@ use material::Material as _;
 use shape::{Layout, Matrix3, Vector3};
 
 use super::body::ExplicitBody;
-use super::hex8::Hex8;
+use super::cells::Cells;
 use super::moduli::LaneLaw;
+use super::quadratic::Quadratic;
 use super::rows::Ragged;
 use super::tet4::Tet4;
+use super::trilinear::Trilinear;
 use crate::error::{ExplicitError, InvertedPoint};
-use crate::kernel::{Kernel, KernelInfo};
+use crate::kernel::{Engine, Kernel, KernelInfo};
 use crate::plain;
 
 /// Evaluator of the internal force `f_I(u) = dE/du_I` of a body, for many evaluations.
 pub struct InternalForce<'a> {
     body: ExplicitBody<'a>,
-    engine: Engine,
+    /// Lane kernel; `None` for the plain loop.
+    engine: Option<Box<dyn Engine>>,
     path: LanePath,
 }
 
-enum Engine {
-    Plain,
-    Tet4(Tet4),
-    Hex8(Hex8),
-    Ragged(Ragged),
+fn boxed<E: Engine + 'static>(engine: E) -> Box<dyn Engine> {
+    Box::new(engine)
 }
 
 impl<'a> InternalForce<'a> {
@@ -37,15 +37,18 @@ impl<'a> InternalForce<'a> {
         body.check()?;
         let laws = || LaneLaw::of_regions(&body);
         let element = laws().and_then(|laws| match body.volume.layout() {
-            Layout::LinearTetrahedra => Tet4::new(&body, laws).map(Engine::Tet4),
-            Layout::TrilinearHexahedra => Hex8::new(&body, laws).map(Engine::Hex8),
-            Layout::General => None,
+            Layout::LinearTetrahedra => Tet4::new(&body, laws).map(boxed),
+            Layout::Cells { nodes: 8, points: 8 } => Cells::<Trilinear, 8, 8>::new(&body, laws).map(boxed),
+            Layout::Cells { nodes: 10, points: 4 } => quadratic::<10, 4>(&body, laws),
+            Layout::Cells { nodes: 20, points: 27 } => quadratic::<20, 27>(&body, laws),
+            Layout::Cells { nodes: 20, points: 8 } => quadratic::<20, 8>(&body, laws),
+            Layout::Cells { .. } | Layout::General => None,
         });
         let engine = element.or_else(|| match body.groups {
-            None => Ragged::new(&body, laws()?).map(Engine::Ragged),
+            None => Ragged::new(&body, laws()?).map(boxed),
             Some(_) => None,
         });
-        Ok(InternalForce { body, engine: engine.unwrap_or(Engine::Plain), path })
+        Ok(InternalForce { body, engine, path })
     }
 
     /// Uses the plain loop for any table: the reference of the other kernels.
@@ -55,7 +58,7 @@ impl<'a> InternalForce<'a> {
     /// As [`InternalForce::new`].
     pub fn plain(body: ExplicitBody<'a>) -> Result<InternalForce<'a>, ExplicitError> {
         body.check()?;
-        Ok(InternalForce { body, engine: Engine::Plain, path: LanePath::PORTABLE })
+        Ok(InternalForce { body, engine: None, path: LanePath::PORTABLE })
     }
 
     /// The body.
@@ -70,12 +73,7 @@ impl<'a> InternalForce<'a> {
 
     /// Returns the chosen kernel and its instruction set.
     pub fn info(&self) -> KernelInfo {
-        let kernel = match &self.engine {
-            Engine::Plain => Kernel::Plain,
-            Engine::Tet4(tet4) => tet4.kernel(),
-            Engine::Hex8(hex8) => hex8.kernel(),
-            Engine::Ragged(_) => Kernel::Rows,
-        };
+        let kernel = self.engine.as_ref().map_or(Kernel::Plain, |engine| engine.kernel());
         KernelInfo { kernel, path: kernel.is_parallel().then_some(self.path) }
     }
 
@@ -92,13 +90,10 @@ impl<'a> InternalForce<'a> {
     /// [`InvertedPoint`] if `J` is not positive at a point.
     pub fn evaluate(&mut self, u: &[Vector3], f: &mut [Vector3]) -> Result<(), InvertedPoint> {
         assert_eq!((u.len(), f.len()), (self.node_count(), self.node_count()), "one vector per node");
-        let not_inverted = match &mut self.engine {
-            Engine::Plain => return plain_forces(&self.body, u, f),
-            Engine::Tet4(tet4) => tet4.forces(self.path, u, f),
-            Engine::Hex8(hex8) => hex8.forces(self.path, u, f),
-            Engine::Ragged(ragged) => ragged.forces(self.path, u, f),
+        let Some(engine) = &mut self.engine else {
+            return plain_forces(&self.body, u, f);
         };
-        if !not_inverted {
+        if !engine.forces(self.path, u, f) {
             plain::check(self.body.volume, u)?;
             // A kernel and the plain loop may round `J` to different sides of zero: the plain loop decides.
             plain_forces(&self.body, u, f)?;
@@ -118,6 +113,13 @@ impl<'a> InternalForce<'a> {
             Some(groups) => plain::dilated_energy(self.body.volume, groups, density, u),
         }
     }
+}
+
+fn quadratic<const N: usize, const Q: usize>(
+    body: &ExplicitBody,
+    laws: Vec<LaneLaw>,
+) -> Option<Box<dyn Engine>> {
+    Cells::<Quadratic<N, Q>, N, Q>::new(body, laws).map(boxed)
 }
 
 fn plain_forces(body: &ExplicitBody, u: &[Vector3], f: &mut [Vector3]) -> Result<(), InvertedPoint> {

@@ -1,6 +1,7 @@
-//! Names of the kernels for internal forces, for plans and records.
+//! Kernels for internal forces: their names, for plans and records, and what they have in common.
 
 use lanes::LanePath;
+use shape::Vector3;
 
 /// Kernel for internal forces, chosen by table, dilation groups and laws.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -13,6 +14,14 @@ pub enum Kernel {
     Hex8,
     /// Trilinear hexahedra with one mean dilation per element, eight at a time.
     Hex8MeanDilation,
+    /// Quadratic tetrahedra with four points, eight elements at a time.
+    Tet10,
+    /// Quadratic tetrahedra with one mean dilation per element, eight at a time.
+    Tet10MeanDilation,
+    /// Serendipity hexahedra with 27 or 8 points, eight elements at a time.
+    Hex20,
+    /// Serendipity hexahedra with one mean dilation per element, eight at a time.
+    Hex20MeanDilation,
     /// Rows of any length, eight points at a time.
     Rows,
     /// One point after another on one thread, several times slower. Used for dilation groups other than those
@@ -23,11 +32,15 @@ pub enum Kernel {
 
 impl Kernel {
     /// All kernels.
-    pub const ALL: [Kernel; 6] = [
+    pub const ALL: [Kernel; 10] = [
         Kernel::Tet4,
         Kernel::Tet4NodalDilation,
         Kernel::Hex8,
         Kernel::Hex8MeanDilation,
+        Kernel::Tet10,
+        Kernel::Tet10MeanDilation,
+        Kernel::Hex20,
+        Kernel::Hex20MeanDilation,
         Kernel::Rows,
         Kernel::Plain,
     ];
@@ -39,6 +52,10 @@ impl Kernel {
             Kernel::Tet4NodalDilation => "tet4 nodal dilation",
             Kernel::Hex8 => "hex8",
             Kernel::Hex8MeanDilation => "hex8 mean dilation",
+            Kernel::Tet10 => "tet10",
+            Kernel::Tet10MeanDilation => "tet10 mean dilation",
+            Kernel::Hex20 => "hex20",
+            Kernel::Hex20MeanDilation => "hex20 mean dilation",
             Kernel::Rows => "rows",
             Kernel::Plain => "plain",
         }
@@ -57,4 +74,13 @@ pub struct KernelInfo {
     pub kernel: Kernel,
     /// Instruction set that the kernel runs on; `None` for the plain loop, which has no vector code.
     pub path: Option<LanePath>,
+}
+
+/// Lane kernel with the tables of one body.
+pub(super) trait Engine: Send + Sync {
+    /// The kernel's name.
+    fn kernel(&self) -> Kernel;
+
+    /// Computes internal forces, N. Returns false if `J` is not positive somewhere.
+    fn forces(&mut self, path: LanePath, u: &[Vector3], f: &mut [Vector3]) -> bool;
 }

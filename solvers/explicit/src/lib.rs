@@ -28,13 +28,13 @@
 //! ```
 
 mod body;
+mod cell_lanes;
+mod cells;
 mod central_difference;
 mod chunks;
 mod critical_step;
 mod error;
 mod force;
-mod hex8;
-mod hex8_lanes;
 mod kernel;
 mod mass;
 mod moduli;
@@ -42,6 +42,7 @@ mod nodal;
 mod plain;
 mod pressing;
 mod quad;
+mod quadratic;
 mod relaxation;
 mod rows;
 mod step_lanes;

@@ -8,6 +8,7 @@ use super::body::ExplicitBody;
 use super::chunks::{Border, ChunkNodes, Slot, load, split};
 use super::moduli::{LaneLaw, Moduli, stress};
 use super::quad::axpy;
+use crate::kernel::{Engine, Kernel};
 use lanes::{LanePath, on_path};
 use material::Law;
 use material::lane::invariants::{Invariants, piola};
@@ -63,9 +64,14 @@ impl Ragged {
         let slots = vec![Slot::ZERO; border.slot_count()];
         Some(Ragged { border, chunks, u: slots.clone(), f: slots, laws })
     }
+}
 
-    /// Computes internal forces, N. Returns false if `J` is not positive somewhere.
-    pub fn forces(&mut self, path: LanePath, u: &[Vector3], f: &mut [Vector3]) -> bool {
+impl Engine for Ragged {
+    fn kernel(&self) -> Kernel {
+        Kernel::Rows
+    }
+
+    fn forces(&mut self, path: LanePath, u: &[Vector3], f: &mut [Vector3]) -> bool {
         let Ragged { border, chunks, u: slots, f: sums, laws } = self;
         let not_inverted = border.for_each(slots, sums, |c, slots, sums| {
             load(border.chunk(c), u, slots);

@@ -13,7 +13,7 @@ use super::chunks::{Border, ChunkNodes, Slot, load, split};
 use super::moduli::LaneLaw;
 use super::nodal::Nodal;
 use super::tet4_lanes::{Block, Chunk, dilated, dilations, internal};
-use crate::kernel::Kernel;
+use crate::kernel::{Engine, Kernel};
 
 /// Elements per chunk, with about 512 distinct nodes, whose displacements and forces stay in the first-level
 /// cache.
@@ -60,13 +60,14 @@ impl Tet4 {
         let slots = vec![Slot::ZERO; border.slot_count()];
         Some(Tet4 { border, chunks, u: slots.clone(), f: slots, laws, nodal })
     }
+}
 
-    pub fn kernel(&self) -> Kernel {
+impl Engine for Tet4 {
+    fn kernel(&self) -> Kernel {
         if self.nodal.is_some() { Kernel::Tet4NodalDilation } else { Kernel::Tet4 }
     }
 
-    /// Computes internal forces, N. Returns false if `J` is not positive somewhere.
-    pub fn forces(&mut self, path: LanePath, u: &[Vector3], f: &mut [Vector3]) -> bool {
+    fn forces(&mut self, path: LanePath, u: &[Vector3], f: &mut [Vector3]) -> bool {
         let Tet4 { border, chunks, u: slots, f: sums, laws, nodal } = self;
         let not_inverted = match nodal {
             None => border.for_each(slots, sums, |c, slots, sums| {

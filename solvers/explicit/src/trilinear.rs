@@ -1,28 +1,32 @@
 //! Trilinear hexahedron with corners at `xi, eta, zeta = +-1` and 2 x 2 x 2 Gauss points, in terms of its
-//! coefficients.
+//! coefficients. `du/dxi` takes 156 operations per element and three components instead of 576.
 //!
 //! Sums and differences turn eight corner values into the coefficients of 1, xi, eta, xi eta, ..., xi eta
 //! zeta, in 24 operations. A derivative along one axis does not depend on that axis: it has four values at
 //! the eight points, computed by eight sums. The code has no loops, because a loop over lanes around an inner
 //! loop stays scalar.
 
-use geometry::element::{Element, Hex8};
-use shape::{Matrix3, Vector3};
+use geometry::element::{Element, HEX_CORNERS, Hex8};
+use lanes::{LANES, Lanes, madd};
+use material::lane::LaneStrain;
+use shape::{Matrix3, Vector3, VolumeRows};
+
+use super::cell_lanes::Cell;
 
 /// Gauss coordinate 1 / sqrt 3.
 const GAUSS: f64 = 0.577_350_269_189_625_8;
 
 /// Node at the corner with the given index bits: bit 0 for xi, 1 for eta, 2 for zeta. The table is its own
 /// inverse.
-pub(super) const NODE: [usize; 8] = [0, 1, 3, 2, 4, 5, 7, 6];
+const NODE: [usize; 8] = [0, 1, 3, 2, 4, 5, 7, 6];
 
 /// Returns `dN_a/dxi` at the Gauss point with the given signs.
-pub(super) fn reference(signs: &[f64; 3]) -> [Vector3; 8] {
+fn reference(signs: &[f64; 3]) -> [Vector3; 8] {
     Hex8::shape_grad(signs.map(|s| s * GAUSS)).map(Vector3::from)
 }
 
 /// Returns the `A` of `grad N_a = A dN_a/dxi` by least squares, if the fit has no remainder.
-pub(super) fn fit(grads: &[Vector3], table: &[Vector3; 8]) -> Option<Matrix3> {
+pub(super) fn fit(grads: &[Vector3], table: &[Vector3]) -> Option<Matrix3> {
     let (mut cross, mut square) = (Matrix3::zeros(), Matrix3::zeros());
     for (g, t) in grads.iter().zip(table) {
         cross += g * t.transpose();
@@ -51,7 +55,7 @@ fn coefficients(v: [f64; 8]) -> [f64; 8] {
 /// Returns the index 0 to 3 of the value of the derivative along `beta` at the point with index bits `q`, by
 /// the signs (low, high) of the two other axes.
 #[inline(always)]
-pub(super) fn value_at(beta: usize, q: usize) -> usize {
+fn value_at(beta: usize, q: usize) -> usize {
     match beta {
         0 => q >> 1,
         1 => (q & 1) + (q >> 2) * 2,
@@ -61,7 +65,7 @@ pub(super) fn value_at(beta: usize, q: usize) -> usize {
 
 /// Returns eight times the derivatives at the Gauss points, [beta][value], from corner values by index bits.
 #[inline(always)]
-pub(super) fn slopes(corners: [f64; 8]) -> [[f64; 4]; 3] {
+fn slopes(corners: [f64; 8]) -> [[f64; 4]; 3] {
     let c = coefficients(corners);
     let values = |flat: f64, along_a: f64, along_b: f64, both: f64| {
         let (low, high) = ((flat - along_a, along_b - both), (flat + along_a, along_b + both));
@@ -72,7 +76,7 @@ pub(super) fn slopes(corners: [f64; 8]) -> [[f64; 4]; 3] {
 
 /// Applies the transpose of [`slopes`].
 #[inline(always)]
-pub(super) fn slopes_back(d: &[[f64; 4]; 3]) -> [f64; 8] {
+fn slopes_back(d: &[[f64; 4]; 3]) -> [f64; 8] {
     let sums = |v: &[f64; 4]| {
         let (up, down) = ((v[2] + v[0], v[3] + v[1]), (v[2] - v[0], v[3] - v[1]));
         (up.1 + up.0, up.1 - up.0, down.1 + down.0, down.1 - down.0)
@@ -90,6 +94,94 @@ pub(super) fn slopes_back(d: &[[f64; 4]; 3]) -> [f64; 8] {
     let ((v0, v1), (v2, v3)) = (pair(a0, a1), pair(a2, a3));
     let ((v4, v5), (v6, v7)) = (pair(a4, a5), pair(a6, a7));
     [v0, v1, v2, v3, v4, v5, v6, v7]
+}
+
+/// Trilinear hexahedron. Points and nodes are indexed by corner bits.
+pub(super) struct Trilinear;
+
+impl Cell<8, 8> for Trilinear {
+    /// Derivatives `8 du_i/dxi_beta`, [i][beta][value].
+    type Slopes = [[[Lanes; 4]; 3]; 3];
+    const SLOPES: Self::Slopes = [[[[0.0; LANES]; 4]; 3]; 3];
+    const NODE: [usize; 8] = NODE;
+
+    /// Finds the order of the Gauss points, such as lowest axis fastest or corner order, in the first
+    /// element. The maps are divided by eight.
+    fn fitted(volume: &VolumeRows) -> Option<(Self, [usize; 8], Vec<Matrix3>)> {
+        let tables = NODE.map(|a| reference(&HEX_CORNERS[a]));
+        let mut place = [0; 8];
+        for q in 0..8 {
+            place[q] = (0..8).find(|&c| fit(volume.row(q).1, &tables[c]).is_some())?;
+        }
+        let map = |q| fit(volume.row(q).1, &tables[place[q % 8]]).map(|map| 0.125 * map);
+        let maps = (0..volume.weights().len()).map(map).collect::<Option<_>>()?;
+        Some((Trilinear, place, maps))
+    }
+
+    #[inline(always)]
+    fn slopes(&self, u: &[[Lanes; 8]; 3], out: &mut Self::Slopes) {
+        for i in 0..3 {
+            derivatives(&u[i], &mut out[i]);
+        }
+    }
+
+    #[inline(always)]
+    fn strain<const FMA: bool>(
+        &self,
+        _: &[[Lanes; 8]; 3],
+        d: &Self::Slopes,
+        map: &[Lanes; 9],
+        q: usize,
+        out: &mut LaneStrain,
+    ) {
+        let m = madd::<FMA>;
+        let v = [value_at(0, q) & 3, value_at(1, q) & 3, value_at(2, q) & 3];
+        for l in 0..LANES {
+            let mut h = [0.0; 9];
+            for i in 0..3 {
+                let (x, y, z) = (d[i][0][v[0]][l], d[i][1][v[1]][l], d[i][2][v[2]][l]);
+                for j in 0..3 {
+                    h[3 * i + j] = m(x, map[j][l], m(y, map[3 + j][l], z * map[6 + j][l]));
+                }
+            }
+            out.set::<FMA>(l, &h);
+        }
+    }
+
+    #[inline(always)]
+    fn forces<const FMA: bool>(&self, points: &[LaneStrain; 8], f: &mut [[Lanes; 8]; 3]) {
+        for i in 0..3 {
+            derivatives_back(points, i, &mut f[i]);
+        }
+    }
+}
+
+/// Computes the derivatives of one component.
+#[inline(always)]
+fn derivatives(v: &[Lanes; 8], [x, y, z]: &mut [[Lanes; 4]; 3]) {
+    for l in 0..LANES {
+        // Values are relative to the first node.
+        let d = slopes([0.0, v[1][l], v[2][l], v[3][l], v[4][l], v[5][l], v[6][l], v[7][l]]);
+        (x[0][l], x[1][l], x[2][l], x[3][l]) = (d[0][0], d[0][1], d[0][2], d[0][3]);
+        (y[0][l], y[1][l], y[2][l], y[3][l]) = (d[1][0], d[1][1], d[1][2], d[1][3]);
+        (z[0][l], z[1][l], z[2][l], z[3][l]) = (d[2][0], d[2][1], d[2][2], d[2][3]);
+    }
+}
+
+/// Applies the transpose of [`derivatives`], for component `i`.
+#[inline(always)]
+fn derivatives_back(s: &[LaneStrain; 8], i: usize, out: &mut [Lanes; 8]) {
+    for l in 0..LANES {
+        // Each value belongs to the two points along the axis on which it does not depend.
+        let two = |beta: usize, a: usize, b: usize| s[a].h[3 * i + beta][l] + s[b].h[3 * i + beta][l];
+        let v = slopes_back(&[
+            [two(0, 0, 1), two(0, 2, 3), two(0, 4, 5), two(0, 6, 7)],
+            [two(1, 0, 2), two(1, 1, 3), two(1, 4, 6), two(1, 5, 7)],
+            [two(2, 0, 4), two(2, 1, 5), two(2, 2, 6), two(2, 3, 7)],
+        ]);
+        (out[0][l], out[1][l], out[2][l], out[3][l]) = (v[0], v[1], v[2], v[3]);
+        (out[4][l], out[5][l], out[6][l], out[7][l]) = (v[4], v[5], v[6], v[7]);
+    }
 }
 
 #[cfg(test)]

@@ -102,8 +102,8 @@ fn rows_of(
 fn layout(mesh: &Mesh, rule: &VolumeRule) -> Layout {
     match mesh.uniform_kind() {
         Some(CellKind::Tet4) => Layout::LinearTetrahedra,
-        Some(CellKind::Hex8) if rule.points(CellKind::Hex8) == 8 => Layout::TrilinearHexahedra,
-        _ => Layout::General,
+        Some(kind) => Layout::Cells { nodes: kind.node_count(), points: rule.points(kind) },
+        None => Layout::General,
     }
 }
 

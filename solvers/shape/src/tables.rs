@@ -167,8 +167,9 @@ pub enum Layout {
     /// Each row is at a point of a linear tetrahedron: four nodes, with gradients that are constant in the
     /// cell and sum to zero.
     LinearTetrahedra,
-    /// Each group of eight rows belongs to the 2 x 2 x 2 Gauss points of a trilinear hexahedron.
-    TrilinearHexahedra,
+    /// Each group of `points` rows belongs to one of the cells of a mesh of a single kind, with `nodes` nodes.
+    #[allow(missing_docs)]
+    Cells { nodes: usize, points: usize },
 }
 
 /// A volume quadrature: shape values and gradients at points with weights (m^3).
@@ -198,7 +199,7 @@ impl VolumeRows {
         let (points, nodes) = match layout {
             Layout::General => (1, None),
             Layout::LinearTetrahedra => (1, Some(4)),
-            Layout::TrilinearHexahedra => (8, Some(8)),
+            Layout::Cells { nodes, points } => (points, Some(nodes)),
         };
         let found = self.at.rows.uniform_len();
         if let Some(expected) = nodes.filter(|&expected| found != Some(expected)) {
