@@ -305,6 +305,51 @@ fn wide_supports_with_a_lumped_mass_warn() {
     assert!(warning["value"].as_f64().unwrap() > 0.1);
 }
 
+/// A damped motion between plates in both precisions. Undamped, stiff plates chatter, and their forces depend
+/// on every digit.
+#[test]
+fn single_precision_ends_where_double_precision_does() {
+    let text = moving(PRESSED).replace("duration = \"20 ms\"", "duration = \"0.3 s\", damping = \"60 /s\"");
+    let single = text.replace("steps = 4", "steps = 4, precision = \"single\"");
+    assert_ne!(text, single);
+    let ((done, double), (other, single)) = (run(&text), run(&single));
+    assert_eq!((done.code, other.code), (0, 0), "{}", other.stderr);
+    for (a, b) in double.iter().zip(&single) {
+        for name in ["tool-force", "max-z", "strain-energy", "critical-step"] {
+            let (found, expected) = (metric(b, name), metric(a, name));
+            assert!((found / expected - 1.0).abs() < 3e-4, "{name}: {found} {expected}");
+        }
+        let rounding = metric(b, "force-rounding");
+        assert!(rounding > 1e-9 && rounding < 1e-4, "{rounding}");
+        assert!(a["metrics"]["force-rounding"].is_null());
+        let kernel = format!("single-precision {}", a["force_kernel"].as_str().unwrap());
+        assert_eq!(b["force_kernel"], kernel.as_str());
+        assert!(b["plan"].to_string().contains(&format!("internal forces: {kernel} kernel")));
+    }
+}
+
+#[test]
+fn what_has_no_single_precision_is_refused_at_its_line() {
+    let dir = tempfile::tempdir().unwrap();
+    let cloud = pulled("0 s", r#"essential = "coupling", support_scale = 1.6"#);
+    let wedge = moving(PRESSED).replace("element = \"hex8\"", "element = \"wedge6\"");
+    for (name, text, said) in [
+        ("cloud", cloud, "precision = \"single\" with clouds is not available"),
+        ("wedge", wedge, "single precision is not available for method 'hex8'"),
+    ] {
+        let text = text.replacen("kind = \"explicit\"", "kind = \"explicit\", precision = \"single\"", 1);
+        let path = write(&dir, &format!("{name}.toml"), &text);
+        let line = 1 + text.lines().position(|line| line.contains("precision")).unwrap();
+        let done = tissuebench(&["run", &path]);
+        assert_fails(&done, 3, said);
+        assert!(
+            done.stderr.contains(&format!("{path}:{line}: key 'procedure.precision'")),
+            "{}",
+            done.stderr
+        );
+    }
+}
+
 #[test]
 fn a_cloud_with_weak_supports_is_refused_in_explicit_dynamics() {
     let dir = tempfile::tempdir().unwrap();

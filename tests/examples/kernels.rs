@@ -6,7 +6,7 @@ use std::process::ExitCode;
 
 use contact::{ContactCounts, ContactHistory, ContactLaw, ContactSurface, RoundedBox, Tool, ToolShape};
 use efg::{Approximation, Basis, CubicSpline, Kernel};
-use explicit::{ExplicitBody, InternalForce};
+use explicit::{ExplicitBody, InternalForce, Precision};
 use fem::{SurfaceRule, VolumeRule};
 use geometry::generate::{box_mesh, kidney_mesh};
 use geometry::{CellKind, Cloud, Kidney, Mesh, cloud};
@@ -32,6 +32,8 @@ fn main() -> ExitCode {
         ("explicit-tet4", |times| force(CellKind::Tet4, false, times)),
         ("explicit-tet4-nodal", |times| force(CellKind::Tet4, true, times)),
         ("explicit-hex8", |times| force(CellKind::Hex8, false, times)),
+        ("explicit-tet4-single", |times| force_of(CellKind::Tet4, false, Precision::Single, times)),
+        ("explicit-hex8-single", |times| force_of(CellKind::Hex8, false, Precision::Single, times)),
         ("explicit-hex20", |times| force(CellKind::Hex20, false, times)),
         ("explicit-tet10", |times| force(CellKind::Tet10, false, times)),
         ("contact-jaw", jaw),
@@ -175,12 +177,16 @@ fn assembled_cloud(times: usize) {
 }
 
 fn force(kind: CellKind, projected: bool, times: usize) {
+    force_of(kind, projected, Precision::Double, times);
+}
+
+fn force_of(kind: CellKind, projected: bool, precision: Precision, times: usize) {
     // About a thousand elements to six thousand; the points of a quadratic element are many.
     let held = Held::new(kind, if kind.order() == 1 { 10 } else { 5 });
     let laws = [Law::NeoHookean(NeoHookean::new(20e3, 0.495).unwrap())];
     let groups = projected.then_some(&held.nodal);
     let body = ExplicitBody { volume: &held.volume, laws: &laws, region: &[], groups };
-    let mut force = InternalForce::new(body, best_path()).unwrap();
+    let mut force = InternalForce::of_precision(body, best_path(), precision).unwrap();
     let field = |x: &Point3| Vector3::new(0.05 * x.y, -0.04 * x.z, 0.1 * x.x);
     let u: Vec<Vector3> = held.mesh.points().iter().map(field).collect();
     let mut f = vec![Vector3::zeros(); u.len()];

@@ -1,7 +1,7 @@
 //! Internal forces: every lane path against the plain loop, the plain loop against its energy, and
 //! independence of the number of threads.
 
-use explicit::{ExplicitBody, InternalForce};
+use explicit::{ExplicitBody, ExplicitError, InternalForce, Precision};
 use geometry::CellKind;
 use geometry::generate::box_mesh;
 use integration::block::{Block, gradient};
@@ -197,6 +197,66 @@ fn nodal_dilation_lanes_agree_with_the_plain_loop() {
     let cut = groups.by_part(&regions(&block), block.volume.weights()).unwrap();
     assert!(cut.len() > groups.len());
     paths_agree(&block, Some(&cut), "tet4 nodal dilation");
+}
+
+/// Single precision at large strain and at 1e-6 of it, far from the origin and on the way to an inversion.
+#[test]
+fn single_precision_is_known_to_six_digits() {
+    let mut all = vec![laws()];
+    all.extend(other_laws());
+    let reduced = fem::VolumeRule::reduced();
+    let standard = fem::VolumeRule::STANDARD;
+    for (kind, rule, cells) in [
+        (CellKind::Tet4, standard, [6, 5, 4]),
+        (CellKind::Hex8, standard, [6, 5, 4]),
+        (CellKind::Tet10, standard, [3, 3, 2]),
+        (CellKind::Hex20, standard, [3, 3, 2]),
+        (CellKind::Hex20, reduced, [3, 3, 2]),
+    ] {
+        let mut block = Block::new(kind, cells);
+        block.volume = fem::volume_rows(&block.mesh, &rule).unwrap();
+        let groups = match kind {
+            CellKind::Tet4 => DilationGroups::nodal(&block.volume).unwrap(),
+            _ => fem::element_dilation(&block.mesh, &rule).unwrap(),
+        };
+        for (laws, groups) in all.iter().flat_map(|laws| [(laws, None), (laws, Some(&groups))]) {
+            if groups.is_some() && laws[0].split().is_none() && !matches!(laws[0], Law::NeoHookean(_)) {
+                continue;
+            }
+            let body = ExplicitBody { volume: &block.volume, laws, region: &[], groups };
+            for amount in [1.0, 0.3, 1e-6] {
+                let mut u = deformed(&block, amount);
+                u.iter_mut().for_each(|u| *u += Vector3::new(100.0, -30.0, 7.0) * 1e-2);
+                let expected = forces(&mut InternalForce::plain(body).unwrap(), &u);
+                for path in LanePath::available() {
+                    let mut force = InternalForce::of_precision(body, path, Precision::Single).unwrap();
+                    let (law, path) = (laws[0].name(), path.name());
+                    let error = difference(&forces(&mut force, &u), &expected);
+                    assert!(error < 1e-4, "{law}, {kind:?}, {path}, {amount}: {error:e}");
+                    assert!(error > 1e-9, "in double precision: {law}, {kind:?}, {path}: {error:e}");
+                    assert_eq!(force.rounding(&u).unwrap(), error);
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn single_precision_has_the_same_bits_on_all_threads_and_no_kernel_for_rows() {
+    let block = Block::new(CellKind::Tet4, [12, 9, 9]);
+    let laws = laws();
+    let body = ExplicitBody { volume: &block.volume, laws: &laws, region: &[], groups: None };
+    let u = deformed(&block, 0.5);
+    let run = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        let mut force = InternalForce::of_precision(body, LanePath::best(), Precision::Single).unwrap();
+        pool.install(|| forces(&mut force, &u))
+    };
+    assert_eq!(run(1), run(3));
+    let ragged = ragged();
+    let body = ExplicitBody { volume: &ragged.volume, ..body };
+    let refused = InternalForce::of_precision(body, LanePath::best(), Precision::Single).err();
+    assert_eq!(refused, Some(ExplicitError::NoSinglePrecision));
 }
 
 #[test]

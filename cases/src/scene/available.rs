@@ -4,7 +4,7 @@ use catalogue::Problem;
 
 use super::error::{ErrorKind, SceneError};
 use super::method::{Dilation, Essential, Family};
-use super::procedure::{Procedure, ProcedureKind};
+use super::procedure::{Precision, Procedure, ProcedureKind};
 use super::scene::Scene;
 use super::tool::Tool;
 
@@ -26,6 +26,13 @@ impl Scene {
         if !self.tools.is_empty() && radius > 0.0 {
             let help = "leave it out: above 0 stiff contact gains energy";
             add("procedure.spectral_radius", "a spectral radius above 0 with tools".into(), help);
+        }
+        let clouds = self.methods.iter().any(|method| matches!(method.family, Family::Efg(_)));
+        if clouds
+            && matches!(&self.procedure, Procedure::Explicit(asked) if asked.precision == Precision::Single)
+        {
+            let help = "take \"double\", or finite elements only: tet4, hex8, tet10 or hex20";
+            add("procedure.precision", "precision = \"single\" with clouds".into(), help);
         }
         let ramp = |tool: &Tool| tool.over.or(self.procedure.duration());
         for (i, tool) in self.tools.iter().enumerate().filter(|_| implicit) {

@@ -60,7 +60,7 @@ pub use method::{
 };
 pub use output::{Output, Repeated, Target, Transfer};
 pub use procedure::{
-    Explicit, Implicit, LinearSolver, Newton, OnStall, Procedure, ProcedureKind, Ramp, Static,
+    Explicit, Implicit, LinearSolver, Newton, OnStall, Precision, Procedure, ProcedureKind, Ramp, Static,
 };
 pub use purpose::{Publication, Purpose};
 pub use reference::Reference;

@@ -3,11 +3,13 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use cases::scene::Explicit;
+use cases::scene::Precision::{Double, Single};
 use catalogue::metric;
 use contact::Drive;
 use explicit::{
     Balance, Dynamics, DynamicsParams, ExplicitBody, ExplicitError, External, InternalForce, LanczosParams,
-    Lumping, MovingTool, Prescribed, Springs, Tools, critical_step_touching, lumped_mass,
+    Lumping, MovingTool, Precision, Prescribed, Springs, Tools, critical_step_touching, lumped_mass,
+    point_masses,
 };
 use geometry::Vector3;
 use lanes::LanePath;
@@ -17,7 +19,6 @@ use statics::nodal_forces;
 use super::problem::Problem;
 use super::solution::{Solution, StepHistory};
 use super::stages::Stages;
-use crate::discretise::Volume;
 use crate::error::{Failure, Key};
 use crate::outcome::timing::Meters;
 use crate::outcome::{Counters, LoadStep, Metric, ToolStep, Watch};
@@ -90,7 +91,11 @@ fn motion(problem: &Problem, asked: &Explicit, counters: &mut Counters) -> Resul
     let (volume, rows) = (&prepared.volume, &prepared.volume.rows);
     let density = setup.density()?;
     let mass = lumped_mass(rows, &density, &volume.region, Lumping::for_table(rows))?;
-    let mut force = InternalForce::new(body(setup, prepared), LanePath::best())?;
+    let precision = match asked.precision {
+        Double => Precision::Double,
+        Single => Precision::Single,
+    };
+    let mut force = InternalForce::of_precision(body(setup, prepared), LanePath::best(), precision)?;
     let kernel = force.info();
     counters.mass_nodes += mass.len() as u64;
 
@@ -138,8 +143,12 @@ fn motion(problem: &Problem, asked: &Explicit, counters: &mut Counters) -> Resul
         Err(failure) => return Err(failure.into()),
         Ok(motion) => {
             let led = loading.led.keys().copied().collect();
-            let masses = (!problem.method.interpolates)
-                .then(|| Masses { points: point_masses(volume, &density), lumped: &mass });
+            let masses = match problem.method.interpolates {
+                true => None,
+                false => {
+                    Some(Masses { points: point_masses(rows, &density, &volume.region)?, lumped: &mass })
+                }
+            };
             let mut run = Run { motion, asked, setup, prepared, led, masses, states, watch };
             let failure = run.march(&mut load, interval).err();
             made = run.motion.steps() as u64;
@@ -163,11 +172,6 @@ fn motion(problem: &Problem, asked: &Explicit, counters: &mut Counters) -> Resul
         spurious_motion,
         ..Solution::default()
     })
-}
-
-fn point_masses(volume: &Volume, density: &[f64]) -> Vec<f64> {
-    let region = |q: usize| volume.region.get(q).map_or(0, |&region| usize::from(region));
-    volume.rows.weights().iter().enumerate().map(|(q, w)| w * density[region(q)]).collect()
 }
 
 /// The body for the kernels of internal forces.
@@ -259,6 +263,8 @@ struct States {
     critical: f64,
     /// Largest relative error of the energy balance.
     drift: f64,
+    /// Largest relative rounding of the internal forces in single precision.
+    rounding: f64,
     /// Largest kinetic energy of the lumped mass, and largest part of it that the displacement does not have,
     /// J.
     kinetic: f64,
@@ -279,10 +285,10 @@ impl States {
         [mass, tool_mass]: [f64; 2],
         failure: Option<ExplicitError>,
     ) -> StepHistory {
-        let States { steps, fields, critical, drift, .. } = self;
+        let States { steps, fields, critical, drift, rounding, .. } = self;
         let last = steps.last().cloned();
         let last = last.unwrap_or_else(|| LoadStep::at_start(problem.setup.tools.len()));
-        let metrics = vec![
+        let mut metrics = vec![
             Metric::new(&metric::TIME_STEPS, made as f64),
             Metric::new(&metric::TIME_REACHED, last.load * asked.ramp.duration),
             Metric::new(&metric::CRITICAL_STEP, critical),
@@ -290,6 +296,9 @@ impl States {
             Metric::new(&metric::TOOL_MASS, tool_mass),
             Metric::new(&metric::ENERGY_DRIFT, drift),
         ];
+        if asked.precision == Single {
+            metrics.push(Metric::new(&metric::FORCE_ROUNDING, rounding));
+        }
         StepHistory { steps, fields, last, metrics, failure: failure.map(Failure::from) }
     }
 }
@@ -331,6 +340,7 @@ impl Run<'_, '_> {
                     }
                 }
                 self.states.drift = self.states.drift.max(balance.drift.abs());
+                self.states.rounding = self.states.rounding.max(self.motion.rounding(&u)?);
                 if let Some(masses) = &self.masses {
                     let [lumped, seen] =
                         masses.energies(&self.prepared.volume.rows, self.motion.velocities());

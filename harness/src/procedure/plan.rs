@@ -76,7 +76,7 @@ pub(crate) fn conclude(plan: &mut Plan, solution: &Solution, counters: &Counters
     }
     if let Some(forces) = forces {
         let how = match forces.path {
-            Some(path) => format!("{} kernel in {} lanes on all threads", forces.kernel.name(), path.name()),
+            Some(path) => format!("{} kernel in {} lanes on all threads", forces.name(), path.name()),
             None => "plain loop on one thread: no lanes for this law and dilation".into(),
         };
         for stage in [StageName::TimeSteps, StageName::Relaxation] {

@@ -208,7 +208,7 @@ fn loaded(
     let measure::Solved { setup, solution, .. } = *run;
     let displaced = displacement(run, &outcome.plan, request, timings, counters)?;
     if let Some(forces) = solution.forces {
-        outcome.identity.force_kernel = Some(forces.kernel.name().into());
+        outcome.identity.force_kernel = Some(forces.name());
         outcome.identity.lane_path = forces.path.map(|path| path.name().into());
     }
     conclude(&mut outcome.plan, solution, counters);

@@ -137,6 +137,13 @@ impl Scenario<'_> {
 
     fn of_explicit(&self, error: &ExplicitError) -> Finding {
         let given = matches!(&self.scene.procedure, Procedure::Explicit(explicit) if explicit.step.is_some());
+        if *error == ExplicitError::NoSinglePrecision {
+            let problem =
+                format!("single precision is not available for method '{}': {error}", self.method.id);
+            let help = "tet4, hex8, tet10 and hex20 have one, with standard dilation, element means (not tet4) or nodal \
+                        means (tet4 only), and laws that split for means; or take precision = \"double\"";
+            return finding(ErrorKind::NotAvailable, Key::Scene("procedure.precision".into()), problem, help);
+        }
         let (key, help) = match error {
             ExplicitError::StepTooLarge { .. } if given => (
                 Key::Scene("procedure.step".into()),

@@ -157,7 +157,7 @@ fn law<const FMA: bool>(weight: &Lanes, x: &LaneStrain, [mu, lambda]: [f64; 2], 
 fn forces<const FMA: bool>(block: &Block, x: &LaneStrain, c: &[Lanes; 3], out: &mut [Lanes; 12]) {
     let (m, g) = (madd::<FMA>, &block.grads);
     for l in 0..LANES {
-        let p = piola::<FMA>(&x.lane(l), x.invariants(l).1, [c[0][l], c[1][l], c[2][l]]);
+        let p = piola::<FMA, _>(&x.lane(l), x.invariants(l).1, [c[0][l], c[1][l], c[2][l]]);
         for i in 0..3 {
             let row = |a: usize| {
                 m(p[3 * i], g[3 * a][l], m(p[3 * i + 1], g[3 * a + 1][l], p[3 * i + 2] * g[3 * a + 2][l]))

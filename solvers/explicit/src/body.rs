@@ -1,7 +1,7 @@
 //! Body for explicit computation.
 
 use material::Law;
-use shape::{DilationGroups, VolumeRows};
+use shape::{DilationGroups, Vector3, VolumeRows};
 
 use super::error::ExplicitError;
 
@@ -25,6 +25,16 @@ impl ExplicitBody<'_> {
 
     pub(super) fn law(&self, q: usize) -> &Law {
         &self.laws[self.region(q) as usize]
+    }
+
+    /// Returns a length of the order of the smallest spacing: the inverse of the largest shape gradient, m.
+    pub(super) fn spacing(&self) -> f64 {
+        1.0 / self.volume.grads().iter().map(Vector3::norm).fold(f64::MIN_POSITIVE, f64::max)
+    }
+
+    /// Returns a displacement (m) whose strain is at most 1e-6.
+    pub(super) fn small_displacement(&self) -> f64 {
+        1e-6 * self.spacing()
     }
 
     pub(super) fn check(&self) -> Result<(), ExplicitError> {

@@ -1,4 +1,4 @@
-//! Kernels of cells with several points: eight elements of one kind in the lanes of one block.
+//! Kernels of cells with several points: one element in each lane of a block.
 //!
 //! The kernels make three passes over the points: `H` with its invariants, the law, and the stress carried
 //! back. In a single pass a point is a chain of some 150 cycles that fills the out-of-order window of the
@@ -10,18 +10,17 @@
 //! Every loop over lanes is in a function of its own. Arrays passed by reference are known not to overlap;
 //! without that knowledge a loop of eight stays scalar, at three times the time.
 
-use super::chunks::Slot;
 use super::moduli::{LaneLaw, Moduli, close_group, stress};
-use super::quad::{add_lanes, lanes_of, within};
-use lanes::{LanePath, fetch, madd, on_path};
+use super::scalar::{Scalar, Slot, within};
+use lanes::{LanePath, fetch, on_path};
+use material::lane::LaneStrain;
 use material::lane::invariants::{Coefficients, add_cofactor, piola, pressed};
-use material::lane::{LANES, LaneStrain, Lanes};
 use material::{Law, Volumetric};
 use shape::{Matrix3, VolumeRows};
 
 /// Kind of cell: derivatives of the displacement at its `Q` points from the displacements of its `N` nodes,
 /// and the transpose.
-pub(super) trait Cell<const N: usize, const Q: usize>: Sized + Send + Sync {
+pub(super) trait Cell<T: Scalar, const N: usize, const Q: usize>: Sized + Send + Sync {
     /// Values that the points share.
     type Slopes;
     /// Initial values.
@@ -36,82 +35,84 @@ pub(super) trait Cell<const N: usize, const Q: usize>: Sized + Send + Sync {
 
     /// Computes what the points share from the displacements relative to the first node,
     /// [component][node], m.
-    fn slopes(&self, u: &[[Lanes; N]; 3], out: &mut Self::Slopes);
+    fn slopes(&self, u: &[[T::Lanes; N]; 3], out: &mut Self::Slopes);
 
     /// Computes `H_ij = sum_a u_ai (A t_a)_j` at point `q`, with the map [3 beta + j].
     fn strain<const FMA: bool>(
         &self,
-        u: &[[Lanes; N]; 3],
+        u: &[[T::Lanes; N]; 3],
         slopes: &Self::Slopes,
-        map: &[Lanes; 9],
+        map: &[T::Lanes; 9],
         q: usize,
-        out: &mut LaneStrain,
+        out: &mut LaneStrain<T>,
     );
 
     /// Computes the nodal forces `f_ai = sum_q sum_beta S_i beta t_a beta`, [component][node], N. The `h` of
     /// each point is `S`, [3 i + beta].
-    fn forces<const FMA: bool>(&self, points: &[LaneStrain; Q], f: &mut [[Lanes; N]; 3]);
+    fn forces<const FMA: bool>(&self, points: &[LaneStrain<T>; Q], f: &mut [[T::Lanes; N]; 3]);
 }
 
-/// Block of eight elements.
+/// Block of one element in each lane.
 #[repr(C, align(64))]
-pub(super) struct Block<const N: usize, const Q: usize> {
-    pub points: [Point; Q],
-    pub nodes: [[u16; LANES]; N],
+pub(super) struct Block<T: Scalar, const N: usize, const Q: usize> {
+    pub points: [Point<T>; Q],
+    pub nodes: [T::Nodes; N],
 }
 
-impl<const N: usize, const Q: usize> Block<N, Q> {
-    pub const EMPTY: Block<N, Q> = Block { points: [Point::EMPTY; Q], nodes: [[0; LANES]; N] };
+impl<T: Scalar, const N: usize, const Q: usize> Block<T, N, Q> {
+    pub fn empty() -> Block<T, N, Q> {
+        Block { points: [Point::EMPTY; Q], nodes: [T::Nodes::default(); N] }
+    }
 }
 
 /// Map `A_q`, [3 beta + j], and weight of a point.
 #[derive(Clone, Copy)]
-pub(super) struct Point {
-    pub map: [Lanes; 9],
-    pub weight: Lanes,
+pub(super) struct Point<T: Scalar> {
+    pub map: [T::Lanes; 9],
+    pub weight: T::Lanes,
 }
 
-impl Point {
-    pub const EMPTY: Point = Point { map: [[0.0; LANES]; 9], weight: [0.0; LANES] };
+impl<T: Scalar> Point<T> {
+    pub const EMPTY: Point<T> = Point { map: [T::ZEROS; 9], weight: T::ZEROS };
 }
 
 /// Intermediate results of the passes. The alignment keeps 64-byte registers within cache lines.
 #[repr(align(64))]
-struct Scratch<const N: usize, const Q: usize, S> {
+struct Scratch<T: Scalar, const N: usize, const Q: usize, S> {
     /// Displacements of the nodes relative to the first node, [component][node], m.
-    u: [[Lanes; N]; 3],
+    u: [[T::Lanes; N]; 3],
     /// Forces of the nodes, [component][node], N.
-    f: [[Lanes; N]; 3],
+    f: [[T::Lanes; N]; 3],
     slopes: S,
     /// Strains of the points. In the last pass `H` is replaced by `S_i beta = sum_j w P_ij A_j beta`, [3 i +
     /// beta].
-    points: [LaneStrain; Q],
+    points: [LaneStrain<T>; Q],
     /// Coefficients of the stress at the points.
-    coefficients: [[Lanes; 3]; Q],
+    coefficients: [[T::Lanes; 3]; Q],
     /// Stress at the points, for laws with their own lane code, Pa.
-    stress: [[Lanes; 9]; Q],
+    stress: [[T::Lanes; 9]; Q],
     /// Sums of each element: volume, `w (J - 1)`, `w mu b`.
-    sums: [Lanes; 3],
+    sums: [T::Lanes; 3],
     /// Shared values of each element: `J^(2/3)` and `p`.
-    shared: [Lanes; 2],
+    shared: [T::Lanes; 2],
 }
 
-impl<const N: usize, const Q: usize, S> Scratch<N, Q, S> {
+impl<T: Scalar, const N: usize, const Q: usize, S> Scratch<T, N, Q, S> {
     /// Starts with the displacements of the first block.
     #[inline(always)]
-    fn new<const BITS: usize>(slopes: S, first: &Block<N, Q>, u: &[Slot]) -> Scratch<N, Q, S> {
+    fn new<const BITS: usize>(slopes: S, first: &Block<T, N, Q>, u: &[Slot<T>]) -> Scratch<T, N, Q, S> {
         let mut scratch = Scratch {
-            u: [[[0.0; LANES]; N]; 3],
-            f: [[[0.0; LANES]; N]; 3],
+            u: [[T::ZEROS; N]; 3],
+            f: [[T::ZEROS; N]; 3],
             slopes,
             points: [LaneStrain::ZERO; Q],
-            coefficients: [[[0.0; LANES]; 3]; Q],
-            stress: [[[0.0; LANES]; 9]; Q],
-            sums: [[0.0; LANES]; 3],
-            shared: [[0.0; LANES]; 2],
+            coefficients: [[T::ZEROS; 3]; Q],
+            stress: [[T::ZEROS; 9]; Q],
+            sums: [T::ZEROS; 3],
+            shared: [T::ZEROS; 2],
         };
         for k in 0..N {
-            gather::<BITS, N, Q>(first, k, u, &mut scratch.u);
+            gather::<BITS, T, N, Q>(first, k, u, &mut scratch.u);
         }
         scratch
     }
@@ -119,17 +120,17 @@ impl<const N: usize, const Q: usize, S> Scratch<N, Q, S> {
 
 /// Gathers the displacements of node `k` relative to the first node.
 #[inline(always)]
-fn gather<const BITS: usize, const N: usize, const Q: usize>(
-    block: &Block<N, Q>,
+fn gather<const BITS: usize, T: Scalar, const N: usize, const Q: usize>(
+    block: &Block<T, N, Q>,
     k: usize,
-    u: &[Slot],
-    nodal: &mut [[Lanes; N]; 3],
+    u: &[Slot<T>],
+    nodal: &mut [[T::Lanes; N]; 3],
 ) {
-    assert!(within(&[block.nodes[0], block.nodes[k]], u.len()));
+    assert!(within::<T>(&[block.nodes[0], block.nodes[k]], u.len()));
     // SAFETY: the nodes were checked above, and a kernel runs with the registers of its path.
     let lanes = unsafe {
-        let origin = lanes_of::<BITS>(u, &block.nodes[0], &[[0.0; LANES]; 3]);
-        lanes_of::<BITS>(u, &block.nodes[k], &origin)
+        let origin = T::lanes_of::<BITS>(u, &block.nodes[0], &[T::ZEROS; 3]);
+        T::lanes_of::<BITS>(u, &block.nodes[k], &origin)
     };
     for i in 0..3 {
         nodal[i][k] = lanes[i];
@@ -138,30 +139,30 @@ fn gather<const BITS: usize, const N: usize, const Q: usize>(
 
 /// Fetches point `q` of a block and gathers the part of its nodes that belongs to this point.
 #[inline(always)]
-fn prepare<const BITS: usize, const N: usize, const Q: usize>(
-    next: &Block<N, Q>,
+fn prepare<const BITS: usize, T: Scalar, const N: usize, const Q: usize>(
+    next: &Block<T, N, Q>,
     q: usize,
-    u: &[Slot],
-    nodal: &mut [[Lanes; N]; 3],
+    u: &[Slot<T>],
+    nodal: &mut [[T::Lanes; N]; 3],
 ) {
     fetch(&next.points[q]);
     for k in q * N / Q..(q + 1) * N / Q {
-        gather::<BITS, N, Q>(next, k, u, nodal);
+        gather::<BITS, T, N, Q>(next, k, u, nodal);
     }
 }
 
 /// Computes the stress coefficients of a point. `good` becomes 0 in lanes in which `J` is not positive.
 #[inline(always)]
-fn law<const FMA: bool>(
-    w: &Lanes,
-    Moduli { mu, lambda }: Moduli,
-    strain: &LaneStrain,
-    out: &mut [Lanes; 3],
-    good: &mut Lanes,
+fn law<const FMA: bool, T: Scalar>(
+    w: &T::Lanes,
+    Moduli { mu, lambda }: Moduli<T>,
+    strain: &LaneStrain<T>,
+    out: &mut [T::Lanes; 3],
+    good: &mut T::Lanes,
 ) {
-    for l in 0..LANES {
+    for l in 0..T::LANES {
         let (x, _) = strain.invariants(l);
-        good[l] = if 1.0 + x.j > 0.0 { good[l] } else { 0.0 };
+        good[l] = if T::ONE + x.j > T::ZERO { good[l] } else { T::ZERO };
         let c = x.stress::<FMA>(w[l], mu, lambda);
         (out[0][l], out[1][l], out[2][l]) = (c[0], c[1], c[2]);
     }
@@ -170,43 +171,47 @@ fn law<const FMA: bool>(
 /// Computes the coefficients as [`law`] without the shared dilation, and adds the point's parts of volume,
 /// `w (J - 1)` and `w mu b` to `sums`.
 #[inline(always)]
-fn isochoric<const FMA: bool>(
-    w: &Lanes,
-    mu: f64,
-    strain: &LaneStrain,
-    out: &mut [Lanes; 3],
-    sums: &mut [Lanes; 3],
-    good: &mut Lanes,
+fn isochoric<const FMA: bool, T: Scalar>(
+    w: &T::Lanes,
+    mu: T,
+    strain: &LaneStrain<T>,
+    out: &mut [T::Lanes; 3],
+    sums: &mut [T::Lanes; 3],
+    good: &mut T::Lanes,
 ) {
-    for l in 0..LANES {
+    for l in 0..T::LANES {
         let (x, _) = strain.invariants(l);
-        good[l] = if 1.0 + x.j > 0.0 { good[l] } else { 0.0 };
+        good[l] = if T::ONE + x.j > T::ZERO { good[l] } else { T::ZERO };
         let (b, c) = x.isochoric::<FMA>(&strain.lane(l), w[l] * mu);
         sums[0][l] += w[l];
-        sums[1][l] = madd::<FMA>(w[l], x.j, sums[1][l]);
-        sums[2][l] = madd::<FMA>(w[l] * mu, b, sums[2][l]);
+        sums[1][l] = T::madd::<FMA>(w[l], x.j, sums[1][l]);
+        sums[2][l] = T::madd::<FMA>(w[l] * mu, b, sums[2][l]);
         (out[0][l], out[1][l], out[2][l]) = (c[0], c[1], c[2]);
     }
 }
 
 /// Adds the point's parts of volume and `w (J - 1)` to `sums`.
 #[inline(always)]
-fn volumes<const FMA: bool>(w: &Lanes, strain: &LaneStrain, sums: &mut [Lanes; 3]) {
-    for l in 0..LANES {
+fn volumes<const FMA: bool, T: Scalar>(w: &T::Lanes, strain: &LaneStrain<T>, sums: &mut [T::Lanes; 3]) {
+    for l in 0..T::LANES {
         let (x, _) = strain.invariants(l);
         sums[0][l] += w[l];
-        sums[1][l] = madd::<FMA>(w[l], x.j, sums[1][l]);
+        sums[1][l] = T::madd::<FMA>(w[l], x.j, sums[1][l]);
     }
 }
 
 /// Computes `J^(2/3)` and `p` of the elements.
 #[inline(always)]
-fn share<const FMA: bool>(sums: &[Lanes; 3], [mu, lambda, quadratic]: [f64; 3], out: &mut [Lanes; 2]) {
-    for l in 0..LANES {
+fn share<const FMA: bool, T: Scalar>(
+    sums: &[T::Lanes; 3],
+    [mu, lambda, quadratic]: [T; 3],
+    out: &mut [T::Lanes; 2],
+) {
+    for l in 0..T::LANES {
         let v = sums[0][l];
         // An unused lane has no volume.
-        let per_volume = if v > 0.0 { 1.0 / v } else { 0.0 };
-        let [s, p] = close_group::<FMA>(
+        let per_volume = if v > T::ZERO { T::ONE / v } else { T::ZERO };
+        let [s, p] = close_group::<FMA, T>(
             sums[1][l] * per_volume,
             sums[2][l],
             per_volume,
@@ -218,43 +223,48 @@ fn share<const FMA: bool>(sums: &[Lanes; 3], [mu, lambda, quadratic]: [f64; 3], 
 
 /// Replaces `H` of one point by `S_i beta`.
 #[inline(always)]
-fn pull_back<const FMA: bool>(
-    map: &[Lanes; 9],
-    strain: &mut LaneStrain,
-    coefficients: impl Fn(usize, &[f64; 9]) -> Coefficients,
+fn pull_back<const FMA: bool, T: Scalar>(
+    map: &[T::Lanes; 9],
+    strain: &mut LaneStrain<T>,
+    coefficients: impl Fn(usize, &[T; 9]) -> Coefficients<T>,
 ) {
-    for l in 0..LANES {
+    for l in 0..T::LANES {
         let (at, (_, minors)) = (strain.lane(l), strain.invariants(l));
-        let p = piola::<FMA>(&at, minors, coefficients(l, &at));
-        pull_back_lane::<FMA>(map, &p, l, &mut strain.h);
+        let p = piola::<FMA, _>(&at, minors, coefficients(l, &at));
+        pull_back_lane::<FMA, T>(map, &p, l, &mut strain.h);
     }
 }
 
 /// Replaces `H` as [`pull_back`], for the stress `p` and the pressure of the element.
 #[inline(always)]
-fn pull_back_stress<const FMA: bool>(
-    point: &Point,
-    p: &[Lanes; 9],
-    pressure: Option<&Lanes>,
-    strain: &mut LaneStrain,
+fn pull_back_stress<const FMA: bool, T: Scalar>(
+    point: &Point<T>,
+    p: &[T::Lanes; 9],
+    pressure: Option<&T::Lanes>,
+    strain: &mut LaneStrain<T>,
 ) {
-    for l in 0..LANES {
+    for l in 0..T::LANES {
         let w = point.weight[l];
-        let mut wp = [0.0; 9];
+        let mut wp = [T::ZERO; 9];
         for k in 0..9 {
             wp[k] = w * p[k][l];
         }
         if let Some(pressure) = pressure {
             let (x, minors) = strain.invariants(l);
-            add_cofactor::<FMA>(&strain.lane(l), minors, x.trace, w * pressure[l], &mut wp);
+            add_cofactor::<FMA, _>(&strain.lane(l), minors, x.trace, w * pressure[l], &mut wp);
         }
-        pull_back_lane::<FMA>(&point.map, &wp, l, &mut strain.h);
+        pull_back_lane::<FMA, T>(&point.map, &wp, l, &mut strain.h);
     }
 }
 
 #[inline(always)]
-fn pull_back_lane<const FMA: bool>(map: &[Lanes; 9], p: &[f64; 9], l: usize, out: &mut [Lanes; 9]) {
-    let m = madd::<FMA>;
+fn pull_back_lane<const FMA: bool, T: Scalar>(
+    map: &[T::Lanes; 9],
+    p: &[T; 9],
+    l: usize,
+    out: &mut [T::Lanes; 9],
+) {
+    let m = T::madd::<FMA>;
     for i in 0..3 {
         for beta in 0..3 {
             let (x, y, z) = (map[3 * beta][l], map[3 * beta + 1][l], map[3 * beta + 2][l]);
@@ -264,24 +274,24 @@ fn pull_back_lane<const FMA: bool>(map: &[Lanes; 9], p: &[f64; 9], l: usize, out
 }
 
 #[inline(always)]
-fn scatter<const BITS: usize, const N: usize>(
-    nodes: &[[u16; LANES]; N],
-    [x, y, z]: &[[Lanes; N]; 3],
-    f: &mut [Slot],
+fn scatter<const BITS: usize, T: Scalar, const N: usize>(
+    nodes: &[T::Nodes; N],
+    [x, y, z]: &[[T::Lanes; N]; 3],
+    f: &mut [Slot<T>],
 ) {
-    assert!(within(nodes, f.len()));
+    assert!(within::<T>(nodes, f.len()));
     for k in 0..N {
         // SAFETY: as in `gather`.
-        unsafe { add_lanes::<BITS>(&x[k], &y[k], &z[k], &nodes[k], f) };
+        unsafe { T::add_lanes::<BITS>([&x[k], &y[k], &z[k]], &nodes[k], f) };
     }
 }
 
 /// Computes `H` and invariants of the points from the gathered displacements.
 #[inline(always)]
-fn strains<const FMA: bool, const N: usize, const Q: usize, C: Cell<N, Q>>(
+fn strains<const FMA: bool, const N: usize, const Q: usize, T: Scalar, C: Cell<T, N, Q>>(
     cell: &C,
-    block: &Block<N, Q>,
-    x: &mut Scratch<N, Q, C::Slopes>,
+    block: &Block<T, N, Q>,
+    x: &mut Scratch<T, N, Q, C::Slopes>,
 ) {
     cell.slopes(&x.u, &mut x.slopes);
     for q in 0..Q {
@@ -291,152 +301,186 @@ fn strains<const FMA: bool, const N: usize, const Q: usize, C: Cell<N, Q>>(
 
 /// Computes nodal forces from `S` of the points, and adds them to `f`.
 #[inline(always)]
-fn forces<const FMA: bool, const BITS: usize, const N: usize, const Q: usize, C: Cell<N, Q>>(
+fn forces<const FMA: bool, const BITS: usize, const N: usize, const Q: usize, T: Scalar, C: Cell<T, N, Q>>(
     cell: &C,
-    block: &Block<N, Q>,
-    x: &mut Scratch<N, Q, C::Slopes>,
-    f: &mut [Slot],
+    block: &Block<T, N, Q>,
+    x: &mut Scratch<T, N, Q, C::Slopes>,
+    f: &mut [Slot<T>],
 ) {
     cell.forces::<FMA>(&x.points, &mut x.f);
-    scatter::<BITS, N>(&block.nodes, &x.f, f);
+    scatter::<BITS, T, N>(&block.nodes, &x.f, f);
 }
 
 on_path! {
     /// Adds internal forces of blocks (at least one) of one law to `f`. Returns false if `J` is not positive
     /// somewhere.
-    pub(super) fn internal<const N: usize, const Q: usize; C: [Cell<N, Q>]>(path: LanePath, cell: &C, blocks: &[Block<N, Q>], law: &LaneLaw, u: &[Slot], f: &mut [Slot]) -> bool = internal_lanes::<BITS>
+    pub(super) fn internal<const N: usize, const Q: usize; T: [Scalar], C: [Cell<T, N, Q>]>(path: LanePath, cell: &C, blocks: &[Block<T, N, Q>], law: &LaneLaw, u: &[Slot<T>], f: &mut [Slot<T>]) -> bool = internal_lanes::<BITS>
 }
 
 #[inline(always)]
-fn internal_lanes<const FMA: bool, const BITS: usize, const N: usize, const Q: usize, C: Cell<N, Q>>(
+fn internal_lanes<
+    const FMA: bool,
+    const BITS: usize,
+    const N: usize,
+    const Q: usize,
+    T: Scalar,
+    C: Cell<T, N, Q>,
+>(
     path: LanePath,
     cell: &C,
-    blocks: &[Block<N, Q>],
+    blocks: &[Block<T, N, Q>],
     law: &LaneLaw,
-    u: &[Slot],
-    f: &mut [Slot],
+    u: &[Slot<T>],
+    f: &mut [Slot<T>],
 ) -> bool {
     match law {
-        LaneLaw::NeoHookean(moduli) => neo_hookean::<FMA, BITS, N, Q, C>(cell, blocks, *moduli, u, f),
-        LaneLaw::Other(law, _) => other::<FMA, BITS, N, Q, C>(path, cell, blocks, law, None, u, f),
+        LaneLaw::NeoHookean(moduli) => neo_hookean::<FMA, BITS, N, Q, T, C>(cell, blocks, moduli.of(), u, f),
+        LaneLaw::Other(law, _) => other::<FMA, BITS, N, Q, T, C>(path, cell, blocks, law, None, u, f),
     }
 }
 
 on_path! {
     /// Adds internal forces as [`internal`], with one dilation per element, the mean over its points.
-    pub(super) fn dilated<const N: usize, const Q: usize; C: [Cell<N, Q>]>(path: LanePath, cell: &C, blocks: &[Block<N, Q>], law: &LaneLaw, u: &[Slot], f: &mut [Slot]) -> bool = dilated_lanes::<BITS>
+    pub(super) fn dilated<const N: usize, const Q: usize; T: [Scalar], C: [Cell<T, N, Q>]>(path: LanePath, cell: &C, blocks: &[Block<T, N, Q>], law: &LaneLaw, u: &[Slot<T>], f: &mut [Slot<T>]) -> bool = dilated_lanes::<BITS>
 }
 
 #[inline(always)]
-fn dilated_lanes<const FMA: bool, const BITS: usize, const N: usize, const Q: usize, C: Cell<N, Q>>(
+fn dilated_lanes<
+    const FMA: bool,
+    const BITS: usize,
+    const N: usize,
+    const Q: usize,
+    T: Scalar,
+    C: Cell<T, N, Q>,
+>(
     path: LanePath,
     cell: &C,
-    blocks: &[Block<N, Q>],
+    blocks: &[Block<T, N, Q>],
     law: &LaneLaw,
-    u: &[Slot],
-    f: &mut [Slot],
+    u: &[Slot<T>],
+    f: &mut [Slot<T>],
 ) -> bool {
     match law {
-        LaneLaw::NeoHookean(moduli) => dilated_neo_hookean::<FMA, BITS, N, Q, C>(cell, blocks, *moduli, u, f),
+        LaneLaw::NeoHookean(moduli) => {
+            dilated_neo_hookean::<FMA, BITS, N, Q, T, C>(cell, blocks, moduli.of(), u, f)
+        }
         LaneLaw::Other(law, volume) => {
-            other::<FMA, BITS, N, Q, C>(path, cell, blocks, law, Some(volume), u, f)
+            other::<FMA, BITS, N, Q, T, C>(path, cell, blocks, law, Some(volume), u, f)
         }
     }
 }
 
 /// Computes the neo-Hookean law. For hex8 [`other`] takes 1.11 (AVX2) and 1.12 (AVX-512) of the time.
 #[inline(always)]
-fn neo_hookean<const FMA: bool, const BITS: usize, const N: usize, const Q: usize, C: Cell<N, Q>>(
+fn neo_hookean<
+    const FMA: bool,
+    const BITS: usize,
+    const N: usize,
+    const Q: usize,
+    T: Scalar,
+    C: Cell<T, N, Q>,
+>(
     cell: &C,
-    blocks: &[Block<N, Q>],
-    moduli: Moduli,
-    u: &[Slot],
-    f: &mut [Slot],
+    blocks: &[Block<T, N, Q>],
+    moduli: Moduli<T>,
+    u: &[Slot<T>],
+    f: &mut [Slot<T>],
 ) -> bool {
     let mut x = Scratch::new::<BITS>(C::SLOPES, &blocks[0], u);
-    let mut good = [1.0; LANES];
+    let mut good = T::ONES;
     for (k, block) in blocks.iter().enumerate() {
         let next = blocks.get(k + 1).unwrap_or(block);
-        strains::<FMA, N, Q, C>(cell, block, &mut x);
+        strains::<FMA, N, Q, T, C>(cell, block, &mut x);
         for q in 0..Q {
-            law::<FMA>(&block.points[q].weight, moduli, &x.points[q], &mut x.coefficients[q], &mut good);
+            law::<FMA, T>(&block.points[q].weight, moduli, &x.points[q], &mut x.coefficients[q], &mut good);
         }
         for q in 0..Q {
-            prepare::<BITS, N, Q>(next, q, u, &mut x.u);
+            prepare::<BITS, T, N, Q>(next, q, u, &mut x.u);
             let c = &x.coefficients[q];
-            pull_back::<FMA>(&block.points[q].map, &mut x.points[q], |l, _| [c[0][l], c[1][l], c[2][l]]);
+            pull_back::<FMA, T>(&block.points[q].map, &mut x.points[q], |l, _| [c[0][l], c[1][l], c[2][l]]);
         }
-        forces::<FMA, BITS, N, Q, C>(cell, block, &mut x, f);
+        forces::<FMA, BITS, N, Q, T, C>(cell, block, &mut x, f);
     }
-    good == [1.0; LANES]
+    good == T::ONES
 }
 
 #[inline(always)]
-fn dilated_neo_hookean<const FMA: bool, const BITS: usize, const N: usize, const Q: usize, C: Cell<N, Q>>(
+fn dilated_neo_hookean<
+    const FMA: bool,
+    const BITS: usize,
+    const N: usize,
+    const Q: usize,
+    T: Scalar,
+    C: Cell<T, N, Q>,
+>(
     cell: &C,
-    blocks: &[Block<N, Q>],
-    moduli: Moduli,
-    u: &[Slot],
-    f: &mut [Slot],
+    blocks: &[Block<T, N, Q>],
+    moduli: Moduli<T>,
+    u: &[Slot<T>],
+    f: &mut [Slot<T>],
 ) -> bool {
     let mut x = Scratch::new::<BITS>(C::SLOPES, &blocks[0], u);
-    let mut good = [1.0; LANES];
+    let mut good = T::ONES;
     for (k, block) in blocks.iter().enumerate() {
         let next = blocks.get(k + 1).unwrap_or(block);
-        strains::<FMA, N, Q, C>(cell, block, &mut x);
-        x.sums = [[0.0; LANES]; 3];
+        strains::<FMA, N, Q, T, C>(cell, block, &mut x);
+        x.sums = [T::ZEROS; 3];
         for q in 0..Q {
             let w = &block.points[q].weight;
-            isochoric::<FMA>(w, moduli.mu, &x.points[q], &mut x.coefficients[q], &mut x.sums, &mut good);
+            isochoric::<FMA, T>(w, moduli.mu, &x.points[q], &mut x.coefficients[q], &mut x.sums, &mut good);
         }
-        share::<FMA>(&x.sums, [moduli.mu, moduli.lambda, 0.0], &mut x.shared);
+        share::<FMA, T>(&x.sums, [moduli.mu, moduli.lambda, T::ZERO], &mut x.shared);
         for q in 0..Q {
-            prepare::<BITS, N, Q>(next, q, u, &mut x.u);
+            prepare::<BITS, T, N, Q>(next, q, u, &mut x.u);
             let w = &block.points[q].weight;
             let c = &x.coefficients[q];
             let [s, p] = &x.shared;
-            pull_back::<FMA>(&block.points[q].map, &mut x.points[q], |l, h| {
-                pressed::<FMA>([c[0][l], c[1][l], c[2][l]], h[0] + h[4] + h[8], s[l], w[l] * p[l])
+            pull_back::<FMA, T>(&block.points[q].map, &mut x.points[q], |l, h| {
+                pressed::<FMA, _>([c[0][l], c[1][l], c[2][l]], h[0] + h[4] + h[8], s[l], w[l] * p[l])
             });
         }
-        forces::<FMA, BITS, N, Q, C>(cell, block, &mut x, f);
+        forces::<FMA, BITS, N, Q, T, C>(cell, block, &mut x, f);
     }
-    good == [1.0; LANES]
+    good == T::ONES
 }
 
 /// Computes any other law point by point; the mean dilation acts on its `volume`.
 #[inline(always)]
-fn other<const FMA: bool, const BITS: usize, const N: usize, const Q: usize, C: Cell<N, Q>>(
+fn other<const FMA: bool, const BITS: usize, const N: usize, const Q: usize, T: Scalar, C: Cell<T, N, Q>>(
     path: LanePath,
     cell: &C,
-    blocks: &[Block<N, Q>],
+    blocks: &[Block<T, N, Q>],
     law: &Law,
     volume: Option<&Volumetric>,
-    u: &[Slot],
-    f: &mut [Slot],
+    u: &[Slot<T>],
+    f: &mut [Slot<T>],
 ) -> bool {
     let mut x = Scratch::new::<BITS>(C::SLOPES, &blocks[0], u);
-    let mut good = [1.0; LANES];
+    let mut good = T::ONES;
     for (k, block) in blocks.iter().enumerate() {
         let next = blocks.get(k + 1).unwrap_or(block);
-        strains::<FMA, N, Q, C>(cell, block, &mut x);
+        strains::<FMA, N, Q, T, C>(cell, block, &mut x);
         for q in 0..Q {
             x.points[q].check(&mut good);
         }
         if let Some(volume) = volume {
-            x.sums = [[0.0; LANES]; 3];
+            x.sums = [T::ZEROS; 3];
             for q in 0..Q {
-                volumes::<FMA>(&block.points[q].weight, &x.points[q], &mut x.sums);
+                volumes::<FMA, T>(&block.points[q].weight, &x.points[q], &mut x.sums);
             }
-            share::<FMA>(&x.sums, [0.0, volume.logarithmic, volume.quadratic], &mut x.shared);
+            share::<FMA, T>(
+                &x.sums,
+                [T::ZERO, T::of(volume.logarithmic), T::of(volume.quadratic)],
+                &mut x.shared,
+            );
         }
         let pressure = volume.map(|_| &x.shared[1]);
         stress(path, law, &x.points, &mut x.stress);
         for q in 0..Q {
-            prepare::<BITS, N, Q>(next, q, u, &mut x.u);
-            pull_back_stress::<FMA>(&block.points[q], &x.stress[q], pressure, &mut x.points[q]);
+            prepare::<BITS, T, N, Q>(next, q, u, &mut x.u);
+            pull_back_stress::<FMA, T>(&block.points[q], &x.stress[q], pressure, &mut x.points[q]);
         }
-        forces::<FMA, BITS, N, Q, C>(cell, block, &mut x, f);
+        forces::<FMA, BITS, N, Q, T, C>(cell, block, &mut x, f);
     }
-    good == [1.0; LANES]
+    good == T::ONES
 }

@@ -1,42 +1,45 @@
-//! Cells with several points, standard or with one mean dilation per element; eight elements in the lanes of
-//! one block.
+//! Cells with several points, standard or with one mean dilation per element; one element in each lane of a
+//! block.
 //!
 //! At every point `grad N_a = A_q t_a`, with `t_a` the same for all elements. Nine numbers are stored per
 //! point instead of three for each node: 656 bytes per element of hex8 instead of 1616, 2200 instead of 14800
 //! for hex20. Forces are computed by the transpose of each step.
 
-use lanes::{LANES, LanePath};
+use lanes::LanePath;
 use shape::{DilationGroups, Matrix3, Point3, Vector3, locality_order};
 
 use super::body::ExplicitBody;
 use super::cell_lanes::{Block, Cell, dilated, internal};
-use super::chunks::{Border, ChunkNodes, Slot, load, split};
+use super::chunks::{Border, ChunkNodes, load, split};
 use super::moduli::LaneLaw;
+use super::scalar::{Scalar, Slot};
 use crate::kernel::{Engine, Kernel};
 
 /// Points per chunk: 1024 elements of hex8, with some 1400 distinct nodes.
 const SIZE: usize = 8192;
 
-pub(super) struct Cells<C, const N: usize, const Q: usize> {
+pub(super) struct Cells<T: Scalar, C, const N: usize, const Q: usize> {
     cell: C,
+    /// A displacement that is small for the body, m.
+    small: f64,
     border: Border,
-    chunks: Vec<Chunk<N, Q>>,
-    u: Vec<Slot>,
-    f: Vec<Slot>,
+    chunks: Vec<Chunk<T, N, Q>>,
+    u: Vec<Slot<T>>,
+    f: Vec<Slot<T>>,
     laws: Vec<LaneLaw>,
     mean: bool,
 }
 
-struct Chunk<const N: usize, const Q: usize> {
-    blocks: Vec<Block<N, Q>>,
+struct Chunk<T: Scalar, const N: usize, const Q: usize> {
+    blocks: Vec<Block<T, N, Q>>,
     /// Consecutive blocks of one region: index after the last block, and region index.
     runs: Vec<(usize, u16)>,
 }
 
-impl<C: Cell<N, Q>, const N: usize, const Q: usize> Cells<C, N, Q> {
+impl<T: Scalar, C: Cell<T, N, Q>, const N: usize, const Q: usize> Cells<T, C, N, Q> {
     /// Builds the kernel for rows laid out as cells. Returns `None` if the body has dilation groups other
     /// than one per element, or if the law changes within an element.
-    pub fn new(body: &ExplicitBody, laws: Vec<LaneLaw>) -> Option<Cells<C, N, Q>> {
+    pub fn new(body: &ExplicitBody, laws: Vec<LaneLaw>) -> Option<Cells<T, C, N, Q>> {
         let (volume, rows) = (body.volume, body.volume.rows());
         let count = rows.len() / Q;
         // A cell belongs to one region; a table in which it does not is not from a mesh.
@@ -58,17 +61,27 @@ impl<C: Cell<N, Q>, const N: usize, const Q: usize> Cells<C, N, Q> {
         };
         let order = locality_order(&(0..count).map(centre).collect::<Vec<_>>());
         let parts =
-            split(rows.node_count(), &order, SIZE / Q / LANES * LANES, |e| rows.row(Q * e).0.to_vec());
+            split(rows.node_count(), &order, SIZE / Q / T::LANES * T::LANES, |e| rows.row(Q * e).0.to_vec());
         let chunk = |part: &ChunkNodes| Chunk::new(body, part, &maps, &place, &C::NODE);
         let chunks = parts.iter().map(chunk).collect();
         let lists: Vec<Vec<u32>> = parts.iter().map(|p| p.nodes.clone()).collect();
         let border = Border::new(rows.node_count(), &lists);
         let slots = vec![Slot::ZERO; border.slot_count()];
-        Some(Cells { cell, border, chunks, u: slots.clone(), f: slots, laws, mean: body.groups.is_some() })
+        let small = body.small_displacement();
+        Some(Cells {
+            cell,
+            small,
+            border,
+            chunks,
+            u: slots.clone(),
+            f: slots,
+            laws,
+            mean: body.groups.is_some(),
+        })
     }
 }
 
-impl<C: Cell<N, Q>, const N: usize, const Q: usize> Engine for Cells<C, N, Q> {
+impl<T: Scalar, C: Cell<T, N, Q> + 'static, const N: usize, const Q: usize> Engine for Cells<T, C, N, Q> {
     fn kernel(&self) -> Kernel {
         match (N, self.mean) {
             (8, false) => Kernel::Hex8,
@@ -81,13 +94,13 @@ impl<C: Cell<N, Q>, const N: usize, const Q: usize> Engine for Cells<C, N, Q> {
     }
 
     fn forces(&mut self, path: LanePath, u: &[Vector3], f: &mut [Vector3]) -> bool {
-        let Cells { cell, border, chunks, u: slots, f: sums, laws, mean } = self;
+        let Cells { cell, small, border, chunks, u: slots, f: sums, laws, mean } = self;
         let not_inverted = border.for_each(slots, sums, |c, slots, sums| {
-            load(border.chunk(c), u, slots);
+            load(border.chunk(c), u, *small, slots);
             sums.fill(Slot::ZERO);
             let (mut not_inverted, mut first) = (true, 0);
             for &(end, region) in &chunks[c].runs {
-                let kernel = if *mean { dilated::<N, Q, C> } else { internal::<N, Q, C> };
+                let kernel = if *mean { dilated::<N, Q, T, C> } else { internal::<N, Q, T, C> };
                 let law = &laws[region as usize];
                 not_inverted &= kernel(path, path, cell, &chunks[c].blocks[first..end], law, slots, sums);
                 first = end;
@@ -99,31 +112,31 @@ impl<C: Cell<N, Q>, const N: usize, const Q: usize> Engine for Cells<C, N, Q> {
     }
 }
 
-impl<const N: usize, const Q: usize> Chunk<N, Q> {
+impl<T: Scalar, const N: usize, const Q: usize> Chunk<T, N, Q> {
     fn new(
         body: &ExplicitBody,
         part: &ChunkNodes,
         maps: &[Matrix3],
         place: &[usize; Q],
         node: &[usize; N],
-    ) -> Chunk<N, Q> {
+    ) -> Chunk<T, N, Q> {
         let region = |k: &usize| body.region(Q * part.items[*k] as usize);
         let mut order: Vec<usize> = (0..part.items.len()).collect();
         order.sort_by_key(region);
         let mut chunk = Chunk { blocks: Vec::new(), runs: Vec::new() };
         for alike in order.chunk_by(|a, b| region(a) == region(b)) {
-            for group in alike.chunks(LANES) {
-                let mut block = Block::EMPTY;
+            for group in alike.chunks(T::LANES) {
+                let mut block = Block::<T, N, Q>::empty();
                 for (l, &k) in group.iter().enumerate() {
                     for q in 0..Q {
                         let row = Q * part.items[k] as usize + q;
                         let point = &mut block.points[place[q]];
                         for beta in 0..3 {
                             for j in 0..3 {
-                                point.map[3 * beta + j][l] = maps[row][(j, beta)];
+                                point.map[3 * beta + j][l] = T::of(maps[row][(j, beta)]);
                             }
                         }
-                        point.weight[l] = body.volume.weights()[row];
+                        point.weight[l] = T::of(body.volume.weights()[row]);
                     }
                     for c in 0..N {
                         block.nodes[c][l] = part.local[k][node[c]] as u16;

@@ -6,6 +6,7 @@ use super::critical_step::{CriticalStep, Estimate, LanczosParams, critical_step_
 use super::step_lanes::{Forces, Inertia, accelerate, advance};
 use crate::error::ExplicitError;
 use crate::force::InternalForce;
+use crate::kernel::Precision;
 use crate::tools::{ToolEnergies, Tools};
 
 /// Parameters of a time integration.
@@ -243,6 +244,19 @@ impl<'a, 'b> Dynamics<'a, 'b> {
             ExplicitError::Inverted(at) => ExplicitError::InvertedAt { step, time, at },
             other => other,
         })
+    }
+
+    /// Returns what rounding changes in the internal forces at the displacements `u` (m); see
+    /// [`InternalForce::rounding`]. Returns zero in double precision, without an evaluation.
+    ///
+    /// # Errors
+    ///
+    /// [`ExplicitError::Inverted`] if a point is inverted.
+    pub fn rounding(&mut self, u: &[Vector3]) -> Result<f64, ExplicitError> {
+        match self.force.precision() {
+            Precision::Double => Ok(0.0),
+            Precision::Single => Ok(self.force.rounding(u)?),
+        }
     }
 
     /// Current displacements, m, one vector per node.

@@ -10,15 +10,7 @@ use rayon::prelude::*;
 
 use shape::Vector3;
 
-/// Copy of one node in one chunk: three components and a pad, one AVX2 register. The alignment matters:
-/// without it every other slot straddles two cache lines (with it 0.97 of the time of tet4).
-#[derive(Clone, Copy)]
-#[repr(C, align(32))]
-pub(super) struct Slot(pub [f64; 4]);
-
-impl Slot {
-    pub const ZERO: Slot = Slot([0.0; 4]);
-}
+use super::scalar::{Scalar, Slot};
 
 /// Nodes per task of the sum over copies.
 const NODES: usize = 1024;
@@ -123,18 +115,21 @@ impl Border {
         });
     }
 
-    /// Sums the slots of each node, and writes the nodal forces (N) to `f`.
-    pub fn forces(&self, slots: &[Slot], f: &mut [Vector3]) {
-        self.sum(|slot| slots[slot].0, |[x, y, z, _]| Vector3::new(x, y, z), f);
+    /// Sums the slots of each node in double precision, and writes the nodal forces (N) to `f`.
+    pub fn forces<T: Scalar>(&self, slots: &[Slot<T>], f: &mut [Vector3]) {
+        self.sum(|slot| slots[slot].0.map(T::double), |[x, y, z, _]| Vector3::new(x, y, z), f);
     }
 }
 
-/// Copies the displacements of a chunk's nodes into its slots.
+/// Copies the displacements of a chunk's nodes into its slots; see [`Scalar::displacement`] for `small`.
 #[inline(always)]
-pub(super) fn load(nodes: &[u32], u: &[Vector3], slots: &mut [Slot]) {
+pub(super) fn load<T: Scalar>(nodes: &[u32], u: &[Vector3], small: f64, slots: &mut [Slot<T>]) {
+    let Some(&first) = nodes.first() else { return };
+    let first = u[first as usize];
     for (slot, &node) in slots.iter_mut().zip(nodes) {
         let v = &u[node as usize];
-        *slot = Slot([v.x, v.y, v.z, 0.0]);
+        let of = |axis: usize| T::displacement(v[axis], first[axis], small);
+        *slot = Slot::new([of(0), of(1), of(2), T::ZERO]);
     }
 }
 

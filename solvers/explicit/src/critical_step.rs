@@ -77,7 +77,8 @@ impl Springs<'_> {
 /// degree of freedom `3 node + axis` is constrained if `free` returns false for it.
 ///
 /// The method is Lanczos with full reorthogonalisation on `A = M^-1/2 K M^-1/2`. `K v` is a central
-/// difference of internal forces, at a displacement of 1e-6 of the smallest spacing. The start vector is
+/// difference of internal forces, at a displacement of 1e-6 of the smallest spacing (3e-3 for forces in single
+/// precision). The start vector is
 /// fixed pseudo-random noise, so the same body gives the same step.
 ///
 /// # Errors
@@ -119,7 +120,7 @@ pub fn critical_step_touching(
     let n = 3 * mass.len();
     let root: Vec<f64> = (0..n).map(|k| mass[k / 3].sqrt()).collect();
     let constrained: Vec<bool> = (0..n).map(|k| !free(k)).collect();
-    let reach = 1e-6 * spacing(force);
+    let reach = force.precision().reach() * force.body().spacing();
     let mut product = Difference {
         force,
         u,
@@ -183,11 +184,6 @@ impl Difference<'_, '_> {
         let [plus, minus] = &self.ends;
         Ok((0..v.len()).map(|k| (plus[k / 3][k % 3] - minus[k / 3][k % 3]) / (2.0 * h)).collect())
     }
-}
-
-/// Returns a length of the order of the smallest spacing: the inverse of the largest shape gradient, m.
-fn spacing(force: &InternalForce) -> f64 {
-    1.0 / force.body().volume.grads().iter().map(Vector3::norm).fold(f64::MIN_POSITIVE, f64::max)
 }
 
 /// Returns a unit vector of numbers in (-1, 1) by a 64-bit linear congruence (Knuth's MMIX constants), zero

@@ -35,6 +35,9 @@ pub enum ExplicitError {
         /// Number of laws.
         laws: usize,
     },
+    /// Forces in single precision were requested for a body that only other kernels evaluate.
+    #[error("no kernel in single precision evaluates this element with this dilation and law")]
+    NoSinglePrecision,
     /// A parameter is out of its range.
     #[error("{what} is {value}; it must be {allowed}")]
     BadParameter {

@@ -7,12 +7,12 @@ use shape::{Layout, Matrix3, Vector3};
 use super::body::ExplicitBody;
 use super::cells::Cells;
 use super::moduli::LaneLaw;
-use super::quadratic::Quadratic;
+use super::quadratic::{Quadratic, Sums};
 use super::rows::Ragged;
 use super::tet4::Tet4;
 use super::trilinear::Trilinear;
 use crate::error::{ExplicitError, InvertedPoint};
-use crate::kernel::{Engine, Kernel, KernelInfo};
+use crate::kernel::{Engine, Kernel, KernelInfo, Precision};
 use crate::plain;
 
 /// Evaluator of the internal force `f_I(u) = dE/du_I` of a body, for many evaluations.
@@ -21,6 +21,7 @@ pub struct InternalForce<'a> {
     /// Lane kernel; `None` for the plain loop.
     engine: Option<Box<dyn Engine>>,
     path: LanePath,
+    precision: Precision,
 }
 
 fn boxed<E: Engine + 'static>(engine: E) -> Box<dyn Engine> {
@@ -34,21 +35,28 @@ impl<'a> InternalForce<'a> {
     ///
     /// [`ExplicitError::Length`] or [`ExplicitError::NoLaw`] if the parts of the body do not fit together.
     pub fn new(body: ExplicitBody<'a>, path: LanePath) -> Result<InternalForce<'a>, ExplicitError> {
+        InternalForce::of_precision(body, path, Precision::Double)
+    }
+
+    /// Chooses the kernel as [`InternalForce::new`], for forces of the given precision.
+    ///
+    /// # Errors
+    ///
+    /// As [`InternalForce::new`]; [`ExplicitError::NoSinglePrecision`] if no kernel in single precision fits.
+    pub fn of_precision(
+        body: ExplicitBody<'a>,
+        path: LanePath,
+        precision: Precision,
+    ) -> Result<InternalForce<'a>, ExplicitError> {
         body.check()?;
-        let laws = || LaneLaw::of_regions(&body);
-        let element = laws().and_then(|laws| match body.volume.layout() {
-            Layout::LinearTetrahedra => Tet4::new(&body, laws).map(boxed),
-            Layout::Cells { nodes: 8, points: 8 } => Cells::<Trilinear, 8, 8>::new(&body, laws).map(boxed),
-            Layout::Cells { nodes: 10, points: 4 } => quadratic::<10, 4>(&body, laws),
-            Layout::Cells { nodes: 20, points: 27 } => quadratic::<20, 27>(&body, laws),
-            Layout::Cells { nodes: 20, points: 8 } => quadratic::<20, 8>(&body, laws),
-            Layout::Cells { .. } | Layout::General => None,
-        });
-        let engine = element.or_else(|| match body.groups {
-            None => Ragged::new(&body, laws()?).map(boxed),
-            Some(_) => None,
-        });
-        Ok(InternalForce { body, engine, path })
+        let engine = match precision {
+            Precision::Single => Some(elements::<f32>(&body).ok_or(ExplicitError::NoSinglePrecision)?),
+            Precision::Double => elements::<f64>(&body).or_else(|| match body.groups {
+                None => Ragged::new(&body, LaneLaw::of_regions(&body)?).map(boxed),
+                Some(_) => None,
+            }),
+        };
+        Ok(InternalForce { body, engine, path, precision })
     }
 
     /// Uses the plain loop for any table: the reference of the other kernels.
@@ -58,7 +66,7 @@ impl<'a> InternalForce<'a> {
     /// As [`InternalForce::new`].
     pub fn plain(body: ExplicitBody<'a>) -> Result<InternalForce<'a>, ExplicitError> {
         body.check()?;
-        Ok(InternalForce { body, engine: None, path: LanePath::PORTABLE })
+        Ok(InternalForce { body, engine: None, path: LanePath::PORTABLE, precision: Precision::Double })
     }
 
     /// The body.
@@ -74,12 +82,17 @@ impl<'a> InternalForce<'a> {
     /// Returns the chosen kernel and its instruction set.
     pub fn info(&self) -> KernelInfo {
         let kernel = self.engine.as_ref().map_or(Kernel::Plain, |engine| engine.kernel());
-        KernelInfo { kernel, path: kernel.is_parallel().then_some(self.path) }
+        KernelInfo { kernel, path: kernel.is_parallel().then_some(self.path), precision: self.precision }
     }
 
     /// Requested instruction set; the plain loop does not use it.
     pub fn path(&self) -> LanePath {
         self.path
+    }
+
+    /// Precision of the forces.
+    pub fn precision(&self) -> Precision {
+        self.precision
     }
 
     /// Computes the internal forces (N) at nodal displacements `u` (m). After an error, `f` contains no valid
@@ -101,6 +114,22 @@ impl<'a> InternalForce<'a> {
         Ok(())
     }
 
+    /// Returns the largest difference between the internal forces of the kernel and those of the plain loop in
+    /// double precision, relative to the largest force: what rounding changes.
+    ///
+    /// # Errors
+    ///
+    /// [`InvertedPoint`] if `J` is not positive at a point.
+    pub fn rounding(&mut self, u: &[Vector3]) -> Result<f64, InvertedPoint> {
+        let mut forces = [vec![Vector3::zeros(); u.len()], vec![Vector3::zeros(); u.len()]];
+        let [found, exact] = &mut forces;
+        self.evaluate(u, found)?;
+        plain_forces(&self.body, u, exact)?;
+        let largest = exact.iter().map(Vector3::amax).fold(0.0, f64::max);
+        let gap = found.iter().zip(exact).map(|(a, b)| (a - *b).amax()).fold(0.0, f64::max);
+        Ok(if largest > 0.0 { gap / largest } else { 0.0 })
+    }
+
     /// Computes the strain energy (J) at nodal displacements `u` (m) by the plain loop.
     ///
     /// # Errors
@@ -115,11 +144,24 @@ impl<'a> InternalForce<'a> {
     }
 }
 
-fn quadratic<const N: usize, const Q: usize>(
+/// Returns the kernel of the elements that the layout of the table names, if there is one.
+fn elements<T: Sums>(body: &ExplicitBody) -> Option<Box<dyn Engine>> {
+    let laws = LaneLaw::of_regions(body)?;
+    match body.volume.layout() {
+        Layout::LinearTetrahedra => Tet4::<T>::new(body, laws).map(boxed),
+        Layout::Cells { nodes: 8, points: 8 } => Cells::<T, Trilinear, 8, 8>::new(body, laws).map(boxed),
+        Layout::Cells { nodes: 10, points: 4 } => quadratic::<T, 10, 4>(body, laws),
+        Layout::Cells { nodes: 20, points: 27 } => quadratic::<T, 20, 27>(body, laws),
+        Layout::Cells { nodes: 20, points: 8 } => quadratic::<T, 20, 8>(body, laws),
+        Layout::Cells { .. } | Layout::General => None,
+    }
+}
+
+fn quadratic<T: Sums, const N: usize, const Q: usize>(
     body: &ExplicitBody,
     laws: Vec<LaneLaw>,
 ) -> Option<Box<dyn Engine>> {
-    Cells::<Quadratic<N, Q>, N, Q>::new(body, laws).map(boxed)
+    Cells::<T, Quadratic<T, N, Q>, N, Q>::new(body, laws).map(boxed)
 }
 
 fn plain_forces(body: &ExplicitBody, u: &[Vector3], f: &mut [Vector3]) -> Result<(), InvertedPoint> {

@@ -67,6 +67,28 @@ impl Kernel {
     }
 }
 
+/// Precision of the internal forces. Displacements, velocities, masses and the sums of nodal forces over
+/// chunks of elements are double in both.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Precision {
+    /// 16 digits.
+    #[default]
+    Double,
+    /// 7 digits, with twice the lanes in half the memory.
+    Single,
+}
+
+impl Precision {
+    /// Strain of the differences of internal forces by which the critical step is estimated: large against
+    /// the rounding of the forces, small against strains at which the stiffness changes.
+    pub(crate) fn reach(self) -> f64 {
+        match self {
+            Precision::Double => 1e-6,
+            Precision::Single => 3e-3,
+        }
+    }
+}
+
 /// Kernel and instruction set for the internal forces of a body; known before the first evaluation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct KernelInfo {
@@ -74,6 +96,18 @@ pub struct KernelInfo {
     pub kernel: Kernel,
     /// Instruction set that the kernel runs on; `None` for the plain loop, which has no vector code.
     pub path: Option<LanePath>,
+    /// Precision of the forces.
+    pub precision: Precision,
+}
+
+impl KernelInfo {
+    /// Returns the name for records, with the precision if it is single.
+    pub fn name(self) -> String {
+        match self.precision {
+            Precision::Double => self.kernel.name().into(),
+            Precision::Single => format!("single-precision {}", self.kernel.name()),
+        }
+    }
 }
 
 /// Lane kernel with the tables of one body.

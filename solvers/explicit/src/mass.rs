@@ -31,12 +31,34 @@ impl Lumping {
     }
 }
 
-/// Computes nodal masses (kg), all positive; their sum is `sum_q rho w`. `density` (kg/m^3) is given by
-/// region index, `region` for every point; `region` is empty if all points are in region 0.
+/// Returns the mass (kg) of every integration point. `density` (kg/m^3) is given by region index, `region`
+/// for every point; `region` is empty if all points are in region 0.
 ///
 /// # Errors
 ///
-/// [`ExplicitError::NodalMass`] if a mass is not positive; also for invalid lengths, densities or regions.
+/// [`ExplicitError::Length`], [`ExplicitError::BadParameter`] or [`ExplicitError::NoLaw`] for invalid
+/// lengths, densities or regions.
+pub fn point_masses(volume: &VolumeRows, density: &[f64], region: &[u16]) -> Result<Vec<f64>, ExplicitError> {
+    let (found, expected) = (region.len(), volume.weights().len());
+    if found != expected && found > 0 {
+        return Err(ExplicitError::Length { what: "region indices", found, expected });
+    }
+    if let Some(&value) = density.iter().find(|&&rho| !(rho > 0.0 && rho.is_finite())) {
+        return Err(ExplicitError::BadParameter { what: "density", value, allowed: "positive and finite" });
+    }
+    let mass = |(point, w): (usize, &f64)| {
+        let region = region.get(point).map_or(0, |&region| usize::from(region));
+        let laws = density.len();
+        density.get(region).map(|rho| rho * w).ok_or(ExplicitError::NoLaw { point, region, laws })
+    };
+    volume.weights().iter().enumerate().map(mass).collect()
+}
+
+/// Computes nodal masses (kg), all positive; their sum is that of the [`point_masses`].
+///
+/// # Errors
+///
+/// [`ExplicitError::NodalMass`] if a mass is not positive; also as [`point_masses`].
 pub fn lumped_mass(
     volume: &VolumeRows,
     density: &[f64],
@@ -44,24 +66,7 @@ pub fn lumped_mass(
     lumping: Lumping,
 ) -> Result<Vec<f64>, ExplicitError> {
     let rows = volume.rows();
-    if !region.is_empty() && region.len() != rows.len() {
-        return Err(ExplicitError::Length {
-            what: "region indices",
-            found: region.len(),
-            expected: rows.len(),
-        });
-    }
-    if let Some(&value) = density.iter().find(|&&rho| !(rho > 0.0 && rho.is_finite())) {
-        return Err(ExplicitError::BadParameter { what: "density", value, allowed: "positive and finite" });
-    }
-    let mut point_mass = Vec::with_capacity(rows.len());
-    for (q, &w) in volume.weights().iter().enumerate() {
-        let region = region.get(q).copied().unwrap_or(0) as usize;
-        match density.get(region) {
-            Some(rho) => point_mass.push(rho * w),
-            None => return Err(ExplicitError::NoLaw { point: q, region, laws: density.len() }),
-        }
-    }
+    let point_mass = point_masses(volume, density, region)?;
     let mut mass = vec![0.0; rows.node_count()];
     match lumping {
         Lumping::RowSum => {

@@ -1,17 +1,23 @@
 //! Laws in the form that the kernels use.
 
 use super::body::ExplicitBody;
-use lanes::madd;
+use super::scalar::Scalar;
 use lanes::on_path;
-use material::lane::math::{inverse_cbrt_less_1, ln_1p};
-use material::lane::{LaneStrain, Lanes};
+use material::lane::{LaneStrain, Real};
 use material::{Law, Material, Volumetric};
 
 /// Lame moduli of a neo-Hookean law, Pa.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Moduli {
-    pub mu: f64,
-    pub lambda: f64,
+pub(super) struct Moduli<T = f64> {
+    pub mu: T,
+    pub lambda: T,
+}
+
+impl Moduli {
+    /// Rounds the moduli to the scalar of a kernel.
+    pub fn of<T: Real>(self) -> Moduli<T> {
+        Moduli { mu: T::of(self.mu), lambda: T::of(self.lambda) }
+    }
 }
 
 /// Law of a region as the kernels run it: the neo-Hookean law inside their own loops, every other law by its
@@ -49,28 +55,29 @@ impl LaneLaw {
 }
 
 on_path! {
-    /// Computes the stress of eight points for each strain, Pa.
-    pub(super) fn stress(law: &Law, strains: &[LaneStrain], p: &mut [[Lanes; 9]]) = stress_lanes
+    /// Computes the stress of all lanes for each strain, Pa.
+    pub(super) fn stress<; T: [Scalar]>(law: &Law, strains: &[LaneStrain<T>], p: &mut [[T::Lanes; 9]]) = stress_lanes
 }
 
 #[inline(always)]
-fn stress_lanes<const FMA: bool>(law: &Law, strains: &[LaneStrain], p: &mut [[Lanes; 9]]) {
-    law.stress_batch::<FMA>(strains, p);
+fn stress_lanes<const FMA: bool, T: Scalar>(law: &Law, strains: &[LaneStrain<T>], p: &mut [[T::Lanes; 9]]) {
+    T::stress::<FMA>(law, strains, p);
 }
 
 /// Computes `J_a^(2/3)` and `p_a = (1/V_a) dE/dJ_a` of one dilation group from its mean `J_a - 1`,
 /// `B_a = sum share w mu b`, `1 / V_a`, and `sum share w` times the moduli of [`LaneLaw::of_group`].
 #[inline(always)]
-pub(super) fn close_group<const FMA: bool>(
-    j: f64,
-    b: f64,
-    per_volume: f64,
-    [mu, lambda, quadratic]: [f64; 3],
-) -> [f64; 2] {
-    let d = inverse_cbrt_less_1::<FMA>(j);
+pub(super) fn close_group<const FMA: bool, T: Real>(
+    j: T,
+    b: T,
+    per_volume: T,
+    [mu, lambda, quadratic]: [T; 3],
+) -> [T; 2] {
+    let m = T::madd::<FMA>;
+    let d = T::inverse_cbrt_less_1::<FMA>(j);
     // J^(2/3) - 1 = (1 + j) (1 + d) - 1.
-    let sigma = madd::<FMA>(j, d, j + d);
-    let (y, s) = (1.0 + d, 1.0 + sigma);
-    let p = madd::<FMA>(b, s, madd::<FMA>(sigma, mu, lambda * ln_1p::<FMA>(j)));
-    [s, madd::<FMA>(quadratic, j * per_volume, p * (y * y * y) * per_volume)]
+    let sigma = m(j, d, j + d);
+    let (y, s) = (T::ONE + d, T::ONE + sigma);
+    let p = m(b, s, m(sigma, mu, lambda * T::ln_1p::<FMA>(j)));
+    [s, m(quadratic, j * per_volume, p * (y * y * y) * per_volume)]
 }

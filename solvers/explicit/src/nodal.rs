@@ -22,19 +22,20 @@ use shape::DilationGroups;
 use super::body::ExplicitBody;
 use super::chunks::{Border, ChunkNodes};
 use super::moduli::{LaneLaw, close_group};
+use super::scalar::Scalar;
 use lanes::{LANES, LanePath, on_path};
 
 /// Nodes per task.
 const NODES: usize = 1024;
 
-pub(super) struct Nodal {
+pub(super) struct Nodal<T> {
     /// Slots by node and part, if groups end at the borders of parts; `None` if every group is a node.
     border: Option<Border>,
     /// Values of each slot: `sum share w (J - 1)` and `B_a` after the first pass, then the slot's copy of
     /// `closed`.
-    slots: Vec<[f64; 2]>,
+    slots: Vec<[T; 2]>,
     constants: Vec<Constants>,
-    /// Values of each group: `sum share w (J - 1)` and `B_a`, then `J_a^(2/3)` and `p_a`.
+    /// Values of each group in double precision: `sum share w (J - 1)` and `B_a`, then `J_a^(2/3)` and `p_a`.
     closed: Vec<[f64; 2]>,
 }
 
@@ -47,7 +48,7 @@ struct Constants {
     quadratic: f64,
 }
 
-impl Nodal {
+impl<T: Scalar> Nodal<T> {
     /// Prepares the pass over the nodes, which turns the sums of each dilation group into its common dilation
     /// and pressure. The points of each of the `chunks` must belong to one part of the body.
     ///
@@ -58,7 +59,7 @@ impl Nodal {
         groups: &DilationGroups,
         laws: &[LaneLaw],
         chunks: &[ChunkNodes],
-    ) -> Option<Nodal> {
+    ) -> Option<Nodal<T>> {
         let (rows, weights) = (body.volume.rows(), body.volume.weights());
         let even = rows.values().iter().all(|n| (n - 0.25).abs() < 1e-14);
         let part = |q: usize| groups.parts().get(q).map_or(0, |&part| usize::from(part));
@@ -101,13 +102,13 @@ impl Nodal {
         let slots = chunks.iter().map(|chunk| chunk.nodes.len()).sum();
         Some(Nodal {
             border,
-            slots: vec![[0.0; 2]; slots],
+            slots: vec![[T::ZERO; 2]; slots],
             constants: sums.iter().map(constants).collect(),
             closed: vec![[0.0; 2]; count],
         })
     }
 
-    pub fn slots(&mut self) -> &mut [[f64; 2]] {
+    pub fn slots(&mut self) -> &mut [[T; 2]] {
         &mut self.slots
     }
 
@@ -116,17 +117,14 @@ impl Nodal {
     /// every group is a node.
     pub fn close(&mut self, path: LanePath, of_nodes: &Border) {
         let Nodal { border, slots, constants, closed } = self;
-        border.as_ref().unwrap_or(of_nodes).sum(|slot| slots[slot], |sum| sum, closed);
+        border.as_ref().unwrap_or(of_nodes).sum(|slot| slots[slot].map(T::double), |sum| sum, closed);
         let tasks = constants.par_chunks(NODES).zip(closed.par_chunks_mut(NODES));
         tasks.for_each(|(constants, closed)| close(path, constants, closed));
     }
 
     /// Returns three parts for the second pass: the pair `J_a^(2/3)`, `p_a` of each dilation group; the
     /// slots, into which the caller copies the pairs; and the assignment that gives the group of each slot.
-    pub fn closed<'a>(
-        &'a mut self,
-        of_nodes: &'a Border,
-    ) -> (&'a [[f64; 2]], &'a mut [[f64; 2]], &'a Border) {
+    pub fn closed<'a>(&'a mut self, of_nodes: &'a Border) -> (&'a [[f64; 2]], &'a mut [[T; 2]], &'a Border) {
         (&self.closed, &mut self.slots, self.border.as_ref().unwrap_or(of_nodes))
     }
 }
@@ -138,7 +136,7 @@ on_path! {
 #[inline(always)]
 fn close_lanes<const FMA: bool>(constants: &[Constants], closed: &mut [[f64; 2]]) {
     let one = |c: &Constants, [j, b]: [f64; 2]| {
-        close_group::<FMA>(j * c.per_volume, b, c.per_volume, [c.mu, c.lambda, c.quadratic])
+        close_group::<FMA, f64>(j * c.per_volume, b, c.per_volume, [c.mu, c.lambda, c.quadratic])
     };
     // Blocks of fixed length, so that the loop is vectorised.
     let (blocks, rest) = closed.as_chunks_mut::<LANES>();

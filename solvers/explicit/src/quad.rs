@@ -1,11 +1,11 @@
 //! Operations on four numbers of one node in one register.
 //!
-//! The compiler vectorises loops over eight lanes, but leaves sums of `[f64; 4]` scalar and builds lanes one
+//! The compiler vectorises loops over lanes, but leaves sums of four numbers scalar and builds lanes one
 //! number at a time, which stalls the loads behind them. Explicit intrinsics are twice as fast. `WIDE` is
 //! true only inside kernels compiled for AVX2 and FMA; `BITS` is the width of a kernel's registers. Without
 //! them the same sums run as plain loops.
 
-use super::chunks::Slot;
+use super::scalar::{Scalar, Slot};
 use lanes::{LANES, madd};
 
 #[cfg(target_arch = "x86_64")]
@@ -13,7 +13,7 @@ use std::arch::x86_64::*;
 
 /// Computes `y += a x`.
 #[inline(always)]
-pub(super) fn axpy<const WIDE: bool>(a: f64, x: &Slot, y: &mut Slot) {
+pub(super) fn axpy<const WIDE: bool>(a: f64, x: &Slot<f64>, y: &mut Slot<f64>) {
     #[cfg(target_arch = "x86_64")]
     if WIDE {
         // SAFETY: WIDE implies AVX2 and FMA. Slots are aligned; other loads and stores need no alignment and
@@ -33,17 +33,6 @@ pub(super) fn axpy<const WIDE: bool>(a: f64, x: &Slot, y: &mut Slot) {
     }
 }
 
-/// Whether all nodes in these rows of lanes are below `count`. The check takes some ten vector instructions
-/// for a block, instead of a branch for each node.
-#[inline(always)]
-pub(super) fn within<const N: usize>(nodes: &[[u16; LANES]; N], count: usize) -> bool {
-    let mut last = 0;
-    for node in nodes.as_flattened() {
-        last = last.max(*node);
-    }
-    usize::from(last) < count
-}
-
 /// Returns the components x, y, z of `u[nodes[l]] - origin[l]` for eight lanes. Plain loops are used, because
 /// the closures of `array::from_fn` were not inlined and made the whole kernel three times slower.
 ///
@@ -52,7 +41,7 @@ pub(super) fn within<const N: usize>(nodes: &[[u16; LANES]; N], count: usize) ->
 /// Registers of `BITS` must be available, and all nodes must lie within `u`.
 #[inline(always)]
 pub(super) unsafe fn lanes_of<const BITS: usize>(
-    u: &[Slot],
+    u: &[Slot<f64>],
     nodes: &[u16; LANES],
     origin: &[[f64; LANES]; 3],
 ) -> [[f64; LANES]; 3] {
@@ -96,14 +85,7 @@ pub(super) unsafe fn lanes_of<const BITS: usize>(
                     }
                 }
             }
-            _ => {
-                for l in 0..LANES {
-                    let at = u.get_unchecked(nodes[l] as usize);
-                    for i in 0..3 {
-                        out[i][l] = at.0[i] - origin[i][l];
-                    }
-                }
-            }
+            _ => out = plain_lanes_of(u, nodes, origin),
         }
     }
     out
@@ -120,7 +102,7 @@ pub(super) unsafe fn add_lanes<const BITS: usize>(
     y: &[f64; LANES],
     z: &[f64; LANES],
     nodes: &[u16; LANES],
-    f: &mut [Slot],
+    f: &mut [Slot<f64>],
 ) {
     // SAFETY: as in `lanes_of`.
     unsafe {
@@ -136,12 +118,7 @@ pub(super) unsafe fn add_lanes<const BITS: usize>(
             }
             return;
         }
-        for l in 0..LANES {
-            let at = f.get_unchecked_mut(nodes[l] as usize);
-            for (i, v) in [x[l], y[l], z[l]].into_iter().enumerate() {
-                at.0[i] += v;
-            }
-        }
+        plain_add_lanes([x, y, z], nodes, f);
     }
 }
 
@@ -152,7 +129,7 @@ pub(super) unsafe fn add_lanes<const BITS: usize>(
 /// AVX must be available, and the node must lie within `u`.
 #[cfg(target_arch = "x86_64")]
 #[inline(always)]
-unsafe fn quad(u: &[Slot], node: u16) -> __m256d {
+unsafe fn quad(u: &[Slot<f64>], node: u16) -> __m256d {
     // SAFETY: guaranteed by the caller.
     unsafe { _mm256_load_pd(u.as_ptr().add(node as usize).cast()) }
 }
@@ -164,9 +141,9 @@ pub(super) fn lanes_of_sums<const WIDE: bool>(
     pairs: &[[f64; 2]],
     nodes: &[[u16; LANES]; 4],
 ) -> [[f64; LANES]; 2] {
-    let mut out = [[0.0; LANES]; 2];
     #[cfg(target_arch = "x86_64")]
     if WIDE {
+        let mut out = [[0.0; LANES]; 2];
         // SAFETY: as in `axpy`.
         unsafe {
             for half in 0..2 {
@@ -184,14 +161,7 @@ pub(super) fn lanes_of_sums<const WIDE: bool>(
         }
         return out;
     }
-    for l in 0..LANES {
-        for a in 0..4 {
-            let at = &pairs[nodes[a][l] as usize];
-            out[0][l] += at[0];
-            out[1][l] += at[1];
-        }
-    }
-    out
+    plain_lanes_of_sums::<f64>(pairs, nodes)
 }
 
 /// Transposes a 4 x 4 matrix.
@@ -215,18 +185,58 @@ unsafe fn transposed(r: [__m256d; 4]) -> [__m256d; 4] {
     }
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn one_node_beyond_the_slots_is_seen_wherever_it_is() {
-        let mut nodes = [[5; LANES]; 4];
-        assert!(within(&nodes, 6) && !within(&nodes, 5));
-        for place in 0..4 * LANES {
-            nodes.as_flattened_mut()[place] = 6;
-            assert!(!within(&nodes, 6), "{place}");
-            nodes.as_flattened_mut()[place] = 5;
+/// Portable code of [`lanes_of`], for any scalar.
+///
+/// # Safety
+///
+/// All nodes must lie within `u`.
+#[inline(always)]
+pub(super) unsafe fn plain_lanes_of<T: Scalar>(
+    u: &[Slot<T>],
+    nodes: &T::Nodes,
+    origin: &[T::Lanes; 3],
+) -> [T::Lanes; 3] {
+    let mut out = [T::ZEROS; 3];
+    for l in 0..T::LANES {
+        // SAFETY: guaranteed by the caller.
+        let at = unsafe { u.get_unchecked(nodes[l] as usize) };
+        for i in 0..3 {
+            out[i][l] = at.0[i] - origin[i][l];
         }
     }
+    out
+}
+
+/// Portable code of [`add_lanes`], for any scalar.
+///
+/// # Safety
+///
+/// As for [`plain_lanes_of`].
+#[inline(always)]
+pub(super) unsafe fn plain_add_lanes<T: Scalar>(
+    [x, y, z]: [&T::Lanes; 3],
+    nodes: &T::Nodes,
+    f: &mut [Slot<T>],
+) {
+    for l in 0..T::LANES {
+        // SAFETY: guaranteed by the caller.
+        let at = unsafe { f.get_unchecked_mut(nodes[l] as usize) };
+        for (i, v) in [x[l], y[l], z[l]].into_iter().enumerate() {
+            at.0[i] += v;
+        }
+    }
+}
+
+/// Portable code of [`lanes_of_sums`], for any scalar.
+#[inline(always)]
+pub(super) fn plain_lanes_of_sums<T: Scalar>(pairs: &[[T; 2]], nodes: &[T::Nodes; 4]) -> [T::Lanes; 2] {
+    let mut out = [T::ZEROS; 2];
+    for l in 0..T::LANES {
+        for a in 0..4 {
+            let at = &pairs[nodes[a][l] as usize];
+            out[0][l] += at[0];
+            out[1][l] += at[1];
+        }
+    }
+    out
 }

@@ -4,20 +4,21 @@
 //! a shape function or a quadrature rule. Their columns are made orthonormal at each point, because a
 //! slender first cell would otherwise cost digits.
 
-use lanes::{LANES, Lanes, madd};
+use lanes::{LANES, madd, madd_f32};
 use material::lane::LaneStrain;
 use shape::{Matrix3, Vector3, VolumeRows};
 
 use super::cell_lanes::Cell;
+use super::scalar::Scalar;
 use super::trilinear::fit;
 
 /// Nodes whose terms are summed in registers. All quadratic cells have a multiple of five.
 const TOGETHER: usize = 5;
 
 /// Cell with reference derivatives `t_a`, [point][node][beta].
-pub(super) struct Quadratic<const N: usize, const Q: usize>(Box<[[[f64; 3]; N]; Q]>);
+pub(super) struct Quadratic<T, const N: usize, const Q: usize>(Box<[[[T; 3]; N]; Q]>);
 
-impl<const N: usize, const Q: usize> Cell<N, Q> for Quadratic<N, Q> {
+impl<T: Sums, const N: usize, const Q: usize> Cell<T, N, Q> for Quadratic<T, N, Q> {
     type Slopes = ();
     const SLOPES: () = ();
     const NODE: [usize; N] = {
@@ -38,43 +39,43 @@ impl<const N: usize, const Q: usize> Cell<N, Q> for Quadratic<N, Q> {
         let tables: Vec<Vec<Vector3>> = (0..Q).map(|q| orthonormal(volume.row(q).1)).collect();
         let map = |q: usize| fit(volume.row(q).1, &tables[q % Q]);
         let maps = (0..count).map(map).collect::<Option<_>>()?;
-        let mut table = Box::new([[[0.0; 3]; N]; Q]);
+        let mut table = Box::new([[[T::ZERO; 3]; N]; Q]);
         for q in 0..Q {
             for a in 0..N {
-                table[q][a] = tables[q][a].into();
+                table[q][a] = <[f64; 3]>::from(tables[q][a]).map(T::of);
             }
         }
         Some((Quadratic(table), std::array::from_fn(|q| q), maps))
     }
 
     #[inline(always)]
-    fn slopes(&self, _: &[[Lanes; N]; 3], _: &mut ()) {}
+    fn slopes(&self, _: &[[T::Lanes; N]; 3], _: &mut ()) {}
 
     #[inline(always)]
     fn strain<const FMA: bool>(
         &self,
-        [x, y, z]: &[[Lanes; N]; 3],
+        [x, y, z]: &[[T::Lanes; N]; 3],
         _: &(),
-        map: &[Lanes; 9],
+        map: &[T::Lanes; 9],
         q: usize,
-        out: &mut LaneStrain,
+        out: &mut LaneStrain<T>,
     ) {
-        let mut d = [[0.0; LANES]; 9];
+        let mut d = [T::ZEROS; 9];
         let nodes = x.as_chunks().0.iter().zip(y.as_chunks().0).zip(z.as_chunks().0);
         for (t, ((x, y), z)) in self.0[q].as_chunks().0.iter().zip(nodes) {
-            add_slopes::<FMA>(t, [x, y, z], &mut d);
+            T::add_slopes::<FMA>(t, [x, y, z], &mut d);
         }
-        mapped::<FMA>(&d, map, out);
+        mapped::<FMA, T>(&d, map, out);
     }
 
     #[inline(always)]
-    fn forces<const FMA: bool>(&self, points: &[LaneStrain; Q], f: &mut [[Lanes; N]; 3]) {
-        *f = [[[0.0; LANES]; N]; 3];
+    fn forces<const FMA: bool>(&self, points: &[LaneStrain<T>; Q], f: &mut [[T::Lanes; N]; 3]) {
+        *f = [[T::ZEROS; N]; 3];
         let [x, y, z] = f;
         for (table, point) in self.0.iter().zip(points) {
             let nodes = x.as_chunks_mut().0.iter_mut().zip(y.as_chunks_mut().0).zip(z.as_chunks_mut().0);
             for (t, ((x, y), z)) in table.as_chunks().0.iter().zip(nodes) {
-                add_forces::<FMA>(t, &point.h, x, y, z);
+                T::add_forces::<FMA>(t, &point.h, x, y, z);
             }
         }
     }
@@ -95,28 +96,12 @@ fn orthonormal(grads: &[Vector3]) -> Vec<Vector3> {
     basis
 }
 
-/// Adds the terms of a few nodes to the derivatives `d`, [3 i + beta].
-#[inline(always)]
-fn add_slopes<const FMA: bool>(t: &[[f64; 3]; TOGETHER], u: [&[Lanes; TOGETHER]; 3], d: &mut [Lanes; 9]) {
-    for l in 0..LANES {
-        for i in 0..3 {
-            for beta in 0..3 {
-                let mut sum = d[3 * i + beta][l];
-                for a in 0..TOGETHER {
-                    sum = madd::<FMA>(t[a][beta], u[i][a][l], sum);
-                }
-                d[3 * i + beta][l] = sum;
-            }
-        }
-    }
-}
-
 /// Computes `H_ij = sum_beta d_i beta A_j beta`.
 #[inline(always)]
-fn mapped<const FMA: bool>(d: &[Lanes; 9], map: &[Lanes; 9], out: &mut LaneStrain) {
-    let m = madd::<FMA>;
-    for l in 0..LANES {
-        let mut h = [0.0; 9];
+fn mapped<const FMA: bool, T: Scalar>(d: &[T::Lanes; 9], map: &[T::Lanes; 9], out: &mut LaneStrain<T>) {
+    let m = T::madd::<FMA>;
+    for l in 0..T::LANES {
+        let mut h = [T::ZERO; 9];
         for i in 0..3 {
             let (x, y, z) = (d[3 * i][l], d[3 * i + 1][l], d[3 * i + 2][l]);
             for j in 0..3 {
@@ -127,24 +112,71 @@ fn mapped<const FMA: bool>(d: &[Lanes; 9], map: &[Lanes; 9], out: &mut LaneStrai
     }
 }
 
-/// Adds the forces `sum_beta t_a beta S_i beta` of one point to a few nodes.
-#[inline(always)]
-fn add_forces<const FMA: bool>(
-    t: &[[f64; 3]; TOGETHER],
-    s: &[Lanes; 9],
-    x: &mut [Lanes; TOGETHER],
-    y: &mut [Lanes; TOGETHER],
-    z: &mut [Lanes; TOGETHER],
-) {
-    let m = madd::<FMA>;
-    for l in 0..LANES {
-        let of = |t: &[f64; 3], i: usize, f: f64| {
-            m(t[0], s[3 * i][l], m(t[1], s[3 * i + 1][l], m(t[2], s[3 * i + 2][l], f)))
-        };
-        for a in 0..TOGETHER {
-            x[a][l] = of(&t[a], 0, x[a][l]);
-            y[a][l] = of(&t[a], 1, y[a][l]);
-            z[a][l] = of(&t[a], 2, z[a][l]);
-        }
-    }
+/// Scalar with the sums over nodes. They are written over arrays of known length, because the loop over lanes
+/// stays scalar behind the indexing of [`material::lane::Real::Lanes`] (up to five times the time).
+pub(super) trait Sums: Scalar {
+    /// Adds the terms of a few nodes to the derivatives `d`, [3 i + beta].
+    fn add_slopes<const FMA: bool>(
+        t: &[[Self; 3]; TOGETHER],
+        u: [&[Self::Lanes; TOGETHER]; 3],
+        d: &mut [Self::Lanes; 9],
+    );
+
+    /// Adds the forces `sum_beta t_a beta S_i beta` of one point to a few nodes.
+    fn add_forces<const FMA: bool>(
+        t: &[[Self; 3]; TOGETHER],
+        s: &[Self::Lanes; 9],
+        x: &mut [Self::Lanes; TOGETHER],
+        y: &mut [Self::Lanes; TOGETHER],
+        z: &mut [Self::Lanes; TOGETHER],
+    );
 }
+
+macro_rules! sums {
+    ($type:ident, $lanes:expr, $madd:ident) => {
+        impl Sums for $type {
+            #[inline(always)]
+            fn add_slopes<const FMA: bool>(
+                t: &[[$type; 3]; TOGETHER],
+                u: [&[[$type; $lanes]; TOGETHER]; 3],
+                d: &mut [[$type; $lanes]; 9],
+            ) {
+                for l in 0..$lanes {
+                    for i in 0..3 {
+                        for beta in 0..3 {
+                            let mut sum = d[3 * i + beta][l];
+                            for a in 0..TOGETHER {
+                                sum = $madd::<FMA>(t[a][beta], u[i][a][l], sum);
+                            }
+                            d[3 * i + beta][l] = sum;
+                        }
+                    }
+                }
+            }
+
+            #[inline(always)]
+            fn add_forces<const FMA: bool>(
+                t: &[[$type; 3]; TOGETHER],
+                s: &[[$type; $lanes]; 9],
+                x: &mut [[$type; $lanes]; TOGETHER],
+                y: &mut [[$type; $lanes]; TOGETHER],
+                z: &mut [[$type; $lanes]; TOGETHER],
+            ) {
+                let m = $madd::<FMA>;
+                for l in 0..$lanes {
+                    let of = |t: &[$type; 3], i: usize, f: $type| {
+                        m(t[0], s[3 * i][l], m(t[1], s[3 * i + 1][l], m(t[2], s[3 * i + 2][l], f)))
+                    };
+                    for a in 0..TOGETHER {
+                        x[a][l] = of(&t[a], 0, x[a][l]);
+                        y[a][l] = of(&t[a], 1, y[a][l]);
+                        z[a][l] = of(&t[a], 2, z[a][l]);
+                    }
+                }
+            }
+        }
+    };
+}
+
+sums!(f64, LANES, madd);
+sums!(f32, 2 * LANES, madd_f32);

@@ -5,9 +5,10 @@
 //! point to point. Along x, y, z both are a single load or store of 32 bytes.
 
 use super::body::ExplicitBody;
-use super::chunks::{Border, ChunkNodes, Slot, load, split};
+use super::chunks::{Border, ChunkNodes, load, split};
 use super::moduli::{LaneLaw, Moduli, stress};
 use super::quad::axpy;
+use super::scalar::Slot;
 use crate::kernel::{Engine, Kernel};
 use lanes::{LanePath, on_path};
 use material::Law;
@@ -28,8 +29,8 @@ const TOGETHER: usize = 2;
 pub(super) struct Ragged {
     border: Border,
     chunks: Vec<Chunk>,
-    u: Vec<Slot>,
-    f: Vec<Slot>,
+    u: Vec<Slot<f64>>,
+    f: Vec<Slot<f64>>,
     laws: Vec<LaneLaw>,
 }
 
@@ -74,7 +75,7 @@ impl Engine for Ragged {
     fn forces(&mut self, path: LanePath, u: &[Vector3], f: &mut [Vector3]) -> bool {
         let Ragged { border, chunks, u: slots, f: sums, laws } = self;
         let not_inverted = border.for_each(slots, sums, |c, slots, sums| {
-            load(border.chunk(c), u, slots);
+            load(border.chunk(c), u, 0.0, slots);
             sums.fill(Slot::ZERO);
             let mut not_inverted = true;
             internal(path, path, laws, &chunks[c], slots, sums, &mut not_inverted);
@@ -113,7 +114,7 @@ impl Chunk {
 on_path! {
     /// Adds internal forces of one chunk to `f`; `not_inverted` becomes false if `J` is not positive
     /// somewhere.
-    fn internal(path: LanePath, laws: &[LaneLaw], chunk: &Chunk, u: &[Slot], f: &mut [Slot], not_inverted: &mut bool) = internal_lanes
+    fn internal(path: LanePath, laws: &[LaneLaw], chunk: &Chunk, u: &[Slot<f64>], f: &mut [Slot<f64>], not_inverted: &mut bool) = internal_lanes
 }
 
 #[inline(always)]
@@ -121,8 +122,8 @@ fn internal_lanes<const FMA: bool>(
     path: LanePath,
     laws: &[LaneLaw],
     chunk: &Chunk,
-    u: &[Slot],
-    f: &mut [Slot],
+    u: &[Slot<f64>],
+    f: &mut [Slot<f64>],
     not_inverted: &mut bool,
 ) {
     // Holds `H` of each batch, later replaced by `w P`.
@@ -160,8 +161,8 @@ fn internal_lanes<const FMA: bool>(
         for (batch, p) in batches.iter().zip(&x) {
             for l in 0..LANES {
                 let end = batch.ends[l] as usize;
-                let columns: [Slot; 3] =
-                    std::array::from_fn(|j| Slot([p[j][l], p[3 + j][l], p[6 + j][l], 0.0]));
+                let columns: [Slot<f64>; 3] =
+                    std::array::from_fn(|j| Slot::new([p[j][l], p[3 + j][l], p[6 + j][l], 0.0]));
                 for (&node, g) in chunk.nodes[start..end].iter().zip(&chunk.grads[start..end]) {
                     let at = &mut f[node as usize];
                     for j in 0..3 {
@@ -190,7 +191,7 @@ fn neo_hookean<const FMA: bool>(
         let h = [x[0][l], x[1][l], x[2][l], x[3][l], x[4][l], x[5][l], x[6][l], x[7][l], x[8][l]];
         let (at, minors) = Invariants::of::<FMA>(&h);
         good[l] = if 1.0 + at.j > 0.0 { good[l] } else { 0.0 };
-        let stress = piola::<FMA>(&h, minors, at.stress::<FMA>(batch.weights[l], mu, lambda));
+        let stress = piola::<FMA, _>(&h, minors, at.stress::<FMA>(batch.weights[l], mu, lambda));
         for k in 0..9 {
             x[k][l] = stress[k];
         }
@@ -232,7 +233,7 @@ fn strained<const FMA: bool>(x: &[Lanes; 9], out: &mut LaneStrain) {
 /// Returns the columns `H_.j = sum_I u_I g_Ij`. Two sums run at once: a single sum would wait four cycles for
 /// each term.
 #[inline(always)]
-fn gradient<const FMA: bool>(nodes: &[u16], grads: &[[f64; 3]], u: &[Slot]) -> [Slot; 3] {
+fn gradient<const FMA: bool>(nodes: &[u16], grads: &[[f64; 3]], u: &[Slot<f64>]) -> [Slot<f64>; 3] {
     let mut sums = [[Slot::ZERO; 3]; 2];
     let pairs = (nodes.as_chunks::<2>(), grads.as_chunks::<2>());
     let mut add = |side: usize, node: u16, g: &[f64; 3]| {
@@ -248,5 +249,5 @@ fn gradient<const FMA: bool>(nodes: &[u16], grads: &[[f64; 3]], u: &[Slot]) -> [
     if let ([n], [g]) = (pairs.0.1, pairs.1.1) {
         add(0, *n, g);
     }
-    std::array::from_fn(|j| Slot(std::array::from_fn(|i| sums[0][j].0[i] + sums[1][j].0[i])))
+    std::array::from_fn(|j| Slot::new(std::array::from_fn(|i| sums[0][j].0[i] + sums[1][j].0[i])))
 }

@@ -1,4 +1,4 @@
-//! Kernels of the tetrahedron with four nodes: eight elements in the lanes of one block.
+//! Kernels of the tetrahedron with four nodes: one element in each lane of a block.
 //!
 //! The kernels make three passes over a few blocks: strains, the law, then stress and forces. In a single
 //! pass a block is a chain that fills the out-of-order window of the processor. The neo-Hookean law in two
@@ -6,37 +6,36 @@
 //! that. The loop of each law over blocks is compiled separately, because two in one function spoil each
 //! other's vectorisation. The benchmark `tet4` reports the distance of the kernel from its bounds.
 
-use super::chunks::Slot;
 use super::moduli::{LaneLaw, Moduli, stress};
-use super::quad::{add_lanes, lanes_of, lanes_of_sums, within};
-use lanes::{LanePath, fetch, madd, on_path};
+use super::scalar::{Scalar, Slot, within};
+use lanes::{LanePath, fetch, on_path};
 use material::Law;
+use material::lane::LaneStrain;
 use material::lane::invariants::{Invariants, add_cofactor, piola, pressed};
-use material::lane::{LANES, LaneStrain, Lanes};
 
 /// Number of blocks that go through each pass together; two and eight take as long.
 const TOGETHER: usize = 4;
 
 #[repr(C, align(64))]
-pub(super) struct Block {
+pub(super) struct Block<T: Scalar> {
     /// Gradients of nodes 1 to 3, [3 a + j].
-    pub grads: [[f64; LANES]; 9],
-    pub weight: [f64; LANES],
-    pub nodes: [[u16; LANES]; 4],
+    pub grads: [T::Lanes; 9],
+    pub weight: T::Lanes,
+    pub nodes: [T::Nodes; 4],
 }
 
 /// Blocks of one chunk, by law.
-pub(super) struct Chunk {
-    pub blocks: Vec<Block>,
+pub(super) struct Chunk<T: Scalar> {
+    pub blocks: Vec<Block<T>>,
     /// Consecutive blocks of one region: index after the last block, and region index.
     pub runs: Vec<(usize, u16)>,
 }
 
-/// Intermediate results between passes, aligned like [`LaneStrain`].
+/// Intermediate results between passes, aligned like [`LaneStrain<T>`].
 #[repr(align(64))]
-struct Passed<T>([T; TOGETHER]);
+struct Passed<P>([P; TOGETHER]);
 
-impl Block {
+impl<T: Scalar> Block<T> {
     /// Prefetches a later block; without this, a hundred thousand elements take 1.8 times as long. Four to
     /// sixteen blocks ahead are equivalent. Prefetching all blocks of a pass at once is too much (1.5 times).
     #[inline(always)]
@@ -47,9 +46,9 @@ impl Block {
 
 /// Checks that all nodes of the blocks lie within the given number of slots.
 #[inline(always)]
-fn check(blocks: &[Block], slots: usize) {
+fn check<T: Scalar>(blocks: &[Block<T>], slots: usize) {
     for block in blocks {
-        assert!(within(&block.nodes, slots), "a node outside the chunk's slots");
+        assert!(within::<T>(&block.nodes, slots), "a node outside the chunk's slots");
     }
 }
 
@@ -59,13 +58,13 @@ fn check(blocks: &[Block], slots: usize) {
 ///
 /// Registers of `BITS` must be available, and the block's nodes must lie within `u`.
 #[inline(always)]
-unsafe fn gather<const BITS: usize>(block: &Block, u: &[Slot]) -> [[f64; LANES]; 9] {
-    let mut d = [[0.0; LANES]; 9];
+unsafe fn gather<const BITS: usize, T: Scalar>(block: &Block<T>, u: &[Slot<T>]) -> [T::Lanes; 9] {
+    let mut d = [T::ZEROS; 9];
     // SAFETY: guaranteed by the caller.
-    let origin = unsafe { lanes_of::<BITS>(u, &block.nodes[0], &[[0.0; LANES]; 3]) };
+    let origin = unsafe { T::lanes_of::<BITS>(u, &block.nodes[0], &[T::ZEROS; 3]) };
     for a in 0..3 {
         // SAFETY: as above.
-        let lanes = unsafe { lanes_of::<BITS>(u, &block.nodes[a + 1], &origin) };
+        let lanes = unsafe { T::lanes_of::<BITS>(u, &block.nodes[a + 1], &origin) };
         d[3 * a..3 * a + 3].copy_from_slice(&lanes);
     }
     d
@@ -77,19 +76,19 @@ unsafe fn gather<const BITS: usize>(block: &Block, u: &[Slot]) -> [[f64; LANES];
 ///
 /// Registers of `BITS` must be available, and the block's nodes must lie within `f`.
 #[inline(always)]
-unsafe fn scatter<const BITS: usize>(block: &Block, out: &[Lanes; 12], f: &mut [Slot]) {
+unsafe fn scatter<const BITS: usize, T: Scalar>(block: &Block<T>, out: &[T::Lanes; 12], f: &mut [Slot<T>]) {
     for a in 0..4 {
         let nodes = &block.nodes[(a + 1) % 4];
         // SAFETY: guaranteed by the caller.
-        unsafe { add_lanes::<BITS>(&out[3 * a], &out[3 * a + 1], &out[3 * a + 2], nodes, f) };
+        unsafe { T::add_lanes::<BITS>([&out[3 * a], &out[3 * a + 1], &out[3 * a + 2]], nodes, f) };
     }
 }
 
 /// Returns `H_ij = sum_a d_ai g_aj` of one lane.
 #[inline(always)]
-fn gradient<const FMA: bool>(d: &[[f64; LANES]; 9], g: &[[f64; LANES]; 9], l: usize) -> [f64; 9] {
-    let m = madd::<FMA>;
-    let mut h = [0.0; 9];
+fn gradient<const FMA: bool, T: Scalar>(d: &[T::Lanes; 9], g: &[T::Lanes; 9], l: usize) -> [T; 9] {
+    let m = T::madd::<FMA>;
+    let mut h = [T::ZERO; 9];
     for k in 0..9 {
         let (i, j) = (k / 3, k % 3);
         h[k] = m(d[i][l], g[j][l], m(d[3 + i][l], g[3 + j][l], d[6 + i][l] * g[6 + j][l]));
@@ -99,8 +98,8 @@ fn gradient<const FMA: bool>(d: &[[f64; LANES]; 9], g: &[[f64; LANES]; 9], l: us
 
 /// Computes `f_a = w P grad N_a` of one lane, and minus their sum for node 0.
 #[inline(always)]
-fn forces<const FMA: bool>(p: &[f64; 9], g: &[[f64; LANES]; 9], l: usize, out: &mut [Lanes; 12]) {
-    let m = madd::<FMA>;
+fn forces<const FMA: bool, T: Scalar>(p: &[T; 9], g: &[T::Lanes; 9], l: usize, out: &mut [T::Lanes; 12]) {
+    let m = T::madd::<FMA>;
     for i in 0..3 {
         let row = |a: usize| {
             m(p[3 * i], g[3 * a][l], m(p[3 * i + 1], g[3 * a + 1][l], p[3 * i + 2] * g[3 * a + 2][l]))
@@ -112,16 +111,16 @@ fn forces<const FMA: bool>(p: &[f64; 9], g: &[[f64; LANES]; 9], l: usize, out: &
 
 /// Computes `H` of eight elements.
 #[inline(always)]
-fn strain<const FMA: bool>(d: &[Lanes; 9], g: &[Lanes; 9], out: &mut LaneStrain) {
-    for l in 0..LANES {
-        let h = gradient::<FMA>(d, g, l);
+fn strain<const FMA: bool, T: Scalar>(d: &[T::Lanes; 9], g: &[T::Lanes; 9], out: &mut LaneStrain<T>) {
+    for l in 0..T::LANES {
+        let h = gradient::<FMA, T>(d, g, l);
         out.set::<FMA>(l, &h);
     }
 }
 
 #[inline(always)]
-fn weighted(p: &[Lanes; 9], w: f64, l: usize) -> [f64; 9] {
-    let mut out = [0.0; 9];
+fn weighted<T: Scalar>(p: &[T::Lanes; 9], w: T, l: usize) -> [T; 9] {
+    let mut out = [T::ZERO; 9];
     for k in 0..9 {
         out[k] = w * p[k][l];
     }
@@ -130,42 +129,42 @@ fn weighted(p: &[Lanes; 9], w: f64, l: usize) -> [f64; 9] {
 
 /// Computes the forces of eight elements for the stress `p`.
 #[inline(always)]
-fn forces_of<const FMA: bool>(block: &Block, p: &[Lanes; 9], out: &mut [Lanes; 12]) {
-    for l in 0..LANES {
+fn forces_of<const FMA: bool, T: Scalar>(block: &Block<T>, p: &[T::Lanes; 9], out: &mut [T::Lanes; 12]) {
+    for l in 0..T::LANES {
         let w = block.weight[l];
-        let p = weighted(p, w, l);
-        forces::<FMA>(&p, &block.grads, l, out);
+        let p = weighted::<T>(p, w, l);
+        forces::<FMA, T>(&p, &block.grads, l, out);
     }
 }
 
 /// Computes the forces as [`forces_of`] with the mean pressure of the groups; `pressure` is four times the
 /// mean.
 #[inline(always)]
-fn dilated_forces_of<const FMA: bool>(
-    block: &Block,
-    strain: &LaneStrain,
-    p: &[Lanes; 9],
-    pressure: &Lanes,
-    out: &mut [Lanes; 12],
+fn dilated_forces_of<const FMA: bool, T: Scalar>(
+    block: &Block<T>,
+    strain: &LaneStrain<T>,
+    p: &[T::Lanes; 9],
+    pressure: &T::Lanes,
+    out: &mut [T::Lanes; 12],
 ) {
-    for l in 0..LANES {
+    for l in 0..T::LANES {
         let w = block.weight[l];
-        let mut p = weighted(p, w, l);
+        let mut p = weighted::<T>(p, w, l);
         let (x, minors) = strain.invariants(l);
-        add_cofactor::<FMA>(&strain.lane(l), minors, x.trace, 0.25 * w * pressure[l], &mut p);
-        forces::<FMA>(&p, &block.grads, l, out);
+        add_cofactor::<FMA, _>(&strain.lane(l), minors, x.trace, T::of(0.25) * w * pressure[l], &mut p);
+        forces::<FMA, T>(&p, &block.grads, l, out);
     }
 }
 
 /// Computes the coefficients of `w P`.
 #[inline(always)]
-fn neo_hookean_law<const FMA: bool>(
-    block: &Block,
-    strain: &LaneStrain,
-    Moduli { mu, lambda }: Moduli,
-    out: &mut [Lanes; 3],
+fn neo_hookean_law<const FMA: bool, T: Scalar>(
+    block: &Block<T>,
+    strain: &LaneStrain<T>,
+    Moduli { mu, lambda }: Moduli<T>,
+    out: &mut [T::Lanes; 3],
 ) {
-    for l in 0..LANES {
+    for l in 0..T::LANES {
         let (x, _) = strain.invariants(l);
         let c = x.stress::<FMA>(block.weight[l], mu, lambda);
         (out[0][l], out[1][l], out[2][l]) = (c[0], c[1], c[2]);
@@ -174,119 +173,125 @@ fn neo_hookean_law<const FMA: bool>(
 
 /// Computes the forces of eight elements for the stress with these coefficients.
 #[inline(always)]
-fn combined_forces<const FMA: bool>(
-    block: &Block,
-    strain: &LaneStrain,
-    c: &[Lanes; 3],
-    out: &mut [Lanes; 12],
+fn combined_forces<const FMA: bool, T: Scalar>(
+    block: &Block<T>,
+    strain: &LaneStrain<T>,
+    c: &[T::Lanes; 3],
+    out: &mut [T::Lanes; 12],
 ) {
-    for l in 0..LANES {
+    for l in 0..T::LANES {
         let (_, minors) = strain.invariants(l);
-        let p = piola::<FMA>(&strain.lane(l), minors, [c[0][l], c[1][l], c[2][l]]);
-        forces::<FMA>(&p, &block.grads, l, out);
+        let p = piola::<FMA, _>(&strain.lane(l), minors, [c[0][l], c[1][l], c[2][l]]);
+        forces::<FMA, T>(&p, &block.grads, l, out);
     }
 }
 
 /// Computes the coefficients as [`neo_hookean_law`] with the dilation of the groups. The `shared` numbers are
 /// four times the means of `J_a^(2/3)` and `p_a`.
 #[inline(always)]
-fn dilated_neo_hookean_law<const FMA: bool>(
-    block: &Block,
-    strain: &LaneStrain,
-    mu: f64,
-    shared: &[Lanes; 2],
-    out: &mut [Lanes; 3],
+fn dilated_neo_hookean_law<const FMA: bool, T: Scalar>(
+    block: &Block<T>,
+    strain: &LaneStrain<T>,
+    mu: T,
+    shared: &[T::Lanes; 2],
+    out: &mut [T::Lanes; 3],
 ) {
-    for l in 0..LANES {
+    for l in 0..T::LANES {
         let (x, _) = strain.invariants(l);
         let w = block.weight[l];
         let (_, isochoric) = x.isochoric::<FMA>(&strain.lane(l), w * mu);
-        let (s, wp) = (0.25 * shared[0][l], 0.25 * w * shared[1][l]);
-        let c = pressed::<FMA>(isochoric, x.trace, s, wp);
+        let (s, wp) = (T::of(0.25) * shared[0][l], T::of(0.25) * w * shared[1][l]);
+        let c = pressed::<FMA, _>(isochoric, x.trace, s, wp);
         (out[0][l], out[1][l], out[2][l]) = (c[0], c[1], c[2]);
     }
 }
 
 /// Adds internal forces of one chunk to `f`. Returns false if `J` is not positive somewhere.
-pub(super) fn internal(path: LanePath, laws: &[LaneLaw], chunk: &Chunk, u: &[Slot], f: &mut [Slot]) -> bool {
+pub(super) fn internal<T: Scalar>(
+    path: LanePath,
+    laws: &[LaneLaw],
+    chunk: &Chunk<T>,
+    u: &[Slot<T>],
+    f: &mut [Slot<T>],
+) -> bool {
     let mut first = 0;
-    let mut good = [1.0; LANES];
+    let mut good = T::ONES;
     for &(end, region) in &chunk.runs {
         let blocks = &chunk.blocks[first..end];
         match &laws[region as usize] {
-            LaneLaw::NeoHookean(moduli) => neo_hookean(path, blocks, *moduli, u, f, &mut good),
+            LaneLaw::NeoHookean(moduli) => neo_hookean(path, blocks, moduli.of(), u, f, &mut good),
             LaneLaw::Other(law, _) => other(path, path, blocks, law, u, f, &mut good),
         }
         first = end;
     }
-    good == [1.0; LANES]
+    good == T::ONES
 }
 
 on_path! {
     /// Adds the forces of the neo-Hookean law. [`other`] takes 2.4 % more instructions and 1.03 of the time
     /// with 80,000 elements. With 6,000 elements, in cache, it takes 1.02 (AVX2) and 1.03 (AVX-512) in the
     /// median of twelve processes, but up to 1.14 and 1.18 if this kernel is fast.
-    fn neo_hookean(blocks: &[Block], moduli: Moduli, u: &[Slot], f: &mut [Slot], good: &mut Lanes) = neo_hookean_lanes::<BITS>
+    fn neo_hookean<; T: [Scalar]>(blocks: &[Block<T>], moduli: Moduli<T>, u: &[Slot<T>], f: &mut [Slot<T>], good: &mut T::Lanes) = neo_hookean_lanes::<BITS>
 }
 
 #[inline(always)]
-fn neo_hookean_lanes<const FMA: bool, const BITS: usize>(
-    blocks: &[Block],
-    moduli: Moduli,
-    u: &[Slot],
-    f: &mut [Slot],
-    good: &mut Lanes,
+fn neo_hookean_lanes<const FMA: bool, const BITS: usize, T: Scalar>(
+    blocks: &[Block<T>],
+    moduli: Moduli<T>,
+    u: &[Slot<T>],
+    f: &mut [Slot<T>],
+    good: &mut T::Lanes,
 ) {
-    let (mut x, mut c) = ([LaneStrain::ZERO; TOGETHER], Passed([[[0.0; LANES]; 3]; TOGETHER]));
-    let mut out = [[0.0; LANES]; 12];
+    let (mut x, mut c) = ([LaneStrain::ZERO; TOGETHER], Passed([[T::ZEROS; 3]; TOGETHER]));
+    let mut out = [T::ZEROS; 12];
     for blocks in blocks.chunks(TOGETHER) {
         check(blocks, u.len().min(f.len()));
         for (block, x) in blocks.iter().zip(&mut x) {
             block.fetch_ahead();
             // SAFETY: the nodes were checked, and a kernel runs with the registers of its path.
-            strain::<FMA>(&unsafe { gather::<BITS>(block, u) }, &block.grads, x);
+            strain::<FMA, T>(&unsafe { gather::<BITS, T>(block, u) }, &block.grads, x);
             x.check(good);
         }
         for ((block, x), c) in blocks.iter().zip(&x).zip(&mut c.0) {
-            neo_hookean_law::<FMA>(block, x, moduli, c);
+            neo_hookean_law::<FMA, T>(block, x, moduli, c);
         }
         for ((block, x), c) in blocks.iter().zip(&x).zip(&c.0) {
-            combined_forces::<FMA>(block, x, c, &mut out);
+            combined_forces::<FMA, T>(block, x, c, &mut out);
             // SAFETY: as above.
-            unsafe { scatter::<BITS>(block, &out, f) };
+            unsafe { scatter::<BITS, T>(block, &out, f) };
         }
     }
 }
 
 on_path! {
     /// Adds the forces of any other law.
-    fn other(path: LanePath, blocks: &[Block], law: &Law, u: &[Slot], f: &mut [Slot], good: &mut Lanes) = other_lanes::<BITS>
+    fn other<; T: [Scalar]>(path: LanePath, blocks: &[Block<T>], law: &Law, u: &[Slot<T>], f: &mut [Slot<T>], good: &mut T::Lanes) = other_lanes::<BITS>
 }
 
 #[inline(always)]
-fn other_lanes<const FMA: bool, const BITS: usize>(
+fn other_lanes<const FMA: bool, const BITS: usize, T: Scalar>(
     path: LanePath,
-    blocks: &[Block],
+    blocks: &[Block<T>],
     law: &Law,
-    u: &[Slot],
-    f: &mut [Slot],
-    good: &mut Lanes,
+    u: &[Slot<T>],
+    f: &mut [Slot<T>],
+    good: &mut T::Lanes,
 ) {
-    let (mut x, mut p) = ([LaneStrain::ZERO; TOGETHER], Passed([[[0.0; LANES]; 9]; TOGETHER]));
-    let mut out = [[0.0; LANES]; 12];
+    let (mut x, mut p) = ([LaneStrain::ZERO; TOGETHER], Passed([[T::ZEROS; 9]; TOGETHER]));
+    let mut out = [T::ZEROS; 12];
     for blocks in blocks.chunks(TOGETHER) {
         check(blocks, u.len().min(f.len()));
         for (block, x) in blocks.iter().zip(&mut x) {
             block.fetch_ahead();
             // SAFETY: the nodes were checked, and a kernel runs with the registers of its path.
-            strain::<FMA>(&unsafe { gather::<BITS>(block, u) }, &block.grads, x);
+            strain::<FMA, T>(&unsafe { gather::<BITS, T>(block, u) }, &block.grads, x);
             x.check(good);
         }
         stress(path, law, &x[..blocks.len()], &mut p.0);
         for (block, p) in blocks.iter().zip(&p.0) {
-            forces_of::<FMA>(block, p, &mut out);
+            forces_of::<FMA, T>(block, p, &mut out);
             // SAFETY: as above.
-            unsafe { scatter::<BITS>(block, &out, f) };
+            unsafe { scatter::<BITS, T>(block, &out, f) };
         }
     }
 }
@@ -294,37 +299,37 @@ fn other_lanes<const FMA: bool, const BITS: usize>(
 on_path! {
     /// Makes the first pass of nodal-mean dilation: adds `sum share w (J - 1)` and `sum share w mu b` to
     /// `sums`.
-    pub(super) fn dilations(laws: &[LaneLaw], chunk: &Chunk, u: &[Slot], sums: &mut [[f64; 2]], not_inverted: &mut bool) = dilations_lanes::<BITS>
+    pub(super) fn dilations<; T: [Scalar]>(laws: &[LaneLaw], chunk: &Chunk<T>, u: &[Slot<T>], sums: &mut [[T; 2]], not_inverted: &mut bool) = dilations_lanes::<BITS>
 }
 
 #[inline(always)]
-fn dilations_lanes<const FMA: bool, const BITS: usize>(
+fn dilations_lanes<const FMA: bool, const BITS: usize, T: Scalar>(
     laws: &[LaneLaw],
-    chunk: &Chunk,
-    u: &[Slot],
-    sums: &mut [[f64; 2]],
+    chunk: &Chunk<T>,
+    u: &[Slot<T>],
+    sums: &mut [[T; 2]],
     not_inverted: &mut bool,
 ) {
     let mut first = 0;
-    let mut good = [1.0; LANES];
+    let mut good = T::ONES;
     for &(end, region) in &chunk.runs {
         // Only the first sum is used for other laws.
-        let [mu, ..] = laws[region as usize].of_group();
+        let mu = T::of(laws[region as usize].of_group()[0]);
         for block in &chunk.blocks[first..end] {
             check(std::slice::from_ref(block), u.len());
             block.fetch_ahead();
             // SAFETY: the nodes were checked, and a kernel runs with the registers of its path.
-            let d = unsafe { gather::<BITS>(block, u) };
-            let mut out = [[0.0; LANES]; 2];
-            for l in 0..LANES {
-                let h = gradient::<FMA>(&d, &block.grads, l);
+            let d = unsafe { gather::<BITS, T>(block, u) };
+            let mut out = [T::ZEROS; 2];
+            for l in 0..T::LANES {
+                let h = gradient::<FMA, T>(&d, &block.grads, l);
                 let (x, _) = Invariants::of::<FMA>(&h);
-                good[l] = if 1.0 + x.j > 0.0 { good[l] } else { 0.0 };
-                let share = 0.25 * block.weight[l];
+                good[l] = if T::ONE + x.j > T::ZERO { good[l] } else { T::ZERO };
+                let share = T::of(0.25) * block.weight[l];
                 out[0][l] = share * x.j;
-                out[1][l] = share * mu * x.isochoric::<FMA>(&h, 0.0).0;
+                out[1][l] = share * mu * x.isochoric::<FMA>(&h, T::ZERO).0;
             }
-            for l in 0..LANES {
+            for l in 0..T::LANES {
                 for a in 0..4 {
                     let at = &mut sums[block.nodes[a][l] as usize];
                     at[0] += out[0][l];
@@ -334,23 +339,23 @@ fn dilations_lanes<const FMA: bool, const BITS: usize>(
         }
         first = end;
     }
-    *not_inverted = good == [1.0; LANES];
+    *not_inverted = good == T::ONES;
 }
 
 /// Makes the second pass: adds forces to `f`; `closed` has `J_a^(2/3)` and `p_a` of the nodes.
-pub(super) fn dilated(
+pub(super) fn dilated<T: Scalar>(
     path: LanePath,
     laws: &[LaneLaw],
-    chunk: &Chunk,
-    u: &[Slot],
-    closed: &[[f64; 2]],
-    f: &mut [Slot],
+    chunk: &Chunk<T>,
+    u: &[Slot<T>],
+    closed: &[[T; 2]],
+    f: &mut [Slot<T>],
 ) {
     let mut first = 0;
     for &(end, region) in &chunk.runs {
         let blocks = &chunk.blocks[first..end];
         match &laws[region as usize] {
-            LaneLaw::NeoHookean(moduli) => dilated_neo_hookean(path, blocks, moduli.mu, u, closed, f),
+            LaneLaw::NeoHookean(moduli) => dilated_neo_hookean(path, blocks, T::of(moduli.mu), u, closed, f),
             LaneLaw::Other(law, _) => dilated_other(path, path, blocks, law, u, closed, f),
         }
         first = end;
@@ -358,67 +363,67 @@ pub(super) fn dilated(
 }
 
 on_path! {
-    fn dilated_neo_hookean(blocks: &[Block], mu: f64, u: &[Slot], closed: &[[f64; 2]], f: &mut [Slot]) = dilated_neo_hookean_lanes::<BITS>
+    fn dilated_neo_hookean<; T: [Scalar]>(blocks: &[Block<T>], mu: T, u: &[Slot<T>], closed: &[[T; 2]], f: &mut [Slot<T>]) = dilated_neo_hookean_lanes::<BITS>
 }
 
 #[inline(always)]
-fn dilated_neo_hookean_lanes<const FMA: bool, const BITS: usize>(
-    blocks: &[Block],
-    mu: f64,
-    u: &[Slot],
-    closed: &[[f64; 2]],
-    f: &mut [Slot],
+fn dilated_neo_hookean_lanes<const FMA: bool, const BITS: usize, T: Scalar>(
+    blocks: &[Block<T>],
+    mu: T,
+    u: &[Slot<T>],
+    closed: &[[T; 2]],
+    f: &mut [Slot<T>],
 ) {
-    let (mut x, mut c) = ([LaneStrain::ZERO; TOGETHER], Passed([[[0.0; LANES]; 3]; TOGETHER]));
-    let mut out = [[0.0; LANES]; 12];
+    let (mut x, mut c) = ([LaneStrain::ZERO; TOGETHER], Passed([[T::ZEROS; 3]; TOGETHER]));
+    let mut out = [T::ZEROS; 12];
     for blocks in blocks.chunks(TOGETHER) {
         check(blocks, u.len().min(f.len()));
         for (block, x) in blocks.iter().zip(&mut x) {
             block.fetch_ahead();
             // SAFETY: the nodes were checked, and a kernel runs with the registers of its path.
-            strain::<FMA>(&unsafe { gather::<BITS>(block, u) }, &block.grads, x);
+            strain::<FMA, T>(&unsafe { gather::<BITS, T>(block, u) }, &block.grads, x);
         }
         for ((block, x), c) in blocks.iter().zip(&x).zip(&mut c.0) {
-            let shared = lanes_of_sums::<FMA>(closed, &block.nodes);
-            dilated_neo_hookean_law::<FMA>(block, x, mu, &shared, c);
+            let shared = T::lanes_of_sums::<FMA>(closed, &block.nodes);
+            dilated_neo_hookean_law::<FMA, T>(block, x, mu, &shared, c);
         }
         for ((block, x), c) in blocks.iter().zip(&x).zip(&c.0) {
-            combined_forces::<FMA>(block, x, c, &mut out);
+            combined_forces::<FMA, T>(block, x, c, &mut out);
             // SAFETY: as above.
-            unsafe { scatter::<BITS>(block, &out, f) };
+            unsafe { scatter::<BITS, T>(block, &out, f) };
         }
     }
 }
 
 on_path! {
     /// Adds the forces of any other law.
-    fn dilated_other(path: LanePath, blocks: &[Block], law: &Law, u: &[Slot], closed: &[[f64; 2]], f: &mut [Slot]) = dilated_other_lanes::<BITS>
+    fn dilated_other<; T: [Scalar]>(path: LanePath, blocks: &[Block<T>], law: &Law, u: &[Slot<T>], closed: &[[T; 2]], f: &mut [Slot<T>]) = dilated_other_lanes::<BITS>
 }
 
 #[inline(always)]
-fn dilated_other_lanes<const FMA: bool, const BITS: usize>(
+fn dilated_other_lanes<const FMA: bool, const BITS: usize, T: Scalar>(
     path: LanePath,
-    blocks: &[Block],
+    blocks: &[Block<T>],
     law: &Law,
-    u: &[Slot],
-    closed: &[[f64; 2]],
-    f: &mut [Slot],
+    u: &[Slot<T>],
+    closed: &[[T; 2]],
+    f: &mut [Slot<T>],
 ) {
-    let (mut x, mut p) = ([LaneStrain::ZERO; TOGETHER], Passed([[[0.0; LANES]; 9]; TOGETHER]));
-    let mut out = [[0.0; LANES]; 12];
+    let (mut x, mut p) = ([LaneStrain::ZERO; TOGETHER], Passed([[T::ZEROS; 9]; TOGETHER]));
+    let mut out = [T::ZEROS; 12];
     for blocks in blocks.chunks(TOGETHER) {
         check(blocks, u.len().min(f.len()));
         for (block, x) in blocks.iter().zip(&mut x) {
             block.fetch_ahead();
             // SAFETY: the nodes were checked, and a kernel runs with the registers of its path.
-            strain::<FMA>(&unsafe { gather::<BITS>(block, u) }, &block.grads, x);
+            strain::<FMA, T>(&unsafe { gather::<BITS, T>(block, u) }, &block.grads, x);
         }
         stress(path, law, &x[..blocks.len()], &mut p.0);
         for ((block, x), p) in blocks.iter().zip(&x).zip(&p.0) {
-            let [_, pressure] = lanes_of_sums::<FMA>(closed, &block.nodes);
-            dilated_forces_of::<FMA>(block, x, p, &pressure, &mut out);
+            let [_, pressure] = T::lanes_of_sums::<FMA>(closed, &block.nodes);
+            dilated_forces_of::<FMA, T>(block, x, p, &pressure, &mut out);
             // SAFETY: as above.
-            unsafe { scatter::<BITS>(block, &out, f) };
+            unsafe { scatter::<BITS, T>(block, &out, f) };
         }
     }
 }

@@ -7,11 +7,11 @@
 //! loop stays scalar.
 
 use geometry::element::{Element, HEX_CORNERS, Hex8};
-use lanes::{LANES, Lanes, madd};
-use material::lane::LaneStrain;
+use material::lane::{LaneStrain, Real};
 use shape::{Matrix3, Vector3, VolumeRows};
 
 use super::cell_lanes::Cell;
+use super::scalar::Scalar;
 
 /// Gauss coordinate 1 / sqrt 3.
 const GAUSS: f64 = 0.577_350_269_189_625_8;
@@ -41,15 +41,16 @@ pub(super) fn fit(grads: &[Vector3], table: &[Vector3]) -> Option<Matrix3> {
 /// Converts corner values, by index bits, to eight times the coefficients; those of products are multiplied
 /// by their powers of 1 / sqrt 3.
 #[inline(always)]
-fn coefficients(v: [f64; 8]) -> [f64; 8] {
-    let pair = |a: f64, b: f64| (b + a, b - a);
+fn coefficients<T: Real>(v: [T; 8]) -> [T; 8] {
+    let gauss = T::of(GAUSS);
+    let pair = |a: T, b: T| (b + a, b - a);
     let ((a0, a1), (a2, a3)) = (pair(v[0], v[1]), pair(v[2], v[3]));
     let ((a4, a5), (a6, a7)) = (pair(v[4], v[5]), pair(v[6], v[7]));
     let ((b0, b2), (b1, b3)) = (pair(a0, a2), pair(a1, a3));
     let ((b4, b6), (b5, b7)) = (pair(a4, a6), pair(a5, a7));
     let ((c0, c4), (c1, c5)) = (pair(b0, b4), pair(b1, b5));
     let ((c2, c6), (c3, c7)) = (pair(b2, b6), pair(b3, b7));
-    [c0, c1, c2, GAUSS * c3, c4, GAUSS * c5, GAUSS * c6, GAUSS * GAUSS * c7]
+    [c0, c1, c2, gauss * c3, c4, gauss * c5, gauss * c6, T::of(GAUSS * GAUSS) * c7]
 }
 
 /// Returns the index 0 to 3 of the value of the derivative along `beta` at the point with index bits `q`, by
@@ -65,9 +66,9 @@ fn value_at(beta: usize, q: usize) -> usize {
 
 /// Returns eight times the derivatives at the Gauss points, [beta][value], from corner values by index bits.
 #[inline(always)]
-fn slopes(corners: [f64; 8]) -> [[f64; 4]; 3] {
+fn slopes<T: Real>(corners: [T; 8]) -> [[T; 4]; 3] {
     let c = coefficients(corners);
-    let values = |flat: f64, along_a: f64, along_b: f64, both: f64| {
+    let values = |flat: T, along_a: T, along_b: T, both: T| {
         let (low, high) = ((flat - along_a, along_b - both), (flat + along_a, along_b + both));
         [low.0 - low.1, high.0 - high.1, low.0 + low.1, high.0 + high.1]
     };
@@ -76,15 +77,16 @@ fn slopes(corners: [f64; 8]) -> [[f64; 4]; 3] {
 
 /// Applies the transpose of [`slopes`].
 #[inline(always)]
-fn slopes_back(d: &[[f64; 4]; 3]) -> [f64; 8] {
-    let sums = |v: &[f64; 4]| {
+fn slopes_back<T: Real>(d: &[[T; 4]; 3]) -> [T; 8] {
+    let gauss = T::of(GAUSS);
+    let sums = |v: &[T; 4]| {
         let (up, down) = ((v[2] + v[0], v[3] + v[1]), (v[2] - v[0], v[3] - v[1]));
         (up.1 + up.0, up.1 - up.0, down.1 + down.0, down.1 - down.0)
     };
     let (x, y, z) = (sums(&d[0]), sums(&d[1]), sums(&d[2]));
-    let (xy, xz, yz) = (GAUSS * (x.1 + y.1), GAUSS * (x.2 + z.1), GAUSS * (y.2 + z.2));
-    let xyz = GAUSS * GAUSS * (x.3 + y.3 + z.3);
-    let pair = |sum: f64, difference: f64| (sum - difference, sum + difference);
+    let (xy, xz, yz) = (gauss * (x.1 + y.1), gauss * (x.2 + z.1), gauss * (y.2 + z.2));
+    let xyz = T::of(GAUSS * GAUSS) * (x.3 + y.3 + z.3);
+    let pair = |sum: T, difference: T| (sum - difference, sum + difference);
     let (b0, b4) = (-z.0, z.0);
     let (b1, b5) = pair(x.0, xz);
     let (b2, b6) = pair(y.0, yz);
@@ -99,10 +101,10 @@ fn slopes_back(d: &[[f64; 4]; 3]) -> [f64; 8] {
 /// Trilinear hexahedron. Points and nodes are indexed by corner bits.
 pub(super) struct Trilinear;
 
-impl Cell<8, 8> for Trilinear {
+impl<T: Scalar> Cell<T, 8, 8> for Trilinear {
     /// Derivatives `8 du_i/dxi_beta`, [i][beta][value].
-    type Slopes = [[[Lanes; 4]; 3]; 3];
-    const SLOPES: Self::Slopes = [[[[0.0; LANES]; 4]; 3]; 3];
+    type Slopes = [[[T::Lanes; 4]; 3]; 3];
+    const SLOPES: Self::Slopes = [[[T::ZEROS; 4]; 3]; 3];
     const NODE: [usize; 8] = NODE;
 
     /// Finds the order of the Gauss points, such as lowest axis fastest or corner order, in the first
@@ -119,25 +121,25 @@ impl Cell<8, 8> for Trilinear {
     }
 
     #[inline(always)]
-    fn slopes(&self, u: &[[Lanes; 8]; 3], out: &mut Self::Slopes) {
+    fn slopes(&self, u: &[[T::Lanes; 8]; 3], out: &mut Self::Slopes) {
         for i in 0..3 {
-            derivatives(&u[i], &mut out[i]);
+            derivatives::<T>(&u[i], &mut out[i]);
         }
     }
 
     #[inline(always)]
     fn strain<const FMA: bool>(
         &self,
-        _: &[[Lanes; 8]; 3],
+        _: &[[T::Lanes; 8]; 3],
         d: &Self::Slopes,
-        map: &[Lanes; 9],
+        map: &[T::Lanes; 9],
         q: usize,
-        out: &mut LaneStrain,
+        out: &mut LaneStrain<T>,
     ) {
-        let m = madd::<FMA>;
+        let m = T::madd::<FMA>;
         let v = [value_at(0, q) & 3, value_at(1, q) & 3, value_at(2, q) & 3];
-        for l in 0..LANES {
-            let mut h = [0.0; 9];
+        for l in 0..T::LANES {
+            let mut h = [T::ZERO; 9];
             for i in 0..3 {
                 let (x, y, z) = (d[i][0][v[0]][l], d[i][1][v[1]][l], d[i][2][v[2]][l]);
                 for j in 0..3 {
@@ -149,19 +151,19 @@ impl Cell<8, 8> for Trilinear {
     }
 
     #[inline(always)]
-    fn forces<const FMA: bool>(&self, points: &[LaneStrain; 8], f: &mut [[Lanes; 8]; 3]) {
+    fn forces<const FMA: bool>(&self, points: &[LaneStrain<T>; 8], f: &mut [[T::Lanes; 8]; 3]) {
         for i in 0..3 {
-            derivatives_back(points, i, &mut f[i]);
+            derivatives_back::<T>(points, i, &mut f[i]);
         }
     }
 }
 
 /// Computes the derivatives of one component.
 #[inline(always)]
-fn derivatives(v: &[Lanes; 8], [x, y, z]: &mut [[Lanes; 4]; 3]) {
-    for l in 0..LANES {
+fn derivatives<T: Scalar>(v: &[T::Lanes; 8], [x, y, z]: &mut [[T::Lanes; 4]; 3]) {
+    for l in 0..T::LANES {
         // Values are relative to the first node.
-        let d = slopes([0.0, v[1][l], v[2][l], v[3][l], v[4][l], v[5][l], v[6][l], v[7][l]]);
+        let d = slopes([T::ZERO, v[1][l], v[2][l], v[3][l], v[4][l], v[5][l], v[6][l], v[7][l]]);
         (x[0][l], x[1][l], x[2][l], x[3][l]) = (d[0][0], d[0][1], d[0][2], d[0][3]);
         (y[0][l], y[1][l], y[2][l], y[3][l]) = (d[1][0], d[1][1], d[1][2], d[1][3]);
         (z[0][l], z[1][l], z[2][l], z[3][l]) = (d[2][0], d[2][1], d[2][2], d[2][3]);
@@ -170,8 +172,8 @@ fn derivatives(v: &[Lanes; 8], [x, y, z]: &mut [[Lanes; 4]; 3]) {
 
 /// Applies the transpose of [`derivatives`], for component `i`.
 #[inline(always)]
-fn derivatives_back(s: &[LaneStrain; 8], i: usize, out: &mut [Lanes; 8]) {
-    for l in 0..LANES {
+fn derivatives_back<T: Scalar>(s: &[LaneStrain<T>; 8], i: usize, out: &mut [T::Lanes; 8]) {
+    for l in 0..T::LANES {
         // Each value belongs to the two points along the axis on which it does not depend.
         let two = |beta: usize, a: usize, b: usize| s[a].h[3 * i + beta][l] + s[b].h[3 * i + beta][l];
         let v = slopes_back(&[

@@ -135,13 +135,14 @@ fn has_avx512() -> bool {
 
 /// Defines `fn $name(path, args)`, which runs `$kernel::<FMA>(args)` compiled for the instructions of `path`.
 ///
-/// For `fn $name<const B: usize; W: [Weight<B>]>` the call is `$kernel::<FMA, B, W>(args)`. A kernel written
+/// For `fn $name<const B: usize; W: [Weight<B>]>` the call is `$kernel::<FMA, B, W>(args)`; constants may be
+/// missing, as in `fn $name<; T: [Real]>`. A kernel written
 /// as `$kernel::<BITS>` gets the register width after `FMA`: 64, 256 or 512 bits.
 #[macro_export]
 macro_rules! on_path {
     ($(#[$doc:meta])* $vis:vis fn $name:ident $(<$(const $size:ident: usize),* $(; $($kind:ident: [$($bound:tt)+]),+)?>)? ($($arg:ident: $ty:ty),* $(,)?) $(-> $out:ty)? = $kernel:ident $(::<$bits:ident>)?) => {
         $(#[$doc])*
-        $vis fn $name $(<$(const $size: usize),* $(, $($kind: $($bound)+),+)?>)? (path: $crate::LanePath, $($arg: $ty),*) $(-> $out)? {
+        $vis fn $name $(<$(const $size: usize,)* $($($kind: $($bound)+,)+)?>)? (path: $crate::LanePath, $($arg: $ty),*) $(-> $out)? {
             match path.kind() {
                 $crate::Kind::Portable => {
                     $(const $bits: usize = 64;)?
@@ -151,17 +152,17 @@ macro_rules! on_path {
                 $crate::Kind::Avx2 => {
                     $(const $bits: usize = 256;)?
                     #[target_feature(enable = "avx2,fma")]
-                    fn run $(<$(const $size: usize),* $(, $($kind: $($bound)+),+)?>)? ($($arg: $ty),*) $(-> $out)? { $kernel::<true $(, $bits)? $($(, $size)* $($(, $kind)+)?)?>($($arg),*) }
+                    fn run $(<$(const $size: usize,)* $($($kind: $($bound)+,)+)?>)? ($($arg: $ty),*) $(-> $out)? { $kernel::<true $(, $bits)? $($(, $size)* $($(, $kind)+)?)?>($($arg),*) }
                     // SAFETY: a path of this kind is constructed only if these features were detected.
-                    unsafe { run $(::<$($size),* $(, $($kind),+)?>)? ($($arg),*) }
+                    unsafe { run $(::<$($size,)* $($($kind,)+)?>)? ($($arg),*) }
                 }
                 #[cfg(target_arch = "x86_64")]
                 $crate::Kind::Avx512 => {
                     $(const $bits: usize = 512;)?
                     #[target_feature(enable = "avx512f,avx512dq,avx512vl,avx2,fma")]
-                    fn run $(<$(const $size: usize),* $(, $($kind: $($bound)+),+)?>)? ($($arg: $ty),*) $(-> $out)? { $kernel::<true $(, $bits)? $($(, $size)* $($(, $kind)+)?)?>($($arg),*) }
+                    fn run $(<$(const $size: usize,)* $($($kind: $($bound)+,)+)?>)? ($($arg: $ty),*) $(-> $out)? { $kernel::<true $(, $bits)? $($(, $size)* $($(, $kind)+)?)?>($($arg),*) }
                     // SAFETY: as above.
-                    unsafe { run $(::<$($size),* $(, $($kind),+)?>)? ($($arg),*) }
+                    unsafe { run $(::<$($size,)* $($($kind,)+)?>)? ($($arg),*) }
                 }
             }
         }

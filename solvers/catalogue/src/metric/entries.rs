@@ -176,6 +176,9 @@ metrics! {
         "smallest estimated critical time step; for vibrations, 2 / omega of the highest mode";
     STEP_ERROR: "step-error", "error of a time step", Length, Error, Dynamics,
         "largest estimated error of the displacement in one implicit time step";
+    FORCE_ROUNDING: "force-rounding", "relative rounding of internal forces", None, Error, Explicit,
+        "largest difference of the internal forces in single precision from those in double precision in all \
+         recorded states, divided by the largest force";
     ENERGY_DRIFT: "energy-drift", "relative energy drift", None, Error, Dynamics,
         "largest error of the energy balance divided by its largest term; with implicit steps, this error is \
          the energy dissipated by the scheme";

@@ -211,7 +211,7 @@ impl Material for MooneyRivlin {
             let volume = m(self.bulk, x.j, per_j * (-1.0 / 3.0) * m(a, i1, 2.0 * b * i2));
             let shape = m(2.0, b, a);
             let [on_h, on_cof, on_i] = x.combined::<FMA>(shape, shape * per_j, volume);
-            let stress = piola::<FMA>(&h, minors, [m(b, i1, on_h), on_cof, m(b, i1, on_i)]);
+            let stress = piola::<FMA, _>(&h, minors, [m(b, i1, on_h), on_cof, m(b, i1, on_i)]);
             let (xx, yy, zz, xy, xz, yz) = (b * xx, b * yy, b * zz, b * xy, b * xz, b * yz);
             let d = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]];
             for i in 0..3 {

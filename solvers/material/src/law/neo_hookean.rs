@@ -90,7 +90,7 @@ impl Material for NeoHookean {
     fn stress_lanes<const FMA: bool>(&self, strain: &LaneStrain, p: &mut [Lanes; 9]) {
         for l in 0..LANES {
             let (x, minors) = strain.invariants(l);
-            let stress = piola::<FMA>(&strain.lane(l), minors, x.stress::<FMA>(1.0, self.mu, self.lambda));
+            let stress = piola::<FMA, _>(&strain.lane(l), minors, x.stress::<FMA>(1.0, self.mu, self.lambda));
             for k in 0..9 {
                 p[k][l] = stress[k];
             }

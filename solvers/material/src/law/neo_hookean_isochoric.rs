@@ -115,7 +115,7 @@ impl Material for NeoHookeanIsochoric {
         for l in 0..LANES {
             let (h, (x, minors)) = (strain.lane(l), strain.invariants(l));
             let (_, shape) = x.isochoric::<FMA>(&h, self.mu);
-            let stress = piola::<FMA>(&h, minors, pressed::<FMA>(shape, x.trace, 1.0, self.bulk * x.j));
+            let stress = piola::<FMA, _>(&h, minors, pressed::<FMA, _>(shape, x.trace, 1.0, self.bulk * x.j));
             for k in 0..9 {
                 p[k][l] = stress[k];
             }
