@@ -132,6 +132,18 @@ pub struct Volume {
     pub diagnostics: Vec<(&'static Metric, f64)>,
 }
 
+impl Volume {
+    /// Returns the region of a point.
+    pub fn region(&self, q: usize) -> usize {
+        region_at(&self.region, q)
+    }
+}
+
+/// Returns the region of a point from the list of all points, which is empty if the body has one region.
+pub(crate) fn region_at(region: &[u16], q: usize) -> usize {
+    region.get(q).map_or(0, |&region| usize::from(region))
+}
+
 impl Discretisation {
     /// Finite elements with displacements of this order on a mesh.
     pub(crate) fn of_elements(

@@ -76,8 +76,7 @@ fn by_energy(run: &Solved, gradients: &[Matrix3]) -> Vec<usize> {
     let volume = &run.prepared.volume;
     let energy = gradients.iter().enumerate().map(|(q, h)| {
         let strain = (h + h.transpose() + h.transpose() * h) * 0.5;
-        let region = volume.region.get(q).map_or(0, |&region| usize::from(region));
-        volume.rows.weights()[q] * run.setup.materials[region].mu() * strain.norm_squared()
+        volume.rows.weights()[q] * run.setup.materials[volume.region(q)].mu() * strain.norm_squared()
     });
     let sums: Vec<f64> = energy
         .scan(0.0, |sum, e| {

@@ -13,6 +13,7 @@ use material::{Law, Material as _};
 use shape::GradRows;
 
 use super::solved::Solved;
+use crate::discretise::region_at;
 use crate::error::Failure;
 use crate::outcome::Warning;
 use crate::scenario::setup::Setup;
@@ -75,7 +76,7 @@ pub(super) fn shear(
     small: bool,
 ) -> f64 {
     let each = rows.displacement_gradients(u).into_iter().zip(weights).enumerate().map(|(q, (h, w))| {
-        let law = &setup.materials[region.get(q).map_or(0, |&region| usize::from(region))];
+        let law = &setup.materials[region_at(region, q)];
         let turned = if small { Matrix3::zeros() } else { h.transpose() * h };
         let strain = (h + h.transpose() + turned) * 0.5;
         w * law.mu() * (strain.norm_squared() - strain.trace().powi(2) / 3.0)

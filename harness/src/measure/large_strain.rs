@@ -31,10 +31,7 @@ pub(super) struct Largest {
 /// compared with it are valid at any strain: `None` too.
 pub(super) fn largest(run: &Solved) -> Option<[Largest; 2]> {
     let Solved { setup, prepared, solution, .. } = *run;
-    let small = |q: usize| {
-        let region = prepared.volume.region.get(q).map_or(0, |&region| usize::from(region));
-        setup.is_linear() || setup.laws[region].is_small_strain()
-    };
+    let small = |q: usize| setup.is_linear() || setup.laws[prepared.volume.region(q)].is_small_strain();
     if setup.exact.is_some() || setup.contact.is_some() {
         return None;
     }

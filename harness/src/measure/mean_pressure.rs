@@ -21,7 +21,7 @@ pub fn cauchy(law: &Law, h: &Matrix3) -> Matrix3 {
 /// displacement gradients (3, 3) at the points. `parameters` (Pa, tension positive) are those of the method's
 /// pressure field, if it has one.
 pub fn at_points(laws: &[Law], volume: &Volume, gradients: &[Matrix3], parameters: &[f64]) -> Vec<f64> {
-    let law = |q: usize| &laws[volume.region.get(q).map_or(0, |&r| r as usize)];
+    let law = |q: usize| &laws[volume.region(q)];
     if let Some(rows) = &volume.pressure {
         let at = |q| {
             let (nodes, values) = rows.row(q);

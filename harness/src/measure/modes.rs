@@ -2,6 +2,7 @@
 
 use cases::exact::Vibrations;
 use catalogue::{metric, warning};
+use explicit::point_masses;
 use geometry::{Point3, Vector3};
 use shape::VolumeRows;
 
@@ -106,10 +107,10 @@ fn without_energy(run: &Solved, modes: &statics::Modes, count: usize) -> Result<
         };
         of(&fine, &fine_region) - of(&own.rows, &own.region)
     };
+    let masses = point_masses(&fine, &density, &fine_region)?;
     let inertia = |shape: &[Vector3]| {
-        let density = |q: usize| density[fine_region.get(q).map_or(0, |&region| usize::from(region))];
-        let each = fine.rows().apply(shape).into_iter().zip(fine.weights()).enumerate();
-        each.map(|(q, (u, w))| w * density(q) * u.norm_squared()).sum::<f64>()
+        let each = fine.rows().apply(shape).into_iter().zip(&masses);
+        each.map(|(u, m)| m * u.norm_squared()).sum::<f64>()
     };
     let mut worst: Option<[f64; 2]> = None;
     let mut unseen = 0;

@@ -6,6 +6,7 @@ use shape::{Matrix3, Point3, Vector3, VolumeRows};
 
 use super::solved::Solved;
 use super::stress::{Recovered, own_stress};
+use crate::discretise::region_at;
 
 /// Relative errors over the body. If the exact value of a norm vanishes (the pressure of a traceless stress,
 /// the energy of a rigid motion), the norm is absent instead of divided by zero.
@@ -93,7 +94,7 @@ fn energy(run: &Solved, fine: &VolumeRows, fine_region: &[u16], exact: &dyn Exac
     let volume = &prepared.volume;
     let own = volume.groups.is_some() || volume.pressure.is_some() || method.reduced;
     let (rows, region) = if own { (&volume.rows, &volume.region[..]) } else { (fine, fine_region) };
-    let law = |q: usize| &setup.materials[region.get(q).map_or(0, |&r| usize::from(r))];
+    let law = |q: usize| &setup.materials[region_at(region, q)];
     let stress = match own {
         true => own_stress(run, &solution.u, &solution.pressure),
         false => {

@@ -10,7 +10,7 @@ use crate::measure::solved::Solved;
 /// field, its parameters (Pa).
 pub(crate) fn own_stress(run: &Solved, u: &[Vector3], parameters: &[f64]) -> Vec<Matrix3> {
     let (laws, volume) = (&run.setup.laws, &run.prepared.volume);
-    let law = |q: usize| &laws[volume.region.get(q).map_or(0, |&r| usize::from(r))];
+    let law = |q: usize| &laws[volume.region(q)];
     let at = volume.rows.at();
     if volume.groups.is_none() && volume.pressure.is_none() {
         return (0..at.rows().len()).map(|q| cauchy(law(q), &at.displacement_gradient(q, u))).collect();

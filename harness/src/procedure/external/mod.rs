@@ -191,7 +191,7 @@ fn inner_forces(problem: &Problem, u: &[Vector3]) -> Vec<Vector3> {
 
 /// Material law of a quadrature point.
 fn law<'a>(problem: &'a Problem, q: usize) -> &'a Law {
-    &problem.setup.laws[problem.prepared.volume.region.get(q).map_or(0, |&region| usize::from(region))]
+    &problem.setup.laws[problem.prepared.volume.region(q)]
 }
 
 /// Strain energy (J) by this program's own quadrature, and the smallest volume ratio at its points.
