@@ -29,7 +29,9 @@ mod error;
 mod linear_solver;
 mod multigrid;
 mod pattern;
+mod row_parts;
 mod stiffness;
+mod vectors;
 
 pub use error::AlgebraError;
 pub use linear_solver::eigen;

@@ -4,6 +4,8 @@
 
 use rayon::prelude::*;
 
+use crate::row_parts::RowPart;
+
 /// Symbolic part of a table in compressed rows: the nodes of each row.
 #[derive(Clone, Copy)]
 pub struct Connectivity<'a> {
@@ -66,6 +68,8 @@ impl Incidence {
 pub struct BlockPattern {
     offsets: Vec<usize>,
     columns: Vec<u32>,
+    /// Parts of the rows, for products.
+    parts: Vec<RowPart>,
 }
 
 impl BlockPattern {
@@ -112,8 +116,9 @@ impl BlockPattern {
         for &length in chunks.iter().flat_map(|c| &c.1) {
             offsets.push(offsets[offsets.len() - 1] + length);
         }
-        let columns = chunks.into_iter().flat_map(|c| c.0).collect();
-        BlockPattern { offsets, columns }
+        let columns: Vec<u32> = chunks.into_iter().flat_map(|c| c.0).collect();
+        let parts = RowPart::of(node_count, |row| &columns[offsets[row]..offsets[row + 1]]);
+        BlockPattern { offsets, columns, parts }
     }
 
     /// Number of nodes (block rows).
@@ -126,6 +131,12 @@ impl BlockPattern {
     #[inline]
     pub fn block_count(&self) -> usize {
         self.columns.len()
+    }
+
+    /// Parts of the rows, for products.
+    #[inline]
+    pub(crate) fn parts(&self) -> &[RowPart] {
+        &self.parts
     }
 
     /// Columns of one block row, ascending, the diagonal last.

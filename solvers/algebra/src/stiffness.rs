@@ -11,6 +11,7 @@ use rayon::prelude::*;
 use shape::{Matrix3, Vector3};
 
 use crate::pattern::{BlockPattern, Incidence};
+use crate::row_parts::RowPart;
 
 /// Rows per task. The late rows of a lower triangle are long: with tasks of 32 rows, 83 nodes keep one of two
 /// threads waiting.
@@ -39,35 +40,52 @@ pub struct Stiffness {
 }
 
 on_path! {
-    fn multiply_rows(stiffness: &Stiffness, u: &[Vector3], out: &mut [Vector3]) = multiply_lanes
+    fn multiply_rows(
+        stiffness: &Stiffness, part: &RowPart, u: &[Vector3], out: &mut [Vector3], before: &mut [Vector3],
+    ) = multiply_lanes
 }
 
-/// Computes `out = K u`. Each stored block is read once, for its row and, transposed, for its column.
+/// Computes the product of a part of the rows: `out` for these rows, `before` for the columns before them.
+/// Each stored block is read once, for its row and, transposed, for its column.
 #[inline(always)]
-fn multiply_lanes<const FMA: bool>(stiffness: &Stiffness, u: &[Vector3], out: &mut [Vector3]) {
+fn multiply_lanes<const FMA: bool>(
+    stiffness: &Stiffness,
+    part: &RowPart,
+    u: &[Vector3],
+    out: &mut [Vector3],
+    before: &mut [Vector3],
+) {
     out.fill(Vector3::zeros());
-    for (i, own) in u.iter().enumerate() {
+    let start = part.rows.start;
+    let mut places = part.places.iter();
+    for i in part.rows.clone() {
+        let own = &u[i];
         let (columns, blocks) = stiffness.row(i);
         // Each column of a block is added to a sum of four lanes, of which three count. The last column is
         // read one entry early, so that its upper three lanes count.
         let mut sums = [[0.0; 4]; 3];
         for (&j, block) in columns.iter().zip(blocks) {
+            let j = j as usize;
             let entries = block.data.0.as_flattened();
-            let x = &u[j as usize];
+            let x = &u[j];
             for (c, (sum, start)) in sums.iter_mut().zip([0, 3, 5]).enumerate() {
                 for (l, sum) in sum.iter_mut().enumerate() {
                     *sum = madd::<FMA>(entries[start + l], x[c], *sum);
                 }
             }
-            if j as usize != i {
-                for (out, column) in out[j as usize].iter_mut().zip(entries.chunks_exact(3)) {
-                    *out +=
-                        madd::<FMA>(column[0], own[0], madd::<FMA>(column[1], own[1], column[2] * own[2]));
-                }
+            if j == i {
+                continue;
+            }
+            let transposed = match j.checked_sub(start) {
+                Some(j) => &mut out[j],
+                None => &mut before[*places.next().expect("a place for every column before") as usize],
+            };
+            for (out, column) in transposed.iter_mut().zip(entries.chunks_exact(3)) {
+                *out += madd::<FMA>(column[0], own[0], madd::<FMA>(column[1], own[1], column[2] * own[2]));
             }
         }
         for a in 0..3 {
-            out[i][a] += sums[0][a] + sums[1][a] + sums[2][a + 1];
+            out[i - start][a] += sums[0][a] + sums[1][a] + sums[2][a + 1];
         }
     }
 }
@@ -98,9 +116,26 @@ impl Stiffness {
         out
     }
 
-    /// Computes `out = K u`, N.
+    /// Computes `out = K u`, N. The contributions of later parts of the rows are added in their order.
     pub fn multiply_into(&self, u: &[Vector3], out: &mut [Vector3]) {
-        multiply_rows(LanePath::best(), self, u, out);
+        let path = LanePath::best();
+        let parts = self.pattern.parts();
+        let multiplied = |(part, out): (&RowPart, &mut [Vector3])| {
+            let mut before = vec![Vector3::zeros(); part.before.len()];
+            multiply_rows(path, self, part, u, out, &mut before);
+            before
+        };
+        let before: Vec<Vec<Vector3>> =
+            parts.par_iter().zip(RowPart::split(parts, out)).map(multiplied).collect();
+        let tasks = parts.par_iter().enumerate().zip(RowPart::split(parts, out));
+        tasks.for_each(|((own, RowPart { rows, .. }), out)| {
+            for (part, sums) in parts.iter().zip(&before).skip(own + 1) {
+                let place = |row: usize| part.before.partition_point(|&j| (j as usize) < row);
+                for k in place(rows.start)..place(rows.end) {
+                    out[part.before[k] as usize - rows.start] += sums[k];
+                }
+            }
+        });
     }
 
     /// Computes `out = |K| |u|` with the magnitudes of all entries, N.

@@ -37,18 +37,20 @@ pub(super) fn aggregates<const B: usize>(matrix: &Operator<B>, graph: &Graph) ->
             count += 1;
         }
     }
-    let founded = of.clone();
-    for i in (0..nodes).filter(|&i| founded[i] == NONE) {
+    let founded = of;
+    let joined = |i: usize| {
+        if founded[i] != NONE {
+            return founded[i];
+        }
         let strongest = graph
             .range(i)
-            .map(|k| graph.at(matrix, i, k))
+            .map(|k| matrix.at(graph, i, k))
             .filter(|(j, _)| founded[*j] != NONE)
             .map(|(j, block)| (block.iter().flatten().map(|a| a * a).sum::<f32>(), founded[j]))
             .reduce(|best, next| if next.0 > best.0 { next } else { best });
-        if let Some((_, aggregate)) = strongest {
-            of[i] = aggregate;
-        }
-    }
+        strongest.map_or(NONE, |(_, aggregate)| aggregate)
+    };
+    let mut of: Vec<u32> = (0..nodes).into_par_iter().with_min_len(1024).map(joined).collect();
     for i in 0..nodes {
         let neighbours = graph.columns(i);
         if of[i] == NONE && neighbours.len() > 1 {

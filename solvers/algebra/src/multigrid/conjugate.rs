@@ -1,5 +1,6 @@
 //! Conjugate gradients.
 
+use rayon::prelude::*;
 use shape::Vector3;
 
 use super::hierarchy::Hierarchy;
@@ -7,6 +8,7 @@ use super::level::Cycle;
 use super::operator::Entry;
 use crate::error::AlgebraError;
 use crate::stiffness::Stiffness;
+use crate::vectors::{CHUNK, GRAIN, dot, largest, norm, of_chunk, subtract, sums};
 
 /// Outcome of an iterative solve.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -60,12 +62,13 @@ impl Hierarchy {
             direction.fill(Vector3::zeros());
             while norm(&rest) > tolerance * size && count < MOST {
                 let preconditioned = inner.apply(self, &rest, cycle);
-                let product = dot(&rest, preconditioned);
-                let turned = dot(&before, preconditioned);
+                let chunks = preconditioned.par_chunks(CHUNK);
+                let chunks = chunks.zip(rest.par_chunks(CHUNK).zip(before.par_chunks(CHUNK)));
+                let [product, turned] =
+                    sums(chunks.map(|(z, (rest, before))| [of_chunk(rest, z), of_chunk(before, z)]));
                 let beta = if count == 0 || last == 0.0 { 0.0 } else { (product - turned) / last };
-                for (d, z) in direction.iter_mut().zip(preconditioned) {
-                    *d = z + *d * beta;
-                }
+                let along = direction.par_iter_mut().zip(preconditioned).with_min_len(GRAIN);
+                along.for_each(|(d, z)| *d = z + *d * beta);
                 stiffness.multiply_into(&direction, &mut image);
                 self.release(&mut image);
                 let energy = dot(&direction, &image);
@@ -73,19 +76,19 @@ impl Hierarchy {
                     return Err(AlgebraError::Residual { residual: norm(&rest) / size, limit: tolerance });
                 }
                 let step = product / energy;
-                before.copy_from_slice(&rest);
-                for i in 0..nodes {
-                    x[i] += direction[i] * step;
-                    rest[i] -= image[i] * step;
-                }
+                let solution = x.par_iter_mut().zip(&direction);
+                let residual = rest.par_iter_mut().zip(&mut before).zip(&image);
+                solution.zip(residual).with_min_len(GRAIN).for_each(|((x, d), ((rest, before), image))| {
+                    *x += d * step;
+                    *before = *rest;
+                    *rest -= image * step;
+                });
                 last = product;
                 count += 1;
             }
             stiffness.multiply_into(&x, &mut image);
             self.release(&mut image);
-            for i in 0..nodes {
-                rest[i] = b[i] - image[i];
-            }
+            subtract(b, &image, &mut rest);
             residual = norm(&rest) / size;
             if residual <= tolerance || count >= MOST {
                 break;
@@ -125,14 +128,12 @@ impl Precondition {
     /// Applies one cycle. The residual is scaled to a largest entry of one, because it falls below the range
     /// of single precision.
     pub fn apply(&mut self, hierarchy: &Hierarchy, rest: &[Vector3], cycle: Cycle) -> &[Vector3] {
-        let largest = rest.iter().fold(0.0f64, |l, r| l.max(r.amax()));
-        for (b, r) in self.b.iter_mut().zip(rest) {
-            *b = std::array::from_fn(|a| (r[a] / largest) as f32);
-        }
+        let largest = largest(rest);
+        let scaled = self.b.par_iter_mut().zip(rest).with_min_len(GRAIN);
+        scaled.for_each(|(b, r)| *b = std::array::from_fn(|a| (r[a] / largest) as f32));
         hierarchy.finest.solve(&self.b, &mut self.x, cycle);
-        for (out, x) in self.out.iter_mut().zip(&self.x) {
-            *out = Vector3::from_fn(|a, _| f64::from(x[a]) * largest);
-        }
+        let out = self.out.par_iter_mut().zip(&self.x).with_min_len(GRAIN);
+        out.for_each(|(out, x)| *out = Vector3::from_fn(|a, _| f64::from(x[a]) * largest));
         &self.out
     }
 }
@@ -143,13 +144,4 @@ pub(super) fn is_rounding(stiffness: &Stiffness, x: &[Vector3], b: &[Vector3], r
     stiffness.multiply_magnitudes(x, &mut sizes);
     sizes.iter_mut().zip(b).for_each(|(size, b)| *size += b.abs());
     norm(rest) <= ROUNDING * norm(&sizes)
-}
-
-pub(super) fn norm(x: &[Vector3]) -> f64 {
-    dot(x, x).sqrt()
-}
-
-/// Sums in chunks of fixed length, to limit rounding.
-pub(super) fn dot(a: &[Vector3], b: &[Vector3]) -> f64 {
-    a.chunks(1024).zip(b.chunks(1024)).map(|(a, b)| a.iter().zip(b).map(|(a, b)| a.dot(b)).sum::<f64>()).sum()
 }

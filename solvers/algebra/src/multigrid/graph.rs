@@ -4,7 +4,6 @@
 use std::ops::Range;
 
 use super::lower_triangle::LowerRows;
-use super::operator::{Operator, transposed};
 
 /// Columns of every row, ascending, with the positions of their blocks in the lower triangle.
 pub(super) struct Graph {
@@ -64,14 +63,9 @@ impl Graph {
         &self.columns[self.range(row)]
     }
 
-    /// Column and block of entry `k` ([`Graph::range`]) of a row, in the matrix to which this graph belongs.
+    /// Column of entry `k` ([`Graph::range`]), and the position of its block in the lower triangle.
     #[inline(always)]
-    pub fn at<const B: usize>(&self, matrix: &Operator<B>, row: usize, k: usize) -> (usize, [[f32; B]; B]) {
-        let (column, place) = (self.columns[k] as usize, self.places[k] as usize);
-        if column <= row {
-            (column, *matrix.of_lower(row, place))
-        } else {
-            (column, transposed(matrix.of_lower(column, place)))
-        }
+    pub fn entry(&self, k: usize) -> (usize, usize) {
+        (self.columns[k] as usize, self.places[k] as usize)
     }
 }

@@ -1,5 +1,6 @@
 //! Levels of a stiffness, from the finest to the coarsest.
 
+use rayon::prelude::*;
 use shape::{Coarser, Point3, Vector3};
 
 use super::aggregate::Modes;
@@ -8,6 +9,7 @@ use super::lower_triangle::{Held, LowerRows};
 use super::transfer::Transfer;
 use crate::linear_solver::FactorError;
 use crate::stiffness::Stiffness;
+use crate::vectors::GRAIN;
 
 /// Levels of a stiffness, with its constrained degrees of freedom.
 pub(super) struct Hierarchy {
@@ -71,11 +73,8 @@ impl Hierarchy {
 
     /// Sets the entries of constrained degrees of freedom to zero.
     pub(super) fn release(&self, x: &mut [Vector3]) {
-        for (x, held) in x.iter_mut().zip(self.held.chunks_exact(3)) {
-            for a in (0..3).filter(|&a| held[a]) {
-                x[a] = 0.0;
-            }
-        }
+        let of_nodes = x.par_iter_mut().zip(self.held.par_chunks_exact(3)).with_min_len(GRAIN);
+        of_nodes.for_each(|(x, held)| (0..3).filter(|&a| held[a]).for_each(|a| x[a] = 0.0));
     }
 }
 

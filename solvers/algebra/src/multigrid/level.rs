@@ -148,8 +148,8 @@ pub(super) fn by_aggregates<const B: usize>(
     if B * lower.nodes() <= COARSEST {
         return Ok(Box::new(Coarsest::new(lower, scale)?));
     }
-    let matrix = Operator::new(lower, scale);
     let graph = Graph::new(lower);
+    let matrix = Operator::new(lower, &graph, scale);
     let aggregates = aggregates(&matrix, &graph);
     if 2 * aggregates.count > lower.nodes() {
         // The nodes are hardly coupled: no coarser level would be much smaller.
@@ -171,8 +171,8 @@ pub(super) fn nested(
     modes: &[Modes<3>],
     scale: f64,
 ) -> Result<Box<dyn Level<3>>, FactorError> {
-    let matrix = Operator::new(lower, scale);
     let graph = Graph::new(lower);
+    let matrix = Operator::new(lower, &graph, scale);
     let coarse: Lower<3> = galerkin(lower, &graph, &transfer);
     drop(graph);
     let below = by_aggregates(&coarse, modes, scale, &[])?;

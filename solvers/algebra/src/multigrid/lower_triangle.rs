@@ -49,7 +49,7 @@ impl LowerRows<3> for Held<'_> {
         self.stiffness.pattern().row(row)
     }
 
-    #[inline]
+    #[inline(always)]
     fn block(&self, row: usize, at: usize) -> Block<3> {
         let (columns, blocks) = self.stiffness.row(row);
         let column = columns[at] as usize;
@@ -112,7 +112,7 @@ impl<const B: usize> LowerRows<B> for Lower<B> {
         &self.columns[self.offsets[row]..self.offsets[row + 1]]
     }
 
-    #[inline]
+    #[inline(always)]
     fn block(&self, row: usize, at: usize) -> Block<B> {
         self.blocks[self.offsets[row] + at]
     }

@@ -126,13 +126,18 @@ impl Multigrid {
         b: &mut [Vector3],
         tolerance: f64,
     ) -> Result<Iterations, AlgebraError> {
-        if let Some(both) = &self.pressures {
-            let (pressures, without) = &**both;
-            self.hierarchy.release(b);
-            return pressures.solve(&self.hierarchy, (without, stiffness), b, tolerance);
-        }
-        self.hierarchy
-            .iterate(stiffness, b, tolerance, Cycle::W)
-            .or_else(|_| self.hierarchy.iterate(stiffness, b, tolerance, Cycle::V))
+        // Runs on a thread of the pool: called from outside, each of an iteration's loops would have to wake
+        // a thread.
+        rayon::scope(|_| match &self.pressures {
+            Some(both) => {
+                let (pressures, without) = &**both;
+                self.hierarchy.release(b);
+                pressures.solve(&self.hierarchy, (without, stiffness), b, tolerance)
+            }
+            None => self
+                .hierarchy
+                .iterate(stiffness, b, tolerance, Cycle::W)
+                .or_else(|_| self.hierarchy.iterate(stiffness, b, tolerance, Cycle::V)),
+        })
     }
 }

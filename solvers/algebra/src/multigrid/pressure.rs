@@ -17,13 +17,16 @@
 
 use std::collections::VecDeque;
 
+use rayon::prelude::*;
 use shape::Vector3;
 
-use super::conjugate::{Iterations, Precondition, dot, is_rounding, norm};
+use super::conjugate::{Iterations, Precondition, is_rounding};
 use super::hierarchy::Hierarchy;
 use super::level::Cycle;
 use crate::error::AlgebraError;
+use crate::pattern::{Connectivity, Incidence};
 use crate::stiffness::Stiffness;
+use crate::vectors::{CHUNK, GRAIN, dot, norm, of_chunk, subtract, sums};
 
 /// Group of elements whose pressure is an unknown.
 #[derive(Clone, Debug, PartialEq)]
@@ -43,6 +46,8 @@ pub(super) struct Pressures {
     offsets: Vec<usize>,
     /// Node and coefficient in the volume change; zero for constrained degrees of freedom.
     row: Vec<(u32, Vector3)>,
+    /// Groups of each node.
+    of_node: Incidence,
     /// `V / k`, m^3/Pa.
     compliance: Vec<f64>,
     /// Diagonal approximation of the Schur complement: `V / k + V / rest`, m^3/Pa.
@@ -72,7 +77,7 @@ struct Pair {
 /// Levels, the product with A, and the largest number of iterations.
 pub(super) struct Inner<'a> {
     pub hierarchy: &'a Hierarchy,
-    pub product: &'a dyn Fn(&[Vector3], &mut [Vector3]),
+    pub product: &'a (dyn Fn(&[Vector3], &mut [Vector3]) + Sync),
     pub most: usize,
 }
 
@@ -82,10 +87,6 @@ struct Direction {
     image: Pair,
     square: f64,
 }
-
-/// Entries of a vector that stay in the cache while all directions are processed. With whole vectors this
-/// took longer than a cycle.
-const CHUNK: usize = 1024;
 
 impl Pressures {
     pub fn new(groups: &[PressureGroup], held: &[bool]) -> Pressures {
@@ -98,7 +99,10 @@ impl Pressures {
             }));
             offsets.push(row.len());
         }
+        let nodes: Vec<u32> = row.iter().map(|(node, _)| *node).collect();
+        let table = Connectivity { offsets: &offsets, nodes: &nodes, seen_by: &[] };
         Pressures {
+            of_node: Incidence::new(held.len() / 3, table, 0..groups.len()),
             offsets,
             row,
             compliance: groups.iter().map(|g| g.volume / g.excess).collect(),
@@ -112,28 +116,34 @@ impl Pressures {
     }
 
     /// Returns `B u`, the volume change of every group.
-    fn changes<'a>(&'a self, u: &'a [Vector3]) -> impl Iterator<Item = f64> + 'a {
-        let rows = self.offsets.windows(2).map(|range| &self.row[range[0]..range[1]]);
-        rows.map(|row| row.iter().map(|(node, part)| part.dot(&u[*node as usize])).sum())
+    fn changes(&self, u: &[Vector3]) -> impl IndexedParallelIterator<Item = f64> {
+        let rows = self.offsets.par_windows(2).with_min_len(GRAIN / 8);
+        rows.map(|range| {
+            self.row[range[0]..range[1]].iter().map(|(node, part)| part.dot(&u[*node as usize])).sum()
+        })
     }
 
-    /// Computes `out += B^T p`.
-    fn add_forces(&self, p: impl Iterator<Item = f64>, out: &mut [Vector3]) {
-        for (range, p) in self.offsets.windows(2).zip(p) {
-            self.row[range[0]..range[1]].iter().for_each(|(node, part)| out[*node as usize] += part * p);
-        }
+    /// Computes `out += B^T p` with the pressure `p` of every group.
+    fn add_forces(&self, p: impl Fn(usize) -> f64 + Sync, out: &mut [Vector3]) {
+        let nodes = out.par_iter_mut().enumerate().with_min_len(GRAIN / 8);
+        nodes.for_each(|(node, out)| {
+            for &(group, k) in self.of_node.of(node) {
+                *out += self.row[k as usize].1 * p(group as usize);
+            }
+        });
     }
 
     /// Returns `|f - K u|`, from the residual of the pair: `r_u + B^T (k / V) r_p`.
     fn of_displacements(&self, rest: &Pair, scratch: &mut [Vector3]) -> f64 {
         scratch.copy_from_slice(&rest.u);
-        self.add_forces(rest.p.iter().zip(&self.compliance).map(|(r, c)| r / c), scratch);
+        self.add_forces(|g| rest.p[g] / self.compliance[g], scratch);
         norm(scratch)
     }
 
     /// Returns the product of two residuals or images.
     fn dot(&self, a: &Pair, b: &Pair) -> f64 {
-        let p: f64 = a.p.iter().zip(&b.p).zip(&self.force).map(|((a, b), force)| a * b * force * force).sum();
+        let chunks = a.p.par_chunks(CHUNK).zip(b.p.par_chunks(CHUNK)).zip(self.force.par_chunks(CHUNK));
+        let [p] = sums(chunks.map(|((a, b), force)| [weighted(a, b, force)]));
         dot(&a.u, &b.u) + p
     }
 
@@ -169,9 +179,7 @@ impl Pressures {
             self.descend(&inner, &mut cycles, (&mut x, &mut rest), tolerance * size, &mut count);
             stiffness.multiply_into(&x, &mut image);
             hierarchy.release(&mut image);
-            for i in 0..nodes {
-                rest.u[i] = b[i] - image[i];
-            }
+            subtract(b, &image, &mut rest.u);
             rest.p.fill(0.0);
             residual = norm(&rest.u) / size;
             at_rounding = residual > tolerance && is_rounding(stiffness, &x, b, &rest.u);
@@ -225,16 +233,16 @@ impl Pressures {
             self.direct(inner, cycles, rest, &mut next);
             let mut parts = self.dots(&next.image, &kept);
             parts.iter_mut().zip(&kept).for_each(|(part, before)| *part /= -before.square);
-            next.way.add(&parts, kept.iter().map(|before| &before.way));
-            next.image.add(&parts, kept.iter().map(|before| &before.image));
+            next.way.add(&parts, &kept.iter().map(|before| &before.way).collect::<Vec<_>>());
+            next.image.add(&parts, &kept.iter().map(|before| &before.image).collect::<Vec<_>>());
             next.square = self.dot(&next.image, &next.image);
             let step = self.dot(rest, &next.image) / next.square;
             *count += 1;
             if !step.is_finite() {
                 return;
             }
-            x.iter_mut().zip(&next.way.u).for_each(|(x, way)| *x += way * step);
-            rest.add(&[-step], std::iter::once(&next.image));
+            x.par_iter_mut().zip(&next.way.u).with_min_len(GRAIN).for_each(|(x, way)| *x += way * step);
+            rest.add(&[-step], &[&next.image]);
             kept.push_back(next);
         }
     }
@@ -246,47 +254,58 @@ impl Pressures {
         let hierarchy = inner.hierarchy;
         let cycle = cycles.apply(hierarchy, &rest.u, Cycle::V);
         let larger = LARGER * hierarchy.scale;
-        way.u.iter_mut().zip(cycle).for_each(|(u, cycle)| *u = cycle * larger);
-        for (g, change) in self.changes(&way.u).enumerate() {
-            way.p[g] = (change - rest.p[g]) / self.schur[g];
-            image.p[g] = change - self.compliance[g] * way.p[g];
-        }
+        way.u.par_iter_mut().zip(cycle).with_min_len(GRAIN).for_each(|(u, cycle)| *u = cycle * larger);
+        let pressures = way.p.par_iter_mut().zip(&mut image.p).enumerate();
+        pressures.zip(self.changes(&way.u)).for_each(|((g, (p, image)), change)| {
+            *p = (change - rest.p[g]) / self.schur[g];
+            *image = change - self.compliance[g] * *p;
+        });
         (inner.product)(&way.u, &mut image.u);
-        self.add_forces(way.p.iter().copied(), &mut image.u);
+        self.add_forces(|g| way.p[g], &mut image.u);
         hierarchy.release(&mut image.u);
     }
 
-    /// Returns the products of a vector with the images of all kept directions.
+    /// Returns the products of a vector with the images of all kept directions. A chunk of the vector stays
+    /// in the cache for all of them: with whole vectors this took longer than a cycle.
     fn dots(&self, x: &Pair, kept: &VecDeque<Direction>) -> Vec<f64> {
-        let mut sums = vec![0.0; kept.len()];
-        for (c, u) in x.u.chunks(CHUNK).enumerate() {
-            for (sum, of) in sums.iter_mut().zip(kept) {
-                let other = &of.image.u[c * CHUNK..][..u.len()];
-                *sum += u.iter().zip(other).map(|(a, b)| a.dot(b)).sum::<f64>();
-            }
-        }
-        for (c, (p, force)) in x.p.chunks(CHUNK).zip(self.force.chunks(CHUNK)).enumerate() {
-            for (sum, of) in sums.iter_mut().zip(kept) {
-                let other = &of.image.p[c * CHUNK..][..p.len()];
-                *sum += p.iter().zip(other).zip(force).map(|((a, b), f)| a * b * f * f).sum::<f64>();
-            }
-        }
-        sums
+        let with_all = |product: &dyn Fn(&Pair) -> f64| {
+            let mut products = [0.0; KEPT];
+            products.iter_mut().zip(kept).for_each(|(sum, of)| *sum = product(&of.image));
+            products
+        };
+        let of_u = sums(
+            x.u.par_chunks(CHUNK)
+                .enumerate()
+                .map(|(c, u)| with_all(&|image| of_chunk(u, &image.u[c * CHUNK..]))),
+        );
+        let of_p = sums(
+            x.p.par_chunks(CHUNK)
+                .zip(self.force.par_chunks(CHUNK))
+                .enumerate()
+                .map(|(c, (p, force))| with_all(&|image| weighted(p, &image.p[c * CHUNK..], force))),
+        );
+        (0..kept.len()).map(|k| of_u[k] + of_p[k]).collect()
     }
+}
+
+/// Returns the product of the volume changes of a chunk of the groups, as forces.
+fn weighted(a: &[f64], b: &[f64], force: &[f64]) -> f64 {
+    a.iter().zip(b).zip(force).map(|((a, b), force)| a * b * force * force).sum()
 }
 
 impl Pair {
     /// Adds `factor * other` for all factors and pairs.
-    fn add<'a>(&mut self, factors: &[f64], others: impl Iterator<Item = &'a Pair> + Clone) {
-        for (c, u) in self.u.chunks_mut(CHUNK).enumerate() {
-            for (factor, other) in factors.iter().zip(others.clone()) {
+    fn add(&mut self, factors: &[f64], others: &[&Pair]) {
+        let task = GRAIN / CHUNK;
+        self.u.par_chunks_mut(CHUNK).enumerate().with_min_len(task).for_each(|(c, u)| {
+            for (factor, other) in factors.iter().zip(others) {
                 u.iter_mut().zip(&other.u[c * CHUNK..]).for_each(|(u, other)| *u += other * *factor);
             }
-        }
-        for (c, p) in self.p.chunks_mut(CHUNK).enumerate() {
-            for (factor, other) in factors.iter().zip(others.clone()) {
+        });
+        self.p.par_chunks_mut(CHUNK).enumerate().with_min_len(task).for_each(|(c, p)| {
+            for (factor, other) in factors.iter().zip(others) {
                 p.iter_mut().zip(&other.p[c * CHUNK..]).for_each(|(p, other)| *p += other * *factor);
             }
-        }
+        });
     }
 }

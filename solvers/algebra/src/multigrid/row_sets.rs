@@ -1,4 +1,7 @@
-//! Sets of numbers by rows, such as the nodes of one level that belong to each node of another.
+//! Sets of numbers by rows, such as the nodes of one level that belong to each node of another, and rows in
+//! parallel.
+
+use std::ops::Range;
 
 use rayon::prelude::*;
 
@@ -72,4 +75,29 @@ impl Sets {
         }
         Sets { offsets, members }
     }
+}
+
+/// Takes the first entries off a slice.
+#[inline(always)]
+pub(super) fn first<'a, T>(rest: &mut &'a mut [T], count: usize) -> &'a mut [T] {
+    rest.split_off_mut(..count).expect("as many entries are left")
+}
+
+/// Splits the entries of compressed rows into those of consecutive rows, for tasks.
+pub(super) fn by_rows<'a, T>(offsets: &[usize], entries: &'a mut [T]) -> Vec<(Range<usize>, &'a mut [T])> {
+    const PART: usize = 512;
+    let rows = offsets.len() - 1;
+    let mut rest = entries;
+    let part = |start: usize| {
+        let end = rows.min(start + PART);
+        (start..end, first(&mut rest, offsets[end] - offsets[start]))
+    };
+    (0..rows).step_by(PART).map(part).collect()
+}
+
+/// Calls `run` for every row with its entries, concurrently.
+pub(super) fn each_row<T: Send>(offsets: &[usize], entries: &mut [T], run: impl Fn(usize, &mut [T]) + Sync) {
+    by_rows(offsets, entries).into_par_iter().for_each(|(rows, mut entries)| {
+        rows.for_each(|row| run(row, first(&mut entries, offsets[row + 1] - offsets[row])));
+    });
 }

@@ -28,16 +28,17 @@ impl<const B: usize> Operator<B> {
     /// workspace.
     pub fn sweep_backward(&self, b: &[Entry<B>], x: &mut [Entry<B>], rest: &mut [Entry<B>]) {
         let path = LanePath::best();
-        rest.copy_from_slice(b);
-        if self.is_chunked() {
-            let x = &*x;
-            self.each_chunk(rest, |chunk, rest| {
+        let start = &*x;
+        self.each_chunk(rest, |chunk, rest| {
+            rest.copy_from_slice(&b[chunk.clone()]);
+            if self.is_chunked() {
                 for (i, rest) in chunk.clone().zip(&mut *rest) {
-                    rest.iter_mut().zip(self.added_part(i, &x[i])).for_each(|(rest, added)| *rest += added);
+                    let added = self.added_part(i, &start[i]);
+                    rest.iter_mut().zip(added).for_each(|(rest, added)| *rest += added);
                 }
-                outside_rows(path, self, chunk, x, rest);
-            });
-        }
+                outside_rows(path, self, chunk, start, rest);
+            }
+        });
         self.each_chunk_of_two(x, rest, |chunk, x, rest| backward_rows(path, self, chunk, x, rest));
     }
 }

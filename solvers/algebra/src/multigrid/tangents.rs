@@ -54,14 +54,14 @@ impl TangentLevels {
     /// Returns the number of iterations and whether the goal is reached.
     pub fn solve(
         &self,
-        product: &dyn Fn(&[Vector3], &mut [Vector3]),
+        product: &(dyn Fn(&[Vector3], &mut [Vector3]) + Sync),
         b: &mut [Vector3],
         goal: f64,
         most: usize,
     ) -> (usize, bool) {
         self.hierarchy.release(b);
         let inner = Inner { hierarchy: &self.hierarchy, product, most };
-        self.pressures.solve_roughly(&inner, b, goal)
+        rayon::scope(|_| self.pressures.solve_roughly(&inner, b, goal))
     }
 
     /// Returns the number of conjugate-gradient iterations that prove a symmetric matrix positive definite;
@@ -76,7 +76,7 @@ impl TangentLevels {
         let entry = |i: usize| (i as f64 * 0.618_033_988_749_895).fract() - 0.5;
         let nodes = stiffness.pattern().node_count();
         let mut b: Vec<Vector3> = (0..nodes).map(|i| Vector3::from_fn(|a, _| entry(3 * i + a))).collect();
-        let proof = self.hierarchy.iterate(stiffness, &mut b, PROVED, Cycle::V);
+        let proof = rayon::scope(|_| self.hierarchy.iterate(stiffness, &mut b, PROVED, Cycle::V));
         proof.ok().map(|Iterations { count, .. }| count)
     }
 }

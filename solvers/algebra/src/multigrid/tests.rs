@@ -1,6 +1,6 @@
 //! Checks the parts of the hierarchy against their definitions.
 
-use shape::{Matrix3, Point3};
+use shape::{Matrix3, Point3, Vector3};
 
 use super::aggregate::{MODES, aggregates, orthonormal};
 use super::galerkin::galerkin;
@@ -11,6 +11,7 @@ use super::operator::Operator;
 use super::patch::Patch;
 use super::tangents::TangentLevels;
 use super::transfer::{Dense, Transfer, Weight};
+use super::{Multigrid, PressureGroup};
 use crate::pattern::{BlockPattern, Connectivity, Incidence};
 use crate::stiffness::Stiffness;
 
@@ -92,8 +93,8 @@ fn column<const B: usize>(transfer: &Transfer<Dense<B>>, nodes: usize, c: usize)
 #[test]
 fn a_coarse_matrix_is_the_triple_product() {
     let (lower, modes) = grid(6);
-    let matrix = Operator::new(&lower, 0.1);
     let graph = Graph::new(&lower);
+    let matrix = Operator::new(&lower, &graph, 0.1);
     let (functions, _) = orthonormal(&aggregates(&matrix, &graph), &modes);
     let transfer = Transfer::smoothed(&matrix, &graph, &aggregates(&matrix, &graph), &functions);
     let coarse = dense(&galerkin::<3, MODES, Dense<3>>(&lower, &graph, &transfer));
@@ -113,8 +114,8 @@ fn a_coarse_matrix_is_the_triple_product() {
 #[test]
 fn rigid_motions_are_prolonged_exactly_away_from_supports() {
     let (lower, modes) = grid(8);
-    let matrix = Operator::new(&lower, 0.1);
     let graph = Graph::new(&lower);
+    let matrix = Operator::new(&lower, &graph, 0.1);
     let aggregates = aggregates(&matrix, &graph);
     let (functions, coarse) = orthonormal(&aggregates, &modes);
     let transfer = Transfer::smoothed(&matrix, &graph, &aggregates, &functions);
@@ -192,7 +193,7 @@ fn check_cycles(lower: &Lower<3>, modes: &[[[f64; MODES]; 3]], level: &dyn Level
 fn a_patch_solves_its_part_of_the_matrix() {
     let (lower, _) = grid(8);
     let nodes = lower.nodes();
-    let matrix = Operator::new(&lower, 0.1);
+    let matrix = Operator::new(&lower, &Graph::new(&lower), 0.1);
     let of_patch: Vec<u32> = (0..nodes as u32).filter(|i| i % 7 == 3).collect();
     let Ok(Some(patch)) = Patch::new(&lower, &of_patch, 0.1) else { panic!("a patch") };
     let value = |i: usize| (i as f64 * 0.618034).fract() as f32 - 0.5;
@@ -224,7 +225,7 @@ fn a_patch_solves_its_part_of_the_matrix() {
 #[test]
 fn sweeps_leave_the_residual_and_are_transposes() {
     let (lower, _) = grid(26);
-    let matrix = Operator::new(&lower, 1.0);
+    let matrix = Operator::new(&lower, &Graph::new(&lower), 1.0);
     assert!(matrix.is_chunked());
     let nodes = lower.nodes();
     let vector = |seed: f64| -> Vec<[f32; 3]> {
@@ -299,12 +300,72 @@ fn shifted(n: usize, part: f64) -> Stiffness {
     stiffness
 }
 
+fn points(n: usize) -> Vec<Point3> {
+    (0..n * n * n).map(|i| Point3::new((i / (n * n)) as f64, (i / n % n) as f64, (i % n) as f64)).collect()
+}
+
+/// The grid has two parts of the rows, and several tasks of every sum; every eight nodes are a group.
+#[test]
+fn solutions_have_the_same_bits_at_any_number_of_threads() {
+    let n = 26;
+    let (stiffness, nodes) = (shifted(n, 0.0), points(n));
+    assert!(stiffness.pattern().parts().len() > 1);
+    let groups: Vec<PressureGroup> = (0..nodes.len() as u32 / 8)
+        .map(|g| PressureGroup {
+            row: (8 * g..8 * g + 8).map(|node| (node, Vector3::new(0.1, -0.2, 0.3))).collect(),
+            volume: 1.0,
+            excess: 50.0,
+            rest: 10.0,
+        })
+        .collect();
+    let held = vec![false; 3 * nodes.len()];
+    let solve = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| {
+            let right: Vec<Vector3> = (0..nodes.len())
+                .map(|i| Vector3::from_fn(|a, _| ((3 * i + a) as f64 * 0.618034).fract() - 0.5))
+                .collect();
+            let bits = |x: Vec<Vector3>| x.into_iter().flat_map(|x| x.data.0[0]).map(f64::to_bits);
+            let levels = || Multigrid::new(&stiffness, &nodes, held.clone(), None, &[]).unwrap();
+            let mut plain = right.clone();
+            let done = levels().solve(&stiffness, &mut plain, 1e-8).unwrap();
+            assert!(done.count > 4, "{}", done.count);
+            let mut tangents = TangentLevels::new(&stiffness, &nodes, held.clone(), None).unwrap();
+            tangents.set_pressures(&groups);
+            let mut mixed = right;
+            let product = |x: &[Vector3], out: &mut [Vector3]| stiffness.multiply_into(x, out);
+            assert_eq!(tangents.solve(&product, &mut mixed, 1e-12, 20), (20, false));
+            bits(plain).chain(bits(mixed)).collect::<Vec<u64>>()
+        })
+    };
+    let one = solve(1);
+    assert!(one == solve(2) && one == solve(3));
+}
+
+/// The parts of a product add up to the product by whole rows.
+#[test]
+fn a_product_in_parts_is_the_product() {
+    let stiffness = shifted(26, 0.5);
+    let nodes = stiffness.pattern().node_count();
+    let x: Vec<Vector3> = (0..nodes).map(|i| Vector3::repeat((i as f64 * 0.618034).fract() - 0.5)).collect();
+    let mut exact = vec![Vector3::zeros(); nodes];
+    for i in 0..nodes {
+        let (columns, blocks) = stiffness.row(i);
+        for (&j, block) in columns.iter().zip(blocks) {
+            exact[i] += block * x[j as usize];
+            if j as usize != i {
+                exact[j as usize] += block.tr_mul(&x[i]);
+            }
+        }
+    }
+    let off = stiffness.multiply(&x).iter().zip(&exact).map(|(a, b)| (a - b).amax()).fold(0.0, f64::max);
+    assert!(off < 1e-13, "{off}");
+}
+
 #[test]
 fn a_convergent_iteration_proves_a_matrix_definite_and_only_a_definite_matrix() {
     let n = 12;
-    let nodes: Vec<Point3> = (0..n * n * n)
-        .map(|i| Point3::new((i / (n * n)) as f64, (i / n % n) as f64, (i % n) as f64))
-        .collect();
+    let nodes = points(n);
     let of = |part| shifted(n, part);
     let levels = TangentLevels::new(&of(0.0), &nodes, vec![false; 3 * nodes.len()], None).unwrap();
     assert!(levels.proves_definite(&of(0.0)).is_some());

@@ -9,7 +9,8 @@ use shape::Coarser;
 use super::aggregate::{Aggregates, MODES, Modes, NONE};
 use super::graph::Graph;
 use super::operator::{Entry, Operator};
-use super::row_sets::Sets;
+use super::row_sets::{Sets, by_rows};
+use crate::vectors::repeated;
 
 /// Weight of a coarse node with C degrees of freedom at a fine node with B.
 pub(super) trait Weight<const B: usize, const C: usize>: Copy + Send + Sync {
@@ -202,7 +203,7 @@ impl<const B: usize> Transfer<Dense<B>> {
         // number of iterations is the same.
         let weight = 4.0 / (3.0 * matrix.largest_eigenvalue());
         let functions: Vec<[[f32; MODES]; B]> =
-            functions.iter().map(|rows| rows.map(|row| row.map(|v| v as f32))).collect();
+            functions.par_iter().map(|rows| rows.map(|row| row.map(|v| v as f32))).collect();
         let of = &aggregates.of[..];
         let Sets { offsets, members: columns } = Sets::unions(matrix.nodes(), aggregates.count, |i, add| {
             graph
@@ -211,10 +212,10 @@ impl<const B: usize> Transfer<Dense<B>> {
                 .filter(|&&j| of[j as usize] != NONE)
                 .for_each(|&j| add(&of[j as usize..][..1]));
         });
-        let mut weights = vec![Dense([[0.0; MODES]; B]); columns.len()];
+        let mut weights = repeated(Dense([[0.0; MODES]; B]), columns.len());
         let smoothing = Smoothing { matrix, graph, of, functions: &functions, weight };
         let path = LanePath::best();
-        in_rows(&offsets, &mut weights, |rows, weights| {
+        by_rows(&offsets, &mut weights).into_par_iter().for_each(|(rows, weights)| {
             smooth_rows(path, &smoothing, rows, &offsets, &columns, weights);
         });
         Transfer { offsets, columns, weights, count: aggregates.count }
@@ -253,7 +254,7 @@ fn smooth_rows_lanes<const FMA: bool, const B: usize>(
         rest = after;
         let columns = &columns[range];
         for k in by.graph.range(i) {
-            let (j, block) = by.graph.at(by.matrix, i, k);
+            let (j, block) = by.matrix.at(by.graph, i, k);
             let Some(at) = columns.iter().position(|column| *column == by.of[j]) else { continue };
             let mut sum = row[at].0;
             for (column, function) in block.iter().zip(&by.functions[j]) {
@@ -273,21 +274,6 @@ fn smooth_rows_lanes<const FMA: bool, const B: usize>(
             *sum = out;
         }
     }
-}
-
-/// Calls `run` for parts of the rows with their entries, concurrently.
-fn in_rows<T: Send>(offsets: &[usize], entries: &mut [T], run: impl Fn(Range<usize>, &mut [T]) + Sync) {
-    const PART: usize = 512;
-    let rows = offsets.len() - 1;
-    let mut rest = entries;
-    let mut parts = Vec::with_capacity(rows.div_ceil(PART));
-    for start in (0..rows).step_by(PART) {
-        let end = rows.min(start + PART);
-        let (part, after) = rest.split_at_mut(offsets[end] - offsets[start]);
-        rest = after;
-        parts.push((start..end, part));
-    }
-    parts.into_par_iter().for_each(|(rows, part)| run(rows, part));
 }
 
 impl Transfer<Diagonal> {
@@ -332,9 +318,12 @@ fn in_parts<const C: usize>(
             sums
         })
         .collect();
-    for part in parts {
-        for (out, sum) in out.iter_mut().zip(&part) {
-            out.iter_mut().zip(sum).for_each(|(o, s)| *o += s);
+    const ENTRIES: usize = 1024;
+    out.par_chunks_mut(ENTRIES).enumerate().for_each(|(chunk, out)| {
+        for part in &parts {
+            for (out, sum) in out.iter_mut().zip(&part[chunk * ENTRIES..]) {
+                out.iter_mut().zip(sum).for_each(|(o, s)| *o += s);
+            }
         }
-    }
+    });
 }
