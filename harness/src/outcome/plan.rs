@@ -90,6 +90,9 @@ pub struct Stage {
 #[serde(transparent)]
 pub struct Plan {
     stages: Vec<Stage>,
+    /// Whether the tangents of nonlinear statics are iterated.
+    #[serde(skip)]
+    pub(crate) iterates: bool,
 }
 
 impl Plan {

@@ -34,8 +34,9 @@ const NEARLY_INCOMPRESSIBLE: f64 = 0.45;
 
 /// Stages of a run, in order.
 pub(crate) fn plan(method: &Discretisation, setup: &Setup, wanted: Wanted) -> Plan {
-    let mut plan = Plan::default();
     let stages = stages_of(method, setup);
+    let mut plan = Plan::default();
+    plan.iterates = stages.iterates;
     let mut add = |stage, (runs, why): (bool, String)| plan.add(stage, runs, why);
     add(StageName::Refinement, refinement(method));
     add(StageName::Supports, supports(method));

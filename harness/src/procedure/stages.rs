@@ -6,6 +6,8 @@ pub(super) struct Stages {
     pub(super) stiffness: (bool, String),
     pub(super) time_steps: (bool, String),
     pub(super) factorisation: (bool, String),
+    /// Whether tangents are iterated.
+    pub(super) iterates: bool,
     pub(super) newton: (bool, String),
     pub(super) relaxation: (bool, String),
     /// Reason why no displacement is transferred to other points, if that is so.
@@ -22,6 +24,7 @@ impl Stages {
             stiffness: (true, "linear static".into()),
             time_steps: (false, "static".into()),
             factorisation: (true, "one, for all load levels".into()),
+            iterates: false,
             newton: (false, "linear".into()),
             relaxation: (false, "no static path that could stall".into()),
             no_transfer: None,
@@ -37,6 +40,7 @@ impl Stages {
             stiffness: (false, NOTHING.into()),
             time_steps: (false, NOTHING.into()),
             factorisation: (false, NOTHING.into()),
+            iterates: false,
             newton: (false, NOTHING.into()),
             relaxation: (false, NOTHING.into()),
             no_transfer: Some(NOTHING),

@@ -49,9 +49,11 @@ pub(super) fn stages(method: &Discretisation, setup: &Setup, asked: &Static) -> 
         OnStall::Stop => (false, "the load path ends if the solver stalls (on_stall = \"stop\")"),
         OnStall::Relax => relaxation::possible(method),
     };
+    let (iterates, tangents) = tangents(method, setup, asked);
     Stages {
         stiffness: (true, "the tangent of every iteration".into()),
-        factorisation: (true, tangents(method, setup, asked).1),
+        factorisation: (true, tangents),
+        iterates,
         newton: (true, newton_reason(setup, asked.steps, "load")),
         relaxation: (relaxes, why.into()),
         ..Stages::linear()
@@ -89,9 +91,9 @@ fn path(problem: &Problem, asked: &Static, counters: &mut Counters) -> Result<(S
     // A cloud on which tools slide may reach another equilibrium by inexact steps, as the kidney between jaws
     // with 1331 nodes did.
     params.newton.loosest = method.interpolates.then_some(NewtonParams::LOOSEST);
-    let levels = levels(problem, asked)?;
+    let tangents = Tangents::new(problem)?;
     let path = with_static_problem(method, setup, prepared, contact.as_ref(), |problem| {
-        let systems = systems(levels.as_ref());
+        let systems = tangents.systems();
         solve_static(&StaticProblem { systems, ..problem.clone() }, &params, |step, rest| {
             supports = prepared.support_forces(&ConditionForces {
                 nodes: rest.reaction,
@@ -157,14 +159,27 @@ fn path(problem: &Problem, asked: &Static, counters: &mut Counters) -> Result<(S
     Ok((solution, limit))
 }
 
-/// Returns the linear mesh of a quadratic mesh if tangents are iterated; the outer `None` for factors.
-fn levels(problem: &Problem, asked: &Static) -> Result<Option<Option<Coarser>>, Failure> {
-    let iterates = tangents(problem.method, problem.setup, asked).0;
-    Ok(if iterates { Some(problem.prepared.source.coarser()?) } else { None })
+/// Solver of the tangents.
+enum Tangents {
+    Factored,
+    /// Iterations, with the linear mesh of a quadratic mesh.
+    Iterated(Option<Coarser>),
 }
 
-fn systems(levels: Option<&Option<Coarser>>) -> LinearSystems<'_> {
-    levels.map_or(LinearSystems::Factored, |linear| LinearSystems::Iterated { linear: linear.as_ref() })
+impl Tangents {
+    fn new(problem: &Problem) -> Result<Tangents, Failure> {
+        if !problem.plan.iterates {
+            return Ok(Tangents::Factored);
+        }
+        Ok(Tangents::Iterated(problem.prepared.source.coarser()?))
+    }
+
+    fn systems(&self) -> LinearSystems<'_> {
+        match self {
+            Tangents::Factored => LinearSystems::Factored,
+            Tangents::Iterated(linear) => LinearSystems::Iterated { linear: linear.as_ref() },
+        }
+    }
 }
 
 /// Adds the path's operations to the counters, and returns the number of linear systems solved in converged

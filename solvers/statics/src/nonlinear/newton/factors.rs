@@ -183,8 +183,7 @@ impl Factors {
             Descent::Smooth | Descent::Nearest | Descent::Guarded => self.as_it_is(policy, &matrix)?,
         };
         self.doubtful = self.indefinite;
-        // Iterations that failed on an indefinite tangent may succeed on a definite one.
-        self.levels.failed &= !self.indefinite;
+        self.levels.factored(!self.indefinite);
         if self.keeps(policy) {
             self.factor = Some(factor.clone());
         }

@@ -84,7 +84,8 @@ impl Newton<'_> {
         let tools = equations.problem.tools.len();
         matches!(equations.problem.systems, LinearSystems::Iterated { .. })
             && policy.descent == Descent::Nearest
-            && !(policy.saddle || policy.repeats || factors.doubtful || factors.levels.failed)
+            && factors.levels.serve()
+            && !(policy.saddle || policy.repeats || factors.doubtful)
             && (0..tools).all(|k| equations.force(k, 1.0).is_none())
     }
 
@@ -120,6 +121,7 @@ impl Newton<'_> {
             factors.work.inner += count as u64;
             if solved {
                 factors.work.solves += 1;
+                factors.levels.succeed();
                 let step = self.equations.system.gather(&x, &balance.pressure);
                 let last = Direction {
                     step: Vec::new(),
@@ -136,7 +138,7 @@ impl Newton<'_> {
                 break;
             }
         }
-        self.factors.levels.failed = true;
+        self.factors.levels.fail();
         Ok(None)
     }
 

@@ -11,6 +11,13 @@ const MOST: usize = 80;
 /// many iterations more than they would have taken with levels of their own.
 const RENEWAL: f64 = 20.0;
 
+/// Number of failures since the last equilibrium after which tangents are factored until the next one.
+const FAILURES: usize = 2;
+/// Number of solved tangents that pay for a failure: the time of levels and of their iterations in vain.
+const PRICE: usize = 4;
+/// Unpaid price from which on all tangents of the path are factored.
+const DEBT: usize = 3 * PRICE;
+
 /// Skew part of a tangent: (surface, point, block) for every sliding point.
 pub(super) type SkewPoints = Vec<(usize, usize, Matrix3)>;
 
@@ -22,13 +29,48 @@ pub(super) struct Levels {
     rate: f64,
     /// Iterations beyond that rate since the levels were built.
     lost: f64,
-    /// Whether iterations have failed since the last equilibrium, on a tangent that was not indefinite.
-    pub failed: bool,
+    /// Whether iterations failed on a tangent that was not factored since.
+    failed: bool,
+    /// Number of failures since the last equilibrium.
+    failures: usize,
+    /// Price of all failures that is not yet paid by solved tangents.
+    debt: usize,
     /// Iterative solver that found a step, if any.
     pub path: Option<SolverPath>,
 }
 
 impl Levels {
+    /// Whether iterations may be tried.
+    pub fn serve(&self) -> bool {
+        !self.failed && self.failures < FAILURES && self.debt < DEBT
+    }
+
+    /// Records that a tangent was solved.
+    pub fn succeed(&mut self) {
+        self.debt = self.debt.saturating_sub(1);
+    }
+
+    /// Records that a tangent was not solved by levels of its own.
+    pub fn fail(&mut self) {
+        self.failed = true;
+        self.failures += 1;
+        self.debt += PRICE;
+    }
+
+    /// Records whether the factor of a tangent showed the tangent to be definite. Iterations that failed on
+    /// an indefinite tangent may succeed on the next one. After a failure on a definite tangent they are not
+    /// tried again before the next equilibrium.
+    pub fn factored(&mut self, definite: bool) {
+        if std::mem::take(&mut self.failed) && definite {
+            self.failures = FAILURES;
+        }
+    }
+
+    /// Records an equilibrium.
+    pub fn settle(&mut self) {
+        (self.failed, self.failures) = (false, 0);
+    }
+
     /// Returns the levels unless they are to be renewed.
     pub fn current(&mut self) -> Option<&mut TangentLevels> {
         self.levels.as_mut().filter(|_| self.lost <= RENEWAL)
@@ -80,5 +122,34 @@ impl Levels {
     /// if they do not.
     pub fn prove_definite(&self, system: &System) -> Option<usize> {
         self.levels.as_ref().and_then(|levels| levels.proves_definite(&system.stiffness))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn iterations_are_given_up_for_a_step_and_then_for_the_path() {
+        let mut levels = Levels::default();
+        let fails = |levels: &mut Levels, definite: bool| {
+            assert!(levels.serve());
+            levels.fail();
+            assert!(!levels.serve());
+            levels.factored(definite);
+        };
+        fails(&mut levels, false);
+        fails(&mut levels, false);
+        assert!(!levels.serve(), "the second failure of a step");
+        levels.settle();
+        (0..PRICE).for_each(|_| levels.succeed());
+        fails(&mut levels, true);
+        assert!(!levels.serve(), "a failure on a definite tangent");
+        levels.settle();
+        fails(&mut levels, false);
+        levels.settle();
+        assert!(!levels.serve(), "three failures that four solved tangents do not pay");
+        (0..PRICE).for_each(|_| levels.succeed());
+        assert!(levels.serve());
     }
 }

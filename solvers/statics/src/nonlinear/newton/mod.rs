@@ -284,7 +284,7 @@ impl<'a> Newton<'a> {
         balance: &Balance,
         log: &mut [Iteration],
     ) -> Result<(), StaticError> {
-        self.factors.levels.failed = false;
+        self.factors.levels.settle();
         let repeats = self.policy.repeats;
         if let Some(unproven) = last.as_mut().filter(|last| !last.proven && !repeats) {
             self.prove(unproven, state, balance)?;
