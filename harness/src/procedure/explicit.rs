@@ -91,11 +91,7 @@ fn motion(problem: &Problem, asked: &Explicit, counters: &mut Counters) -> Resul
     let (volume, rows) = (&prepared.volume, &prepared.volume.rows);
     let density = setup.density()?;
     let mass = lumped_mass(rows, &density, &volume.region, Lumping::for_table(rows))?;
-    let precision = match asked.precision {
-        Double => Precision::Double,
-        Single => Precision::Single,
-    };
-    let mut force = InternalForce::of_precision(body(setup, prepared), LanePath::best(), precision)?;
+    let mut force = InternalForce::of_precision(body(setup, prepared), LanePath::best(), precision(asked))?;
     let kernel = force.info();
     counters.mass_nodes += mass.len() as u64;
 
@@ -143,12 +139,8 @@ fn motion(problem: &Problem, asked: &Explicit, counters: &mut Counters) -> Resul
         Err(failure) => return Err(failure.into()),
         Ok(motion) => {
             let led = loading.led.keys().copied().collect();
-            let masses = match problem.method.interpolates {
-                true => None,
-                false => {
-                    Some(Masses { points: point_masses(rows, &density, &volume.region)?, lumped: &mass })
-                }
-            };
+            let points = (!problem.method.interpolates).then(|| point_masses(rows, &density, &volume.region));
+            let masses = points.transpose()?.map(|points| Masses { points, lumped: &mass });
             let mut run = Run { motion, asked, setup, prepared, led, masses, states, watch };
             let failure = run.march(&mut load, interval).err();
             made = run.motion.steps() as u64;
@@ -172,6 +164,13 @@ fn motion(problem: &Problem, asked: &Explicit, counters: &mut Counters) -> Resul
         spurious_motion,
         ..Solution::default()
     })
+}
+
+fn precision(asked: &Explicit) -> Precision {
+    match asked.precision {
+        Double => Precision::Double,
+        Single => Precision::Single,
+    }
 }
 
 /// The body for the kernels of internal forces.

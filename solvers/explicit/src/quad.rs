@@ -5,8 +5,10 @@
 //! true only inside kernels compiled for AVX2 and FMA; `BITS` is the width of a kernel's registers. Without
 //! them the same sums run as plain loops.
 
-use super::scalar::{Scalar, Slot};
+use super::scalar::{Align32, Scalar, Slot};
 use lanes::{LANES, madd};
+use material::lane::LaneStrain;
+use material::{Law, Material};
 
 #[cfg(target_arch = "x86_64")]
 use std::arch::x86_64::*;
@@ -40,7 +42,7 @@ pub(super) fn axpy<const WIDE: bool>(a: f64, x: &Slot<f64>, y: &mut Slot<f64>) {
 ///
 /// Registers of `BITS` must be available, and all nodes must lie within `u`.
 #[inline(always)]
-pub(super) unsafe fn lanes_of<const BITS: usize>(
+unsafe fn lanes_of<const BITS: usize>(
     u: &[Slot<f64>],
     nodes: &[u16; LANES],
     origin: &[[f64; LANES]; 3],
@@ -97,7 +99,7 @@ pub(super) unsafe fn lanes_of<const BITS: usize>(
 ///
 /// As for [`lanes_of`].
 #[inline(always)]
-pub(super) unsafe fn add_lanes<const BITS: usize>(
+unsafe fn add_lanes<const BITS: usize>(
     x: &[f64; LANES],
     y: &[f64; LANES],
     z: &[f64; LANES],
@@ -137,10 +139,7 @@ unsafe fn quad(u: &[Slot<f64>], node: u16) -> __m256d {
 /// Returns for eight lanes both numbers of `pairs`, summed over four nodes. Tet4 with nodal dilation takes
 /// 0.95 of the time with one number after the other.
 #[inline(always)]
-pub(super) fn lanes_of_sums<const WIDE: bool>(
-    pairs: &[[f64; 2]],
-    nodes: &[[u16; LANES]; 4],
-) -> [[f64; LANES]; 2] {
+fn lanes_of_sums<const WIDE: bool>(pairs: &[[f64; 2]], nodes: &[[u16; LANES]; 4]) -> [[f64; LANES]; 2] {
     #[cfg(target_arch = "x86_64")]
     if WIDE {
         let mut out = [[0.0; LANES]; 2];
@@ -239,4 +238,44 @@ pub(super) fn plain_lanes_of_sums<T: Scalar>(pairs: &[[T; 2]], nodes: &[T::Nodes
         }
     }
     out
+}
+
+impl Scalar for f64 {
+    type Nodes = [u16; LANES];
+    type Align = Align32;
+
+    #[inline(always)]
+    fn displacement(u: f64, _: f64, _: f64) -> f64 {
+        u
+    }
+
+    #[inline(always)]
+    unsafe fn lanes_of<const BITS: usize>(
+        u: &[Slot<f64>],
+        nodes: &[u16; LANES],
+        origin: &[[f64; LANES]; 3],
+    ) -> [[f64; LANES]; 3] {
+        // SAFETY: guaranteed by the caller.
+        unsafe { lanes_of::<BITS>(u, nodes, origin) }
+    }
+
+    #[inline(always)]
+    unsafe fn add_lanes<const BITS: usize>(
+        [x, y, z]: [&[f64; LANES]; 3],
+        nodes: &[u16; LANES],
+        f: &mut [Slot<f64>],
+    ) {
+        // SAFETY: guaranteed by the caller.
+        unsafe { add_lanes::<BITS>(x, y, z, nodes, f) }
+    }
+
+    #[inline(always)]
+    fn lanes_of_sums<const WIDE: bool>(pairs: &[[f64; 2]], nodes: &[[u16; LANES]; 4]) -> [[f64; LANES]; 2] {
+        lanes_of_sums::<WIDE>(pairs, nodes)
+    }
+
+    #[inline(always)]
+    fn stress<const FMA: bool>(law: &Law, strains: &[LaneStrain], p: &mut [[[f64; LANES]; 9]]) {
+        law.stress_batch::<FMA>(strains, p);
+    }
 }

@@ -2,11 +2,8 @@
 
 use std::ops::{Index, IndexMut};
 
-use lanes::LANES;
+use material::Law;
 use material::lane::{LaneStrain, Real};
-use material::{Law, Material};
-
-use super::{quad, single};
 
 /// Scalar of a kernel with its access to nodes.
 pub(super) trait Scalar: Real {
@@ -91,91 +88,10 @@ pub(super) struct Align32;
 #[repr(align(16))]
 pub(super) struct Align16;
 
-impl Scalar for f64 {
-    type Nodes = [u16; LANES];
-    type Align = Align32;
-
-    #[inline(always)]
-    fn displacement(u: f64, _: f64, _: f64) -> f64 {
-        u
-    }
-
-    #[inline(always)]
-    unsafe fn lanes_of<const BITS: usize>(
-        u: &[Slot<f64>],
-        nodes: &[u16; LANES],
-        origin: &[[f64; LANES]; 3],
-    ) -> [[f64; LANES]; 3] {
-        // SAFETY: guaranteed by the caller.
-        unsafe { quad::lanes_of::<BITS>(u, nodes, origin) }
-    }
-
-    #[inline(always)]
-    unsafe fn add_lanes<const BITS: usize>(
-        [x, y, z]: [&[f64; LANES]; 3],
-        nodes: &[u16; LANES],
-        f: &mut [Slot<f64>],
-    ) {
-        // SAFETY: guaranteed by the caller.
-        unsafe { quad::add_lanes::<BITS>(x, y, z, nodes, f) }
-    }
-
-    #[inline(always)]
-    fn lanes_of_sums<const WIDE: bool>(pairs: &[[f64; 2]], nodes: &[[u16; LANES]; 4]) -> [[f64; LANES]; 2] {
-        quad::lanes_of_sums::<WIDE>(pairs, nodes)
-    }
-
-    #[inline(always)]
-    fn stress<const FMA: bool>(law: &Law, strains: &[LaneStrain], p: &mut [[[f64; LANES]; 9]]) {
-        law.stress_batch::<FMA>(strains, p);
-    }
-}
-
-impl Scalar for f32 {
-    type Nodes = [u16; 2 * LANES];
-    type Align = Align16;
-
-    #[inline(always)]
-    fn displacement(u: f64, first: f64, small: f64) -> f32 {
-        ((u - first) as f32 + small as f32) - small as f32
-    }
-
-    #[inline(always)]
-    unsafe fn lanes_of<const BITS: usize>(
-        u: &[Slot<f32>],
-        nodes: &[u16; 2 * LANES],
-        origin: &[[f32; 2 * LANES]; 3],
-    ) -> [[f32; 2 * LANES]; 3] {
-        // SAFETY: guaranteed by the caller.
-        unsafe { single::lanes_of::<BITS>(u, nodes, origin) }
-    }
-
-    #[inline(always)]
-    unsafe fn add_lanes<const BITS: usize>(
-        xyz: [&[f32; 2 * LANES]; 3],
-        nodes: &[u16; 2 * LANES],
-        f: &mut [Slot<f32>],
-    ) {
-        // SAFETY: guaranteed by the caller.
-        unsafe { single::add_lanes::<BITS>(xyz, nodes, f) }
-    }
-
-    #[inline(always)]
-    fn lanes_of_sums<const WIDE: bool>(
-        pairs: &[[f32; 2]],
-        nodes: &[[u16; 2 * LANES]; 4],
-    ) -> [[f32; 2 * LANES]; 2] {
-        quad::plain_lanes_of_sums::<f32>(pairs, nodes)
-    }
-
-    #[inline(always)]
-    fn stress<const FMA: bool>(law: &Law, strains: &[LaneStrain<f32>], p: &mut [[[f32; 2 * LANES]; 9]]) {
-        single::stress::<FMA>(law, strains, p);
-    }
-}
-
 #[cfg(test)]
 mod tests {
+    use lanes::LANES;
+
     use super::*;
 
     #[test]

@@ -4,8 +4,8 @@ use lanes::LANES;
 use material::lane::LaneStrain;
 use material::{Law, Material};
 
-use super::quad::{plain_add_lanes, plain_lanes_of};
-use super::scalar::Slot;
+use super::quad::{plain_add_lanes, plain_lanes_of, plain_lanes_of_sums};
+use super::scalar::{Align16, Scalar, Slot};
 
 #[cfg(target_arch = "x86_64")]
 use std::arch::x86_64::*;
@@ -24,11 +24,7 @@ type Many = [f32; MANY];
 ///
 /// Registers of `BITS` must be available, and all nodes must lie within `u`.
 #[inline(always)]
-pub(super) unsafe fn lanes_of<const BITS: usize>(
-    u: &[Slot<f32>],
-    nodes: &[u16; MANY],
-    origin: &[Many; 3],
-) -> [Many; 3] {
+unsafe fn lanes_of<const BITS: usize>(u: &[Slot<f32>], nodes: &[u16; MANY], origin: &[Many; 3]) -> [Many; 3] {
     // SAFETY: guaranteed by the caller. Slots are aligned; other loads and stores need no alignment and stay
     // inside their arrays.
     unsafe {
@@ -79,11 +75,7 @@ pub(super) unsafe fn lanes_of<const BITS: usize>(
 ///
 /// As for [`lanes_of`].
 #[inline(always)]
-pub(super) unsafe fn add_lanes<const BITS: usize>(
-    [x, y, z]: [&Many; 3],
-    nodes: &[u16; MANY],
-    f: &mut [Slot<f32>],
-) {
+unsafe fn add_lanes<const BITS: usize>([x, y, z]: [&Many; 3], nodes: &[u16; MANY], f: &mut [Slot<f32>]) {
     // SAFETY: as in `lanes_of`.
     unsafe {
         #[cfg(target_arch = "x86_64")]
@@ -193,7 +185,7 @@ unsafe fn transposed(r: [__m256; 4]) -> [__m256; 4] {
 
 /// Computes the stress of a law in double precision, in two halves, from strains in single precision.
 #[inline(always)]
-pub(super) fn stress<const FMA: bool>(law: &Law, strains: &[LaneStrain<f32>], p: &mut [[Many; 9]]) {
+fn stress<const FMA: bool>(law: &Law, strains: &[LaneStrain<f32>], p: &mut [[Many; 9]]) {
     let mut halves = [LaneStrain::<f64>::ZERO; 2];
     let mut stress = [[[0.0; LANES]; 9]; 2];
     for (strain, p) in strains.iter().zip(p) {
@@ -215,5 +207,48 @@ pub(super) fn stress<const FMA: bool>(law: &Law, strains: &[LaneStrain<f32>], p:
 fn widened<const FMA: bool>(strain: &LaneStrain<f32>, first: usize, out: &mut LaneStrain<f64>) {
     for l in 0..LANES {
         out.set::<FMA>(l, &strain.lane(first + l).map(f64::from));
+    }
+}
+
+impl Scalar for f32 {
+    type Nodes = [u16; 2 * LANES];
+    type Align = Align16;
+
+    #[inline(always)]
+    fn displacement(u: f64, first: f64, small: f64) -> f32 {
+        ((u - first) as f32 + small as f32) - small as f32
+    }
+
+    #[inline(always)]
+    unsafe fn lanes_of<const BITS: usize>(
+        u: &[Slot<f32>],
+        nodes: &[u16; 2 * LANES],
+        origin: &[[f32; 2 * LANES]; 3],
+    ) -> [[f32; 2 * LANES]; 3] {
+        // SAFETY: guaranteed by the caller.
+        unsafe { lanes_of::<BITS>(u, nodes, origin) }
+    }
+
+    #[inline(always)]
+    unsafe fn add_lanes<const BITS: usize>(
+        xyz: [&[f32; 2 * LANES]; 3],
+        nodes: &[u16; 2 * LANES],
+        f: &mut [Slot<f32>],
+    ) {
+        // SAFETY: guaranteed by the caller.
+        unsafe { add_lanes::<BITS>(xyz, nodes, f) }
+    }
+
+    #[inline(always)]
+    fn lanes_of_sums<const WIDE: bool>(
+        pairs: &[[f32; 2]],
+        nodes: &[[u16; 2 * LANES]; 4],
+    ) -> [[f32; 2 * LANES]; 2] {
+        plain_lanes_of_sums::<f32>(pairs, nodes)
+    }
+
+    #[inline(always)]
+    fn stress<const FMA: bool>(law: &Law, strains: &[LaneStrain<f32>], p: &mut [[[f32; 2 * LANES]; 9]]) {
+        stress::<FMA>(law, strains, p);
     }
 }
