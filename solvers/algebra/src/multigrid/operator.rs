@@ -96,7 +96,8 @@ impl<const B: usize> Operator<B> {
     pub fn new(lower: &impl LowerRows<B>, graph: &Graph, scale: f64) -> Operator<B> {
         let nodes = lower.nodes();
         let couplings: usize = (0..nodes).map(|i| lower.columns(i).len()).sum();
-        let chunks = if couplings > WIDE * nodes { vec![0..nodes] } else { parts(nodes, smallest::<B>()) };
+        let smallest = if couplings > WIDE * nodes { nodes } else { smallest::<B>() };
+        let chunks = parts(nodes, smallest);
         let block = |i: usize, at: usize| lower.block(i, at).map(|column| column.map(|a| (scale * a) as f32));
         // Columns of each row before its chunk, within it before the diagonal, and after it.
         let lengths = |i: usize| {
