@@ -68,7 +68,7 @@ pub fn inverse_cbrt_less_1<const FMA: bool>(j: f64) -> f64 {
 #[inline(always)]
 pub fn ln_1p_f32<const FMA: bool>(j: f32) -> f32 {
     const SQRT_HALF: u32 = 0x3f35_04f3;
-    const LN2_HIGH: f32 = 6.931_381_2e-1;
+    const LN2_HIGH: f32 = 6.931_381e-1;
     const LN2_LOW: f32 = 9.058_001e-6;
     let x = 1.0 + j;
     let bits = x.to_bits() + (0x3f80_0000 - SQRT_HALF);
