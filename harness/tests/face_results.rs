@@ -76,8 +76,8 @@ fn a_bar_is_held_by_its_load_and_its_faces_move_as_the_linear_field_does() {
         assert_eq!(metric(run, "reaction-x"), vector(&run["supports"][0]["force"])[0]);
         // A support has no force along a free axis.
         assert!(run["metrics"]["reaction-y"].is_null() && run["metrics"]["reaction-y-2"].is_object());
-        // A penalty support yields by 1e-4 of mesh size times strain.
-        let gives = if run["method"] == "penalty" { 4e-8 } else { 1e-10 };
+        // A penalty support yields by 1e-3 of mesh size times strain.
+        let gives = if run["method"] == "penalty" { 4e-7 } else { 1e-10 };
         // Means of x / 100 over the end face, and over the part of the top with x up to 15 mm, which cuts
         // through cells.
         let expected = [[4e-4, -3e-5, -3e-5], [7.5e-5, -3e-5, -6e-5]];
