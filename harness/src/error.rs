@@ -16,10 +16,10 @@ pub enum Failure {
     Input(String),
     /// Failure to build the tables of a cloud.
     #[error(transparent)]
-    Efg(#[from] efg::EfgError),
+    Efg(Box<efg::EfgError>),
     /// Failed assembly or solution.
     #[error(transparent)]
-    Solve(#[from] statics::SolveError),
+    Solve(Box<statics::SolveError>),
     /// Static procedure that reached no load.
     #[error(transparent)]
     Static(Box<statics::StaticError>),
@@ -220,6 +220,18 @@ impl Failure {
     }
 }
 
+impl From<efg::EfgError> for Failure {
+    fn from(error: efg::EfgError) -> Failure {
+        Failure::Efg(Box::new(error))
+    }
+}
+
+impl From<statics::SolveError> for Failure {
+    fn from(error: statics::SolveError) -> Failure {
+        Failure::Solve(Box::new(error))
+    }
+}
+
 impl From<statics::StaticError> for Failure {
     fn from(error: statics::StaticError) -> Failure {
         Failure::Static(Box::new(error))
@@ -244,7 +256,7 @@ impl From<statics::TimeError> for Failure {
 impl From<shape::SourceError> for Failure {
     fn from(error: shape::SourceError) -> Failure {
         match error.downcast::<efg::EfgError>() {
-            Ok(error) => Failure::Efg(*error),
+            Ok(error) => Failure::Efg(error),
             Err(other) => Failure::Run(other.to_string()),
         }
     }
