@@ -363,7 +363,8 @@ fn where_newton_stalls_relaxation_comes_to_the_same_rest() {
             };
             assert_eq!((stage(newton), stage(relaxed)), (false.into(), true.into()));
         }
-        // A cloud with supports by penalty cannot relax: its load path ends when it stalls, and the plan says why.
+        // A cloud with supports by penalty cannot relax: its load path ends when it stalls, and the plan
+        // says why.
         let plan = tissuebench(&["plan", &stuck, "--method", "efg"]);
         assert!(plan.stdout.contains("not available for clouds"), "{}", plan.stdout);
     }

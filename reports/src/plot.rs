@@ -27,7 +27,7 @@ pub(crate) struct Scale {
     shows: Shows,
 }
 
-/// What the values of an axis are. The page writes its tick labels accordingly.
+/// Kind of the values of an axis, by which the page writes its tick labels.
 #[derive(Clone, Copy, Debug, Serialize)]
 #[serde(rename_all = "kebab-case")]
 enum Shows {

@@ -55,8 +55,8 @@ words! {
     pub enum Precision {
         /// 16 digits; used unless given.
         Double = "double",
-        /// 7 digits, in half the memory and with twice the lanes. Displacements, velocities and masses stay in
-        /// double precision. For tet4, hex8, tet10 and hex20.
+        /// 7 digits, in half the memory and with twice the lanes. Displacements, velocities and masses stay
+        /// in double precision. For tet4, hex8, tet10 and hex20.
         Single = "single",
     }
 }

@@ -1,5 +1,5 @@
-//! Transfer of a method's nodal displacement to other points by common schemes, compared with the method's own
-//! shape functions.
+//! Transfer of a method's nodal displacement to other points by common schemes, compared with the method's
+//! own shape functions.
 
 use std::time::Instant;
 
@@ -20,8 +20,8 @@ use crate::outcome::{Counters, Metric, SchemeSettings, Transfer, Warning, push};
 /// Name of the method's own shape functions among the schemes; they need no transfer.
 pub const OWN_ROWS: &str = "own-rows";
 
-/// Difference from the method's own displacement above which a target with nodes across a gap counts, relative
-/// to the largest displacement of the targets.
+/// Difference from the method's own displacement above which a target with nodes across a gap counts,
+/// relative to the largest displacement of the targets.
 const JUMP: f64 = 0.01;
 /// Distance, in node spacings, within which nodes across a gap are searched.
 const REACH: f64 = 2.0;
@@ -123,8 +123,8 @@ struct Bridged {
 }
 
 impl Bridged {
-    /// Compares the displacement of a scheme with the method's own at the targets that have nodes across a gap
-    /// in their rows; `None` if they agree.
+    /// Compares the displacement of a scheme with the method's own at the targets that have nodes across a
+    /// gap in their rows; `None` if they agree.
     fn new(
         scheme: &'static str,
         rows: &Rows,

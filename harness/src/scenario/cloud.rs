@@ -18,8 +18,8 @@ const NITSCHE_SMOOTHED: f64 = 4.0;
 /// Default stabilisation with other gradients, with h the node spacing. A value of 10 is too small at support
 /// scale 1.2 with one point per face and at 2.0 with three. From 20 on the matrix stayed definite.
 const NITSCHE: f64 = 100.0;
-/// Default penalty, times E / h. A factor ten times as large locks the functions at the edge of a support that
-/// ends within a face.
+/// Default penalty, times E / h. A factor ten times as large locks the functions at the edge of a support
+/// that ends within a face.
 const PENALTY: f64 = 1e3;
 
 /// A body with an inside test, required by grids and by clouds of an exact node count.

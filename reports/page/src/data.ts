@@ -11,7 +11,8 @@ export interface Ask {
   reference: string | null; band: number | null; rank: (boolean | number)[]; lines: Line[];
 }
 
-/** Unit `""` is not written. Positions of `poisson-ratios` are 1/(1 − 2ν), which spreads nearly incompressible materials. */
+/** Unit `""` is not written. Positions of `poisson-ratios` are 1/(1 − 2ν), which spreads nearly
+ * incompressible materials. */
 export interface Axis { name: string; unit: string; log: boolean; shows: "numbers" | "times" | "relative-errors" | "poisson-ratios" }
 
 export interface Curve { label: number; xy: number[]; band?: [number, number, number][]; runs?: number[] }

@@ -35,8 +35,8 @@
 //! AVX2 / AVX-512: tet4 1.6 / 1.4 (6,000 and 105,456 elements), with nodal means 1.5 / 1.35, hex8 1.8 / 1.6,
 //! with means 1.9 / 1.7, tet10 1.7 / 1.5, hex20 1.9 / 1.9.
 //!
-//! Other laws are covered by the benchmark `laws`. Cases of the plain loop are not covered either: dilation of EFG rows, and of the linear and the
-//! St. Venant-Kirchhoff law.
+//! Other laws are covered by the benchmark `laws`. Cases of the plain loop are not covered either: dilation
+//! of EFG rows, and of the linear and the St. Venant-Kirchhoff law.
 
 mod common;
 

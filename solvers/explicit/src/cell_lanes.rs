@@ -29,8 +29,8 @@ pub(super) trait Cell<T: Scalar, const N: usize, const Q: usize>: Sized + Send +
     const NODE: [usize; N];
 
     /// Fits the rows of a table. Returns the cell, the place of each point of a cell in its blocks, and the
-    /// map `A_q` of every row, for which `grad N_a = A_q t_a` with the same `t_a` in all cells. Returns `None`
-    /// if the rows are not such cells.
+    /// map `A_q` of every row, for which `grad N_a = A_q t_a` with the same `t_a` in all cells. Returns
+    /// `None` if the rows are not such cells.
     fn fitted(volume: &VolumeRows) -> Option<(Self, [usize; Q], Vec<Matrix3>)>;
 
     /// Computes what the points share from the displacements relative to the first node,

@@ -77,9 +77,8 @@ impl Springs<'_> {
 /// degree of freedom `3 node + axis` is constrained if `free` returns false for it.
 ///
 /// The method is Lanczos with full reorthogonalisation on `A = M^-1/2 K M^-1/2`. `K v` is a central
-/// difference of internal forces, at a displacement of 1e-6 of the smallest spacing (3e-3 for forces in single
-/// precision). The start vector is
-/// fixed pseudo-random noise, so the same body gives the same step.
+/// difference of internal forces, at a displacement of 1e-6 of the smallest spacing (3e-3 for forces in
+/// single precision). The start vector is fixed pseudo-random noise, so the same body gives the same step.
 ///
 /// # Errors
 ///

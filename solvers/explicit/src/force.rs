@@ -114,8 +114,8 @@ impl<'a> InternalForce<'a> {
         Ok(())
     }
 
-    /// Returns the largest difference between the internal forces of the kernel and those of the plain loop in
-    /// double precision, relative to the largest force: what rounding changes.
+    /// Returns the largest difference between the internal forces of the kernel and those of the plain loop
+    /// in double precision, relative to the largest force: what rounding changes.
     ///
     /// # Errors
     ///

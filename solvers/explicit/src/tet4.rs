@@ -16,8 +16,8 @@ use super::scalar::{Scalar, Slot};
 use super::tet4_lanes::{Block, Chunk, dilated, dilations, internal};
 use crate::kernel::{Engine, Kernel};
 
-/// Elements per chunk in double precision, with about 512 distinct nodes, whose displacements and forces stay in the first-level
-/// cache.
+/// Elements per chunk in double precision, with about 512 distinct nodes, whose displacements and forces
+/// stay in the first-level cache.
 const SIZE: usize = 2048;
 
 /// Kernel for tetrahedra with four nodes, standard or with nodal-mean dilation.

@@ -167,7 +167,8 @@ pub enum Layout {
     /// Each row is at a point of a linear tetrahedron: four nodes, with gradients that are constant in the
     /// cell and sum to zero.
     LinearTetrahedra,
-    /// Each group of `points` rows belongs to one of the cells of a mesh of a single kind, with `nodes` nodes.
+    /// Each group of `points` rows belongs to one of the cells of a mesh of a single kind, with `nodes`
+    /// nodes.
     #[allow(missing_docs)]
     Cells { nodes: usize, points: usize },
 }

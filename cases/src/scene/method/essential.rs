@@ -21,8 +21,8 @@ pub(crate) enum EssentialKeys {
 #[serde(deny_unknown_fields)]
 pub(crate) struct EssentialTable {
     method: EssentialKind,
-    /// Stabilisation factor of Nitsche's method (4 with smoothed gradients, else 100, unless given), or penalty
-    /// factor (1000 unless given); with these two methods only
+    /// Stabilisation factor of Nitsche's method (4 with smoothed gradients, else 100, unless given), or
+    /// penalty factor (1000 unless given); with these two methods only
     factor: Option<f64>,
     /// Displacements prescribed by the eliminated rows; with elimination only
     rows: Option<ConstraintRows>,

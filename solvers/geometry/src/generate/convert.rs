@@ -46,8 +46,8 @@ pub fn to_tets(mesh: &Mesh) -> Mesh {
     divided(mesh, TET, nodes, &first)
 }
 
-/// Divides a mesh into the linear tetrahedra of [`to_tets`], in one region. All nodes keep their numbers; nodes
-/// along the edges of quadratic cells belong to no tetrahedron.
+/// Divides a mesh into the linear tetrahedra of [`to_tets`], in one region. All nodes keep their numbers;
+/// nodes along the edges of quadratic cells belong to no tetrahedron.
 pub fn tets_on_nodes(mesh: &Mesh) -> Mesh {
     let (nodes, _) = cut_all(mesh);
     let kinds = vec![TET; nodes.len() / 4];

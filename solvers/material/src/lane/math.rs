@@ -86,8 +86,8 @@ pub fn ln_1p_f32<const FMA: bool>(j: f32) -> f32 {
     m(k, LN2_HIGH, f - (half - m(s, half + odd + even, low)))
 }
 
-/// Returns `(1 + j)^(-1/3) - 1` in single precision, with a relative error of 3.3e-7 even near `j = 0`, by the
-/// steps of [`inverse_cbrt_less_1`].
+/// Returns `(1 + j)^(-1/3) - 1` in single precision, with a relative error of 3.3e-7 even near `j = 0`, by
+/// the steps of [`inverse_cbrt_less_1`].
 #[inline(always)]
 pub fn inverse_cbrt_less_1_f32<const FMA: bool>(j: f32) -> f32 {
     let x = 1.0 + j;

@@ -1,5 +1,6 @@
-//! Stress of eight points at once, or of sixteen in single precision. A loop over lanes becomes vector instructions if its body is straight-line
-//! arithmetic. All functions here are therefore free of branches on a lane and of calls.
+//! Stress of eight points at once, or of sixteen in single precision. A loop over lanes becomes vector
+//! instructions if its body is straight-line arithmetic. All functions here are therefore free of branches
+//! on a lane and of calls.
 
 pub mod invariants;
 pub mod math;
@@ -15,9 +16,9 @@ pub use real::Real;
 /// A number for each of eight points.
 pub type Lanes = [f64; LANES];
 
-/// Displacement gradients of one point in each lane with derived quantities that every kernel needs. The structure is
-/// aligned, because otherwise registers of 64 bytes might straddle cache lines, depending on the stack (up to
-/// 1.5 times the time).
+/// Displacement gradients of one point in each lane with derived quantities that every kernel needs. The
+/// structure is aligned, because otherwise registers of 64 bytes might straddle cache lines, depending on
+/// the stack (up to 1.5 times the time).
 #[derive(Clone, Copy)]
 #[repr(align(64))]
 pub struct LaneStrain<T: Real = f64> {

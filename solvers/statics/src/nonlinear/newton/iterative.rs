@@ -89,7 +89,8 @@ impl Newton<'_> {
             && (0..tools).all(|k| equations.force(k, 1.0).is_none())
     }
 
-    /// Largest relative residual to which systems may be solved; `None` if the next step's needs do not count.
+    /// Largest relative residual to which systems may be solved; `None` if the next step's needs do not
+    /// count.
     pub(super) fn loosest(&self) -> Option<f64> {
         if self.iterates() {
             return Some(LOOSEST);
