@@ -111,7 +111,7 @@ test("methods are switched off and on, and the answer follows", async (open) => 
 test("the axis of times names the clock, and the note gives the reason", async (open) => {
   const change = (d) => {
     d.machine.quiet = false;
-    d.asks.forEach((a) => { if (!a.repeated) a.time = "CPU time, median [s]"; });
+    d.asks.forEach((a) => { if (!a.repeated) a.time.name = "CPU time, median"; });
   };
   const page = await open("", { at: altered(change) });
   assert.ok((await page.eval(`${all("#front svg text")}.map((t) => t.textContent)`)).includes("CPU time, median"));
