@@ -47,21 +47,28 @@ impl Scene {
         }
         for (i, method) in self.methods.iter().enumerate() {
             let at = |key: &str| format!("method[{i}].{key}");
-            match &method.family {
-                Family::Fem(fem) if fem.dilation == Dilation::Mixed && kind == ProcedureKind::Modes => {
+            let mixed = match &method.family {
+                Family::Fem(fem) => fem.dilation == Dilation::Mixed,
+                Family::Efg(efg) => efg.dilation == Dilation::Mixed,
+                Family::External(_) => false,
+            };
+            match kind {
+                ProcedureKind::Modes if mixed => {
                     let help = "\"standard\", \"element-mean\", \"nodal-mean\" and \"nodal-near\" are";
                     add(&at("dilation"), "dilation = \"mixed\" in vibrations".into(), help);
                 }
-                Family::Fem(fem) if fem.dilation == Dilation::Mixed && kind == ProcedureKind::Linear => {
+                ProcedureKind::Linear if mixed => {
                     let help =
                         "procedure = { kind = \"static\" } has it, with the linear law in one step too";
                     add(&at("dilation"), "dilation = \"mixed\" in a linear procedure".into(), help);
                 }
-                Family::Fem(fem) if explicit && fem.dilation == Dilation::Mixed => {
+                _ if explicit && mixed => {
                     let help = "\"element-mean\", \"nodal-mean\" and \"nodal-near\" are: their dilation needs no system of equations";
                     add(&at("dilation"), "dilation = \"mixed\" in explicit dynamics".into(), help);
                 }
-                Family::Fem(_) | Family::External(_) => {}
+                _ => {}
+            }
+            match &method.family {
                 Family::Efg(efg)
                     if explicit && efg.essential != Essential::Coupling && !self.supports.is_empty() =>
                 {
@@ -72,11 +79,7 @@ impl Scene {
                         help,
                     );
                 }
-                Family::Efg(efg) if efg.dilation == Dilation::Mixed => {
-                    let help = "\"element-mean\", \"nodal-mean\" and \"nodal-near\" are";
-                    add(&at("dilation"), "dilation = \"mixed\" for clouds".into(), help);
-                }
-                Family::Efg(_) => {}
+                Family::Fem(_) | Family::Efg(_) | Family::External(_) => {}
             }
         }
         if explicit {

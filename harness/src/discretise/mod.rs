@@ -222,7 +222,7 @@ impl Discretisation {
                 Dilation::ElementMean => groups = Some(source.cell_dilation()?.ok_or_else(no_cells)?),
                 Dilation::NodalMean => groups = Some(by_material(DilationGroups::nodal(&rows)?)?),
                 Dilation::NodalNear => groups = Some(by_material(DilationGroups::near(&rows)?)?),
-                Dilation::Mixed => pressure = Some(source.pressure(alike)?.ok_or_else(no_pressure)?),
+                Dilation::Mixed => pressure = Some(source.pressure(alike, rows.points())?),
             }
         }
         groups.as_ref().map_or(Ok(()), |groups| positive(groups, rows.weights()))?;
@@ -256,14 +256,5 @@ fn no_cells() -> Failure {
         Key::Method("dilation"),
         "needs integration points that belong to background cells; those of this rule do not",
         "take dilation = \"nodal-mean\", or rule = \"gauss\" or \"cell-smoothed\"",
-    )
-}
-
-fn no_pressure() -> Failure {
-    let help = "take \"element-mean\", \"nodal-mean\" or \"nodal-near\"";
-    Failure::unavailable(
-        Key::Method("dilation"),
-        "needs a pressure field, which this family does not have",
-        help,
     )
 }

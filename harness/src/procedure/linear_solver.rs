@@ -1,5 +1,6 @@
 //! Choice of the solver of a linear procedure: factorisation, or iterations with multigrid.
 
+use algebra::Multigrid;
 use cases::scene::{Dilation, LinearSolver, Static};
 use contact::Drive;
 use geometry::Point3;
@@ -16,40 +17,52 @@ use crate::scenario::setup::Setup;
 /// Relative residual at which the iterations stop.
 const TOLERANCE: f64 = 1e-8;
 
-/// Number of unknowns from which iterations are used if the volumetric stiffness is at most [`COMPRESSIBLE`]
-/// times the shear stiffness. On a cube of tet4 with 105,000 unknowns, multigrid setup and iterations take
-/// 0.4 s, factorisation and solution 5 s. At 5,000 unknowns the times are equal. A factor is exact to
-/// rounding, so small problems are factored.
-const UNKNOWNS: f64 = 20_000.0;
+/// Smallest number of unknowns from which iterations are used: smaller systems take some milliseconds, and a
+/// factor is exact to rounding.
+const SMALLEST: f64 = 2_000.0;
 
-/// The same for a method whose parameters are not displacements, such as a cloud: its matrix has more
-/// entries, and its factor still more. On a cube of 1,331 nodes (support scale 1.6), iterations take 0.08 s
-/// and a factor 0.27 s; on a cube of 10,648 nodes, 1.2 s and 13 s.
-const OF_CLOUD: f64 = 6_000.0;
+/// Number of unknowns at which both solvers take the same time if lambda is at most [`COMPRESSIBLE`] mu, and
+/// its power of `lambda / mu` beyond. All are fitted to measured times of both (`benches/break-even.csv`).
+struct BreakEven(f64, f64);
+
+const ELEMENTS: BreakEven = BreakEven(800.0, 0.65);
+/// Rough motions between the points of reduced quadrature have little energy, and take more iterations.
+const REDUCED: BreakEven = BreakEven(3_000.0, 0.65);
+/// The levels of a cloud have more entries, and its iterations are more.
+const CLOUD: BreakEven = BreakEven(8_000.0, 0.65);
+/// With pressures.
+const WITH_PRESSURES: BreakEven = BreakEven(800.0, 0.4);
+/// With a pressure per element of first order, which allows too few motions.
+const PER_LINEAR_ELEMENT: BreakEven = BreakEven(560.0, 0.95);
+const CLOUD_WITH_PRESSURES: BreakEven = BreakEven(8_000.0, 0.34);
 
 /// Largest `lambda / mu` at which the iterations are as few as for a compressible body (nu = 0.45): 20 to 35.
 /// Beyond this ratio their number grows with the square root of the ratio (94 at nu = 0.495, at which the
-/// ratio is 11 times as large), and so does the size from which iterations pay off.
+/// ratio is 11 times as large).
 const COMPRESSIBLE: f64 = 9.0;
+
+/// Number of iterations with pressures that take 1.5 times as long as a factor, over the unknowns to the power
+/// of 0.4 (fitted to the same times). Groups of nodes fill a factor more.
+const ITERATIONS: f64 = 3.75;
+const ITERATIONS_NODAL: f64 = 7.5;
 
 /// Smallest `lambda / mu` at which elements whose points share dilations are iterated with pressures. At nu =
 /// 0.495 this takes 45 iterations instead of 77 with displacements alone, each a third more expensive.
 const PRESSURES: f64 = 60.0;
-
-/// Exponents of `lambda / mu` in the size from which iterations with pressures pay off, for elements of
-/// second and of first order. On cubes of 107,811 unknowns at nu = 0.4999, tet10 takes 3.2 s (factorisation
-/// 7.3 s); hex8, whose pressures are less well determined, takes 9.5 s (factorisation 7.1 s).
-const QUADRATIC: f64 = 0.25;
-const LINEAR: f64 = 0.34;
 
 /// Number of unknowns from which the tangents of nonlinear statics are iterated. On cubes at nu = 0.49, whole
 /// load paths take the same time at 6,000 unknowns, and 1.1 (hex8), 1.2 (tet10) and 2.0 (tet4-nodal) times as
 /// long with factors at 10,000.
 const TANGENTS: f64 = 10_000.0;
 
-/// Ratio of the unknowns of a cube that is as expensive to factor to the unknowns of the body. The cost
-/// depends on the nodes across the longest side, `n^(2/3) s`, with `s` the edge of a cube of the same
-/// bounding volume divided by the longest side. A beam is also flexible, and its iterations lose digits.
+/// Edge of a cube of the same bounding volume over the longest side, below which a body is factored: beams of
+/// more than 30 times their height. They are so flexible that iterations lose digits, whose number only a
+/// factor tells.
+const SLENDER: f64 = 0.1;
+
+/// Edge of a cube of the same bounding volume over the longest side: 1 for a cube. A body counts as a cube
+/// with fewer unknowns, by the square root of this ratio. Its factor is cheaper, by the power 1.5 (nodes
+/// across the longest side), but so are its iterations; the root fits the times of beams and plates.
 fn compactness(nodes: &[Point3]) -> f64 {
     let along = |axis: usize| {
         let ends = nodes
@@ -59,8 +72,13 @@ fn compactness(nodes: &[Point3]) -> f64 {
         ends.1 - ends.0
     };
     let sides = [0, 1, 2].map(along);
-    let cube = sides.iter().product::<f64>().cbrt();
-    (cube / sides.iter().fold(0.0, |longest: f64, side| longest.max(*side))).powf(1.5)
+    sides.iter().product::<f64>().cbrt() / sides.iter().fold(0.0, |longest: f64, side| longest.max(*side))
+}
+
+/// Number of unknowns of a body, and the number that it counts as.
+fn unknowns(method: &Discretisation) -> (usize, f64) {
+    let count = 3 * method.nodes().len();
+    (count, count as f64 * compactness(method.nodes()).sqrt())
 }
 
 /// Solver of the linear equations.
@@ -90,6 +108,9 @@ pub(super) fn serves(method: &Discretisation, setup: &Setup, asked: LinearSolver
         Essential::Multipliers => Some("multipliers"),
         Essential::Elimination(_) => Some("elimination couples distant nodes"),
         _ if method.wide => Some("the supports of the cloud are too wide for iterations"),
+        _ if compactness(method.nodes()) < SLENDER => {
+            Some("the body is so slender that iterations lose digits")
+        }
         _ => None,
     };
     let stiffest = setup.materials.iter().map(|m| m.lambda() / m.mu()).fold(0.0, f64::max);
@@ -100,33 +121,29 @@ pub(super) fn serves(method: &Discretisation, setup: &Setup, asked: LinearSolver
             Dilation::ElementMean | Dilation::NodalMean | Dilation::NodalNear => true,
             Dilation::Standard | Dilation::Mixed => false,
         };
-    let quadratic = method.order == 2;
-    let (iterated, power) = match shared && stiffest >= PRESSURES {
-        true => (Serves::Pressures, if quadratic { QUADRATIC } else { LINEAR }),
-        false => (Serves::Multigrid, 0.5),
+    let (iterated, BreakEven(from, power)) = match (method.interpolates, shared && stiffest >= PRESSURES) {
+        (true, true) if method.order == 1 && method.dilation == Dilation::ElementMean => {
+            (Serves::Pressures, PER_LINEAR_ELEMENT)
+        }
+        (true, true) => (Serves::Pressures, WITH_PRESSURES),
+        (true, false) if method.reduced => (Serves::Multigrid, REDUCED),
+        (true, false) => (Serves::Multigrid, ELEMENTS),
+        (false, true) => (Serves::Pressures, CLOUD_WITH_PRESSURES),
+        (false, false) => (Serves::Multigrid, CLOUD),
     };
-    let from = if method.interpolates { UNKNOWNS } else { OF_CLOUD };
-    let needed = from * (stiffest / COMPRESSIBLE).powf(power).max(1.0);
-    let unknowns = 3 * method.nodes().len();
-    let compact = compactness(method.nodes());
-    let of_cube = unknowns as f64 * compact;
+    let (unknowns, of_cube) = unknowns(method);
+    let break_even = from * (stiffest / COMPRESSIBLE).powf(power).max(1.0);
+    let least = SMALLEST.max(break_even * unknowns as f64 / of_cube);
     match (asked, direct) {
         (LinearSolver::Direct, _) => (Serves::Factor, "requested".into()),
         (LinearSolver::Amg, _) => (iterated, "requested".into()),
         (LinearSolver::Auto, Some(why)) => (Serves::Factor, why.into()),
         (LinearSolver::Auto, None) => {
-            let iterates = of_cube >= needed;
-            let like = if compact < 0.995 {
-                format!(", as costly to factor as {of_cube:.0} unknowns of a cube")
-            } else {
-                String::new()
-            };
-            (
-                if iterates { iterated } else { Serves::Factor },
-                format!(
-                    "{unknowns} unknowns{like}; iterative solution from {needed:.0} at lambda / mu = {stiffest:.3}"
-                ),
-            )
+            let serves = if unknowns as f64 >= least { iterated } else { Serves::Factor };
+            let why = format!(
+                "{unknowns} unknowns; iterative solution from {least:.0} for this shape at lambda / mu = {stiffest:.3}"
+            );
+            (serves, why)
         }
     }
 }
@@ -140,15 +157,14 @@ pub(super) fn tangents(method: &Discretisation, setup: &Setup, asked: &Static) -
         || !matches!(method.essential, Essential::Nodal)
         || asked.limit_within.is_some()
         || setup.tools.iter().any(forced);
-    let unknowns = 3 * method.nodes().len();
-    let of_cube = unknowns as f64 * compactness(method.nodes());
+    let (unknowns, of_cube) = unknowns(method);
+    let least = TANGENTS * unknowns as f64 / of_cube;
     match !direct && of_cube >= TANGENTS {
         true => (
             true,
             format!(
                 "multigrid levels, each for several iterations, and a factor where they do not converge \
-                 ({unknowns} unknowns, as costly to factor as {of_cube:.0} unknowns of a cube; iterative \
-                 solution from {TANGENTS:.0})"
+                 ({unknowns} unknowns; iterative solution from {least:.0} for this shape)"
             ),
         ),
         false => (false, "one for each iteration, analysed once".into()),
@@ -181,7 +197,14 @@ pub(super) fn solved<'a>(
         let help = "give \"auto\" or \"direct\", or take essential = \"nitsche\" or \"penalty\"";
         return Err(Failure::input(key, problem, help));
     }
-    by_iterations(prepared, assembled, (serves, asked), meters)
+    let most = (asked == LinearSolver::Auto).then(|| iterations_for_a_factor(method));
+    by_iterations(prepared, assembled, (serves, most), meters)
+}
+
+/// Number of iterations with pressures that take 1.5 times as long as a factor.
+fn iterations_for_a_factor(method: &Discretisation) -> usize {
+    let each = if method.dilation == Dilation::ElementMean { ITERATIONS } else { ITERATIONS_NODAL };
+    (each * unknowns(method).1.powf(0.4)) as usize
 }
 
 fn by_factor<'a>(
@@ -196,24 +219,27 @@ fn by_factor<'a>(
     Ok(Solved { factored, solution, not_iterated: false })
 }
 
-/// Solves by iterations. If they do not converge, the matrix is factored, unless the scene requests
-/// iterations.
+/// Solves by iterations. If they do not converge, or would take more than `most`, the matrix is factored;
+/// `None` if the scene requests iterations.
 fn by_iterations<'a>(
     prepared: &Prepared,
     assembled: Assembled<'a>,
-    (serves, asked): (Serves, LinearSolver),
+    (serves, most): (Serves, Option<usize>),
     meters: &mut Meters,
 ) -> Result<Solved<'a>, Failure> {
     let Meters { timings, counters, .. } = meters;
     let levels = timings.time("factor", || -> Result<_, Failure> {
         let linear = prepared.source.coarser()?;
         Ok(match serves {
-            Serves::Pressures => assembled.multigrid_with_pressures(linear.as_ref()),
+            Serves::Pressures => {
+                let levels = assembled.multigrid_with_pressures(linear.as_ref());
+                levels.map(|levels| most.into_iter().fold(levels, Multigrid::at_most))
+            }
             _ => assembled.multigrid(linear.as_ref()),
         })
     })?;
     counters.factorisations += 1;
-    let may_factor = |error: &SolveError| asked == LinearSolver::Auto && is_of_iteration(error);
+    let may_factor = |error: &SolveError| most.is_some() && is_of_iteration(error);
     let mut phases = vec!["factor"];
     let assembled = match levels {
         Err(error) if may_factor(&error) => assembled,

@@ -136,7 +136,8 @@ fn projection(method: &Discretisation, setup: &Setup) -> (bool, String) {
         Dilation::NodalNear => {
             (true, "one dilation per node, with each point shared among four nodes".into())
         }
-        Dilation::Mixed => (true, "a pressure field, linear between corners".into()),
+        Dilation::Mixed if method.interpolates => (true, "a pressure field, linear between corners".into()),
+        Dilation::Mixed => (true, "a pressure field on a third of the nodes".into()),
     }
 }
 

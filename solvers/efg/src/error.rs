@@ -1,6 +1,6 @@
 //! Errors of clouds, supports and backgrounds. Lengths are in metres.
 
-use geometry::{CellKind, LocateError};
+use geometry::{CellKind, CloudError, LocateError};
 use shape::{Point3, ShapeError};
 
 /// Reason why an approximation or its integration is impossible.
@@ -184,6 +184,10 @@ pub enum EfgError {
     /// Cells or points that cannot be located.
     #[error(transparent)]
     Locate(#[from] LocateError),
+
+    /// The nodes of a pressure field do not make a cloud.
+    #[error(transparent)]
+    Cloud(#[from] CloudError),
     /// A table that violates its own conditions.
     #[error(transparent)]
     Shape(#[from] ShapeError),

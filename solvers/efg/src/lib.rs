@@ -38,6 +38,7 @@ mod ldlt;
 mod max_entropy;
 mod mls;
 mod node_smoothed;
+mod pressure;
 mod recovery;
 mod row_list;
 mod smoothed;

@@ -20,6 +20,7 @@ use crate::grid::grid_rows;
 use crate::info::MlsInfo;
 use crate::kernel::Kernel;
 use crate::node_smoothed::{node_smoothed_regions, node_smoothed_rows, node_smoothed_trace};
+use crate::pressure::pressure_rows;
 use crate::smoothed::{Smoothing, smoothed_regions, smoothed_rows, smoothed_trace};
 use crate::support::Support;
 
@@ -265,8 +266,9 @@ impl RowSource for CloudSource {
         Ok(self.integration.points_per_cell().map(of_cells).transpose()?)
     }
 
-    fn pressure(&self, _alike: &[u16]) -> Result<Option<Rows>, SourceError> {
-        Ok(None)
+    fn pressure(&self, alike: &[u16], points: &[Point3]) -> Result<Rows, SourceError> {
+        let nodes = self.approximation.nodes()[..self.nodes].to_vec();
+        Ok(pressure_rows(nodes, &self.background, (&self.regions(), alike), points)?)
     }
 
     fn fine_volume(&self) -> Result<VolumeRows, SourceError> {

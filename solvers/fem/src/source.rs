@@ -64,8 +64,8 @@ impl RowSource for Elements {
         Ok(Some(element_dilation(&self.mesh, &self.rule)?))
     }
 
-    fn pressure(&self, alike: &[u16]) -> Result<Option<Rows>, SourceError> {
-        Ok(Some(pressure_rows(&self.mesh, &self.rule, alike)?))
+    fn pressure(&self, alike: &[u16], _points: &[Point3]) -> Result<Rows, SourceError> {
+        Ok(pressure_rows(&self.mesh, &self.rule, alike)?)
     }
 
     fn coarser(&self) -> Result<Option<Coarser>, SourceError> {

@@ -58,6 +58,25 @@ impl Cloud {
         let spacing = spacing.into_iter().collect::<Result<Vec<f64>, CloudError>>()?;
         Ok(Cloud { points, spacing })
     }
+
+    /// Returns a coarser cloud of `count` of the nodes, spread out: each is the farthest from those before it,
+    /// relative to the spacing.
+    ///
+    /// # Errors
+    /// Fewer than two nodes.
+    pub fn thinned(&self, count: usize) -> Result<Cloud, CloudError> {
+        let widest = self.spacing.iter().copied().fold(0.0, f64::max);
+        let sized = self.points.iter().copied().zip(self.spacing.iter().map(|h| h / widest));
+        let mut candidates = farthest::Farthest::new(sized, widest);
+        let mut points = Vec::with_capacity(count);
+        while points.len() < count.min(self.points.len())
+            && let Some((next, _)) = candidates.farthest()
+        {
+            candidates.choose(&next);
+            points.push(next);
+        }
+        Cloud::from_points(points)
+    }
 }
 
 /// Nodes of a mesh as a cloud. The spacing at a node (m) is the mean length of the edges that meet there. An

@@ -50,6 +50,23 @@ fn counts_are_exact_and_nodes_lie_in_the_body() {
 }
 
 #[test]
+fn a_thinned_cloud_is_spread_out_as_the_nodes_are() {
+    let full = cloud(&Kidney, 900, 3, &[]).unwrap();
+    let thin = full.thinned(300).unwrap();
+    assert_eq!(thin.points.len(), 300);
+    assert!(thin.points.iter().all(|p| full.points.contains(p)));
+    let gaps = gaps(&thin.points);
+    let low = gaps.iter().copied().fold(f64::INFINITY, f64::min);
+    assert!(low > 0.5 * gaps.iter().sum::<f64>() / 300.0, "{low}");
+    // Every node is near one of those that remain.
+    let search = Search::new(&thin.points).unwrap();
+    let away = full.points.iter().map(|p| search.nearest(p, 1)[0].distance).fold(0.0, f64::max);
+    assert!(away < 1.1 * low, "{away} {low}");
+    // More nodes than there are: all of them.
+    assert_eq!(full.thinned(1000).unwrap().points.len(), 900);
+}
+
+#[test]
 fn clouds_are_even_and_cover_surface_and_inside() {
     for (name, shape) in shapes() {
         let n = 332;

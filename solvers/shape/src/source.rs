@@ -63,10 +63,9 @@ pub trait RowSource: Send + Sync {
     /// Returns one group of points for each cell; `None` if the quadrature is not based on cells.
     fn cell_dilation(&self) -> Result<Option<DilationGroups>, SourceError>;
 
-    /// Returns a pressure field, linear between corners, at the points of the method's own quadrature; `None`
-    /// if the family has none. The field is continuous only within a material; `alike` gives the material of
-    /// each region.
-    fn pressure(&self, alike: &[u16]) -> Result<Option<Rows>, SourceError>;
+    /// Returns the shape values of a pressure field at the `points` (m) of the method's own quadrature. The
+    /// field is continuous only within a material; `alike` gives the material of each region.
+    fn pressure(&self, alike: &[u16], points: &[Point3]) -> Result<Rows, SourceError>;
 
     /// Returns a coarser mesh whose functions the method's nodes reproduce exactly; `None` if there is none.
     fn coarser(&self) -> Result<Option<Coarser>, SourceError> {

@@ -46,7 +46,12 @@ pub struct Multigrid {
     hierarchy: Hierarchy,
     /// Pressures, and the stiffness from which the hierarchy was built.
     pressures: Option<Box<(Pressures, Stiffness)>>,
+    /// Largest number of iterations with pressures.
+    most: usize,
 }
+
+/// Largest number of iterations with pressures, if no other is given.
+const MOST: usize = 2_000;
 
 fn path(with_pressures: bool) -> SolverPath {
     if with_pressures { SolverPath::MultigridPressures } else { SolverPath::Multigrid }
@@ -70,7 +75,13 @@ impl Multigrid {
         patch: &[u32],
     ) -> Result<Multigrid, FactorError> {
         let hierarchy = Hierarchy::new(stiffness, nodes, held, linear, patch)?;
-        Ok(Multigrid { hierarchy, pressures: None })
+        Ok(Multigrid { hierarchy, pressures: None, most: MOST })
+    }
+
+    /// Limits the iterations with pressures: they are given up as soon as their rate shows that they need
+    /// more than `most`.
+    pub fn at_most(self, most: usize) -> Multigrid {
+        Multigrid { most, ..self }
     }
 
     /// Adds pressures as unknowns, for a nearly incompressible stiffness.
@@ -132,7 +143,7 @@ impl Multigrid {
             Some(both) => {
                 let (pressures, without) = &**both;
                 self.hierarchy.release(b);
-                pressures.solve(&self.hierarchy, (without, stiffness), b, tolerance)
+                pressures.solve(&self.hierarchy, (without, stiffness), b, (tolerance, self.most))
             }
             None => self
                 .hierarchy

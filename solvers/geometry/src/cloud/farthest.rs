@@ -29,16 +29,12 @@ struct Bucket {
 }
 
 impl Farthest {
-    /// Sorts the candidates into buckets. `size` is the target spacing at each candidate up to a common
-    /// factor, at most 1. `side` (m) is the bucket width, about the final distance between chosen points.
-    pub(super) fn new(
-        points: impl Iterator<Item = Point3>,
-        size: impl Fn(&Point3) -> f64,
-        side: f64,
-    ) -> Farthest {
-        let mut keyed: Vec<([i64; 3], Candidate)> = points
-            .map(|at| {
-                let scale = size(&at).powi(-2);
+    /// Sorts the candidates into buckets. Each has its target spacing up to a common factor, at most 1.
+    /// `side` (m) is the bucket width, about the final distance between chosen points.
+    pub(super) fn new(candidates: impl Iterator<Item = (Point3, f64)>, side: f64) -> Farthest {
+        let mut keyed: Vec<([i64; 3], Candidate)> = candidates
+            .map(|(at, size)| {
+                let scale = size.powi(-2);
                 (
                     [at.x, at.y, at.z].map(|c| (c / side).floor() as i64),
                     Candidate { at, scale, gap: f64::INFINITY },

@@ -103,7 +103,7 @@ fn generate(
 
     let spacing = (shape.volume() / n as f64).cbrt();
     let farthest = |points: &[&[Point3]]| {
-        Farthest::new(points.iter().flat_map(|list| list.iter().copied()), size, spacing)
+        Farthest::new(points.iter().flat_map(|list| list.iter().map(|p| (*p, size(p)))), spacing)
     };
 
     // The spacing that `n` nodes reach if surface and inside are sampled together. Edges and surface get as
