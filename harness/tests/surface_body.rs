@@ -129,6 +129,7 @@ body = {{ shape = "file", path = "{path}", unit = "mm" }}
 material = {{ law = "linear", young = "20 kPa", poisson = 0.3 }}
 support = [{{ on = "surface", move = "exact" }}]
 reference = {{ exact = "affine" }}
+procedure = {{ kind = "linear", linear_solver = "direct" }}
 method = [{methods}]
 "#
     )

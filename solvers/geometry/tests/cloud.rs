@@ -61,7 +61,7 @@ fn a_thinned_cloud_is_spread_out_as_the_nodes_are() {
     // Every node is near one of those that remain.
     let search = Search::new(&thin.points).unwrap();
     let away = full.points.iter().map(|p| search.nearest(p, 1)[0].distance).fold(0.0, f64::max);
-    assert!(away < 1.1 * low, "{away} {low}");
+    assert!(away < 1.5 * low, "{away} {low}");
     // More nodes than there are: all of them.
     assert_eq!(full.thinned(1000).unwrap().points.len(), 900);
 }
