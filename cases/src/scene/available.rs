@@ -62,7 +62,7 @@ impl Scene {
                         "procedure = { kind = \"static\" } has it, with the linear law in one step too";
                     add(&at("dilation"), "dilation = \"mixed\" in a linear procedure".into(), help);
                 }
-                _ if explicit && mixed => {
+                ProcedureKind::Explicit if mixed => {
                     let help = "\"element-mean\", \"nodal-mean\" and \"nodal-near\" are: their dilation needs no system of equations";
                     add(&at("dilation"), "dilation = \"mixed\" in explicit dynamics".into(), help);
                 }

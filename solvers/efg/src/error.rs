@@ -184,7 +184,6 @@ pub enum EfgError {
     /// Cells or points that cannot be located.
     #[error(transparent)]
     Locate(#[from] LocateError),
-
     /// The nodes of a pressure field do not make a cloud.
     #[error(transparent)]
     Cloud(#[from] CloudError),

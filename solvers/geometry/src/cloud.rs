@@ -59,8 +59,8 @@ impl Cloud {
         Ok(Cloud { points, spacing })
     }
 
-    /// Returns a coarser cloud of `count` of the nodes, spread out: each is the farthest from those before it,
-    /// relative to the spacing.
+    /// Returns a coarser cloud of `count` of the nodes, spread out: each is the farthest from those before
+    /// it, relative to the spacing.
     ///
     /// # Errors
     /// Fewer than two nodes.

@@ -12,8 +12,8 @@
 //! The coefficients are no longer large in k, so that the number of iterations hardly grows with k. The
 //! preconditioner P approximates A by a cycle C, then the Schur complement of the pressures by a diagonal S
 //! (Elman, Silvester and Wathen 2014, Finite Elements and Fast Iterative Solvers, section 4.2). The iteration
-//! is GCR, with directions orthogonal to the last few (Eisenstat, Elman and Schultz 1983, SIAM J. Numer. Anal.
-//! 20, 345).
+//! is GCR, with directions orthogonal to the last few (Eisenstat, Elman and Schultz 1983, SIAM J. Numer.
+//! Anal. 20, 345).
 //!
 //! It minimises the preconditioned residual `z = P r` in the norm of `diag(C^-1, S)`, in which the product
 //! with P K has a positive real part for every vector (Klawonn and Starke 1999, Numer. Math. 81, 577). In the
@@ -214,8 +214,8 @@ impl Pressures {
         (count, reached)
     }
 
-    /// Iterates until `|f - K u|` is at most `limit`, and returns whether this was reached. Iterations that would
-    /// need more than the largest number at the rate of the last ones are given up.
+    /// Iterates until `|f - K u|` is at most `limit`, and returns whether this was reached. Iterations that
+    /// would need more than the largest number at the rate of the last ones are given up.
     fn descend(
         &self,
         inner: &Inner,
