@@ -1,7 +1,8 @@
 //! Laws in principal stretches and homogeneous states: properties of every isotropic law.
 
 use tissuebench_cases::exact::{
-    Elastic, Exact as _, FiniteBending, Hertz, Homogeneous, Hyperelastic, Matrix3, Point3, Vector3,
+    Elastic, Exact as _, FiniteBending, Hertz, Homogeneous, Hyperelastic, Inflation, Matrix3, Point3,
+    PressedStrip, Vector3,
 };
 
 const YOUNG: f64 = 20e3;
@@ -159,3 +160,77 @@ fn bent_blocks_balance_their_moments_and_keep_the_volume_when_nearly_incompressi
     assert!(sum.abs() < 1e-6 * YOUNG && stress(0.5) > 0.1 * YOUNG, "{sum} {}", stress(0.5));
     assert!(FiniteBending::new(&law, thickness, 101.0).is_err());
 }
+
+#[test]
+fn inflated_walls_have_the_pressure_of_the_incompressible_closed_forms() {
+    // Radii A = 10 mm and B = 20 mm with a = 1.3 A. The pressure is the integral of W' / (l^(m+1) - 1) over the
+    // hoop stretches from B to A: neo-Hookean sphere 2 mu [-1/l - 1/(4 l^4)], tube mu [ln l - 1/(2 l^2)].
+    let elastic = Elastic::new(YOUNG, 0.499_999).unwrap();
+    let (law, mu) = (Hyperelastic::NeoHookean(elastic), elastic.mu());
+    let sphere = |l: f64| 2.0 * mu * (-1.0 / l - 0.25 / l.powi(4));
+    let tube = |l: f64| mu * (l.ln() - 0.5 / (l * l));
+    for (is_sphere, integral) in [(true, &sphere as &dyn Fn(f64) -> f64), (false, &tube)] {
+        let power = if is_sphere { 3 } else { 2 };
+        let outer =
+            (20.0f64.powi(power) + 13.0f64.powi(power) - 10.0f64.powi(power)).powf(1.0 / f64::from(power));
+        let pressure = integral(1.3) - integral(outer / 20.0);
+        let inflated = Inflation::new(&law, is_sphere, [0.01, 0.02], pressure).unwrap();
+        assert!((inflated.radius(0.01) / 0.013 - 1.0).abs() < 1e-5, "{}", inflated.radius(0.01));
+        assert!((inflated.radius(0.02) / (1e-3 * outer) - 1.0).abs() < 1e-5, "{}", inflated.radius(0.02));
+    }
+}
+
+#[test]
+fn inflated_walls_balance_their_pressure_point_by_point() {
+    let (inner, outer, pressure, h) = (0.4, 1.2, 0.1 * YOUNG, 1e-3);
+    for law in laws(0.3) {
+        for is_sphere in [true, false] {
+            let inflated = Inflation::new(&law, is_sphere, [inner, outer], pressure).unwrap();
+            let x = Point3::new(0.31, 0.42, if is_sphere { -0.2 } else { 0.7 });
+            let slope = |field: &dyn Fn(&Point3) -> Vector3, axis: usize| {
+                let step = Vector3::ith(axis, h);
+                (field(&(x + step)) - field(&(x - step))) / (2.0 * h)
+            };
+            let columns = [0, 1, 2].map(|j| slope(&|p| inflated.displacement(p), j));
+            let off = (Matrix3::from_columns(&columns) - inflated.gradient(&x)).norm();
+            assert!(off < 1e-5, "{law:?}: gradient off by {off:e}");
+            let divergence: Vector3 =
+                (0..3).map(|j| slope(&|p| inflated.traction(p, &Vector3::ith(j, 1.0)), j)).sum();
+            assert!(divergence.norm() < 1e-3 * pressure / inner, "{law:?}: {divergence}");
+            // The Cauchy stress on the walls.
+            for (radius, expected) in [(inner, -pressure), (outer, 0.0)] {
+                let stress = inflated.stress(&Point3::new(0.6 * radius, 0.8 * radius, 0.0));
+                let out = Vector3::new(0.6, 0.8, 0.0);
+                let off = (stress * out - out * expected).norm();
+                assert!(off < 1e-7 * pressure, "{law:?} at {radius}: off by {off:e}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_pressure_beyond_the_limit_point_has_no_equilibrium() {
+    // Limit pressure 1.5185 kPa at an inner stretch of 1.49, from a search over the inner radius.
+    let law = Hyperelastic::NeoHookean(Elastic::new(20e3, 0.45).unwrap());
+    let at = |pressure: f64| Inflation::new(&law, true, [0.01, 0.012], pressure);
+    let stretch = at(1518.0).unwrap().radius(0.01) / 0.01;
+    assert!((1.4..1.49).contains(&stretch), "{stretch}");
+    let refused = at(1519.0).unwrap_err().to_string();
+    assert!(refused.contains("below the limit point"), "{refused}");
+    assert!(at(-1.0).is_err() && Inflation::new(&law, true, [0.01, 0.01], 1.0).is_err());
+}
+
+#[test]
+fn a_pressed_strip_bends_as_a_beam_and_then_curls() {
+    let strip = |pressure: f64| PressedStrip { young: 1e6, length: 0.1, thickness: 0.004, pressure };
+    let bending = 1e6 * 0.004f64.powi(3) / 12.0;
+    let small = strip(1e-3).end();
+    let beam = 1e-3 * 0.1f64.powi(4) / (8.0 * bending);
+    assert!((small.z / beam - 1.0).abs() < 1e-6 && small.x.abs() < 1e-4 * small.z, "{small}");
+    // The scene `beam/pressed-strip`: p L^3 / (E I) = 6.
+    let end = strip(32.0).end() * 1e3;
+    assert!((end - Vector3::new(STRIP[0], 0.0, STRIP[1])).norm() < 1e-3, "{end}");
+}
+
+/// Displacement (mm) of the end in the scene `beam/pressed-strip`.
+const STRIP: [f64; 2] = [-28.7036, 64.5099];

@@ -18,7 +18,7 @@ const BLOCK: &str = r#"title = "A block"
 body = { shape = "box", size = ["40 mm", "40 mm", "20 mm"] }
 material = { law = "linear", young = "20 kPa", poisson = 0.3 }
 support = [{ where = "z == 0 mm", fix = "xyz" }]
-load = [{ on = "z-max", pressure = "1 kPa" }]
+load = [{ on = "z-max", pressure = "1 kPa", dead = true }]
 reference = { method = "ours" }
 output = { probes = [["20 mm", "20 mm", "20 mm"]] }
 method = [

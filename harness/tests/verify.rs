@@ -117,7 +117,7 @@ fn hopeless(dir: &TempDir, check: &str) -> String {
 body = { shape = "box", size = ["40 mm", "40 mm", "20 mm"] }
 material = { law = "neo-hookean", young = "20 kPa", poisson = 0.45 }
 support = [{ where = "z == 0 mm", fix = "xyz" }]
-load = [{ on = "z-max", pressure = "PRESSURE" }]
+load = [{ on = "z-max", pressure = "PRESSURE", dead = true }]
 procedure = { kind = "static", steps = 2, iterations = 4 }
 method = [{ id = "efg", family = "efg", nodes = 60, cloud = "uniform", seed = 1, kernel = "cubic-spline", support_scale = 1.8, basis = "linear", integration = { rule = "gauss", points = 4 }, essential = "penalty" }]
 "#;

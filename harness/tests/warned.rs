@@ -141,7 +141,7 @@ fn shell(law: &str, pressure: &str) -> String {
 body = {{ shape = "sphere-shell", inner = "8 mm", outer = "12 mm", octant = true }}
 material = {{ law = "{law}", young = "20 kPa", poisson = 0.45 }}
 support = [{{ on = "x-min", fix = "x" }}, {{ on = "y-min", fix = "y" }}, {{ on = "z-min", fix = "z" }}]
-load = [{{ on = "inner", pressure = "{pressure}" }}]
+load = [{{ on = "inner", pressure = "{pressure}", dead = true }}]
 procedure = {{ kind = "static", steps = 4 }}
 method = [{{ id = "hex20", family = "fem", element = "hex20", size = {{ level = 1 }} }}]
 "#
@@ -167,8 +167,8 @@ method = [{{ id = "hex20", family = "fem", element = "hex20", size = {{ cells = 
 "#
         ))
     };
-    assert!(warned(&bent("pressure = \"3 Pa\""), "dead-pressure").is_some());
-    assert!(warned(&bent("pressure = \"0.2 Pa\""), "dead-pressure").is_none());
+    assert!(warned(&bent("pressure = \"3 Pa\", dead = true"), "dead-pressure").is_some());
+    assert!(warned(&bent("pressure = \"0.2 Pa\", dead = true"), "dead-pressure").is_none());
     assert!(warned(&bent("traction = [\"0 Pa\", \"0 Pa\", \"-3 Pa\"]"), "dead-pressure").is_none());
 }
 

@@ -185,7 +185,7 @@ fn force_of(kind: CellKind, projected: bool, precision: Precision, times: usize)
     let held = Held::new(kind, if kind.order() == 1 { 10 } else { 5 });
     let laws = [Law::NeoHookean(NeoHookean::new(20e3, 0.495).unwrap())];
     let groups = projected.then_some(&held.nodal);
-    let body = ExplicitBody { volume: &held.volume, laws: &laws, region: &[], groups };
+    let body = ExplicitBody { volume: &held.volume, laws: &laws, region: &[], axes: &[], groups };
     let mut force = InternalForce::of_precision(body, best_path(), precision).unwrap();
     let field = |x: &Point3| Vector3::new(0.05 * x.y, -0.04 * x.z, 0.1 * x.x);
     let u: Vec<Vector3> = held.mesh.points().iter().map(field).collect();

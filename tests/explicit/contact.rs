@@ -32,7 +32,13 @@ impl Pressed {
     }
 
     fn force(&self) -> InternalForce<'_> {
-        let body = ExplicitBody { volume: &self.block.volume, laws: &self.laws, region: &[], groups: None };
+        let body = ExplicitBody {
+            volume: &self.block.volume,
+            laws: &self.laws,
+            region: &[],
+            axes: &[],
+            groups: None,
+        };
         InternalForce::new(body, LanePath::best()).unwrap()
     }
 

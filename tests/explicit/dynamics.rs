@@ -19,7 +19,7 @@ fn law() -> [Law; 1] {
 }
 
 fn body<'a>(volume: &'a shape::VolumeRows, laws: &'a [Law]) -> ExplicitBody<'a> {
-    ExplicitBody { volume, laws, region: &[], groups: None }
+    ExplicitBody { volume, laws, region: &[], axes: &[], groups: None }
 }
 
 fn undamped(dt: f64) -> DynamicsParams {

@@ -24,7 +24,7 @@ fn uniaxial_tension_ends_at_its_closed_form() {
     let block = Block::new(CellKind::Hex8, [3, 2, 2]);
     let laws = [Law::NeoHookean(NeoHookean::new(20e3, 0.45).unwrap())];
     let mass = lumped_mass(&block.volume, &[1060.0], &[], Lumping::RowSum).unwrap();
-    let body = ExplicitBody { volume: &block.volume, laws: &laws, region: &[], groups: None };
+    let body = ExplicitBody { volume: &block.volume, laws: &laws, region: &[], axes: &[], groups: None };
     let traction = 6e3;
     let surface = block.surface(&["x-max"]);
     let mut load = |_: &[Vector3], f: &mut [Vector3]| {
@@ -70,7 +70,7 @@ fn a_bent_box_comes_to_rest_and_too_few_steps_are_an_error() {
     let block = Block::new(CellKind::Tet4, [5, 3, 3]);
     let laws = [Law::NeoHookean(NeoHookean::new(20e3, 0.45).unwrap())];
     let mass = lumped_mass(&block.volume, &[1060.0], &[], Lumping::RowSum).unwrap();
-    let body = ExplicitBody { volume: &block.volume, laws: &laws, region: &[], groups: None };
+    let body = ExplicitBody { volume: &block.volume, laws: &laws, region: &[], axes: &[], groups: None };
     let mut fixed = block.fix(&["x-min"], |_| Vector3::zeros());
     // One side is moved down by 6 mm.
     fixed.extend(block.nodes_of(&["x-max"]).into_iter().map(|node| FixedDof { node, axis: 2, value: -6e-3 }));

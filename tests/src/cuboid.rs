@@ -66,11 +66,20 @@ impl Cuboid {
 
     /// Returns a problem with these laws, without loads and tools.
     pub fn body<'a>(&'a self, laws: &'a [Law], fixed: &'a [FixedDof]) -> StaticProblem<'a> {
-        let solid = Solid { volume: &self.volume, laws, region: &[], dilation: SolidDilation::Standard };
+        let solid = Solid {
+            volume: &self.volume,
+            laws,
+            region: &[],
+            axes: &[],
+            active: &[],
+            activation: 1.0,
+            dilation: SolidDilation::Standard,
+        };
         StaticProblem {
             nodes: self.nodes(),
             solid,
             loads: &[],
+            following: &[],
             fixed,
             penalties: &[],
             contact: None,

@@ -20,20 +20,16 @@ use catalogue::{Dimension, Entry, Parameter};
 
 use super::error::ExactError;
 use super::hyperelastic::Hyperelastic;
+use super::radial::Wall;
 use super::solution::{Exact, SolutionEntry, numbers};
 use super::vectors::{Matrix3, Point3, Vector3};
-
-/// Intervals across the thickness: the error of fourth-order Runge-Kutta is below 1e-10 of the radius.
-const INTERVALS: usize = 100;
 
 /// A block bent to a constant curvature.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FiniteBending {
     law: Hyperelastic,
     curvature: f64,
-    thickness: f64,
-    /// Radius `r` (m) and slope `r'` at the ends of the intervals.
-    radius: Vec<(f64, f64)>,
+    wall: Wall,
 }
 
 impl FiniteBending {
@@ -56,37 +52,26 @@ impl FiniteBending {
         // The inner face shortens to a radius below 1 / k. If the radius is too small, the outer face is
         // under pressure.
         let (mut low, mut high) = (1.0 / curvature - thickness, 1.0 / curvature);
-        let shoot = |start: f64| shoot(law, thickness, curvature, start);
+        let shoot = |inner: f64| {
+            let across = |_: f64, r: f64| [curvature * r, 1.0];
+            let balance = |_: f64, stress: [f64; 3]| curvature * stress[1];
+            Wall::integrate(law, [-0.5 * thickness, thickness], (inner, 0.0), across, balance)
+        };
         for _ in 0..60 {
             let middle = 0.5 * (low + high);
             if shoot(middle).1 < 0.0 { low = middle } else { high = middle }
         }
-        Ok(FiniteBending { law: law.clone(), curvature, thickness, radius: shoot(0.5 * (low + high)).0 })
+        Ok(FiniteBending { law: law.clone(), curvature, wall: shoot(0.5 * (low + high)).0 })
     }
 
     /// Deformed radius of the fibre at `X`, m.
     pub fn radius(&self, x: f64) -> f64 {
-        self.fibre(x).0
-    }
-
-    /// Radius (m) and slope at `X`, from the cubic through both ends of the interval.
-    fn fibre(&self, x: f64) -> (f64, f64) {
-        let step = self.thickness / INTERVALS as f64;
-        let at = (x / self.thickness + 0.5) * INTERVALS as f64;
-        let k = (at.max(0.0) as usize).min(INTERVALS - 1);
-        let (a, da) = self.radius[k];
-        let (b, db) = self.radius[k + 1];
-        let t = at - k as f64;
-        let s = 1.0 - t;
-        let value =
-            s * s * ((1.0 + 2.0 * t) * a + t * step * da) + t * t * ((1.0 + 2.0 * s) * b - s * step * db);
-        let slope = 6.0 * s * t * (b - a) / step + s * (1.0 - 3.0 * t) * da + t * (1.0 - 3.0 * s) * db;
-        (value, slope)
+        self.wall.at(x).0
     }
 
     /// Stretches along the radius, the circumference and z, and the unit vectors of the first two.
     fn state(&self, x: &Point3) -> ([f64; 3], Vector3, Vector3) {
-        let (r, slope) = self.fibre(x.x);
+        let (r, slope) = self.wall.at(x.x);
         let (sin, cos) = (self.curvature * x.y).sin_cos();
         ([slope, self.curvature * r, 1.0], Vector3::new(cos, sin, 0.0), Vector3::new(-sin, cos, 0.0))
     }
@@ -137,38 +122,3 @@ pub(super) const ENTRY: SolutionEntry = Entry {
         Ok(Box::new(FiniteBending::new(medium.hyperelastic()?, thickness, curvature)?))
     },
 };
-
-/// Integrates from the inner face with `r = start` and `P_r = 0`; returns `(r, r')` across the thickness and
-/// `P_r` at the outer face, Pa.
-fn shoot(law: &Hyperelastic, thickness: f64, curvature: f64, start: f64) -> (Vec<(f64, f64)>, f64) {
-    let step = thickness / INTERVALS as f64;
-    // (r', dP_r/dX) of a state (r, P_r).
-    let slope = |(r, pressed): (f64, f64)| {
-        let hoop = curvature * r;
-        let radial = radial_stretch(law, hoop, pressed);
-        (radial, curvature * law.principal_stress([radial, hoop, 1.0])[1])
-    };
-    let shifted = |(r, p): (f64, f64), (dr, dp): (f64, f64), by: f64| (r + by * dr, p + by * dp);
-    let mut state = (start, 0.0);
-    let mut path = vec![(start, slope(state).0)];
-    for _ in 0..INTERVALS {
-        let k1 = slope(state);
-        let k2 = slope(shifted(state, k1, 0.5 * step));
-        let k3 = slope(shifted(state, k2, 0.5 * step));
-        let k4 = slope(shifted(state, k3, step));
-        let mean = |f: &dyn Fn((f64, f64)) -> f64| (f(k1) + 2.0 * (f(k2) + f(k3)) + f(k4)) / 6.0;
-        state = shifted(state, (mean(&|k| k.0), mean(&|k| k.1)), step);
-        path.push((state.0, slope(state).0));
-    }
-    (path, state.1)
-}
-
-/// Radial stretch between 1/8 and 8 at which the radial stress is `pressed`, by bisection.
-fn radial_stretch(law: &Hyperelastic, hoop: f64, pressed: f64) -> f64 {
-    let (mut low, mut high) = (0.125, 8.0);
-    for _ in 0..56 {
-        let middle = 0.5 * (low + high);
-        if law.principal_stress([middle, hoop, 1.0])[0] < pressed { low = middle } else { high = middle }
-    }
-    0.5 * (low + high)
-}

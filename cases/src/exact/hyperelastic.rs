@@ -38,6 +38,57 @@ pub enum Hyperelastic {
         /// Bulk modulus `kappa`, Pa.
         bulk: f64,
     },
+    /// `mu/(2 b) (exp(b (J^(-2/3) I1 - 3)) - 1) + kappa/2 (J - 1)^2`.
+    FungDemiray {
+        /// Shear modulus `mu`, Pa.
+        mu: f64,
+        /// Exponent.
+        b: f64,
+        /// Bulk modulus `kappa`, Pa.
+        bulk: f64,
+    },
+    /// `-mu jm/2 ln(1 - (J^(-2/3) I1 - 3) / jm) + kappa/2 (J - 1)^2`.
+    Gent {
+        /// Shear modulus `mu`, Pa.
+        mu: f64,
+        /// Limit of `J^(-2/3) I1 - 3`.
+        jm: f64,
+        /// Bulk modulus `kappa`, Pa.
+        bulk: f64,
+    },
+    /// `sum c_ij (J^(-2/3) I1 - 3)^i (J^(-4/3) I2 - 3)^j + kappa/2 (J - 1)^2`.
+    Polynomial {
+        /// `(i, j, c_ij)`, Pa.
+        terms: Vec<(i32, i32, f64)>,
+        /// Bulk modulus `kappa`, Pa.
+        bulk: f64,
+    },
+    /// `mu/2 (sum l_a^-2 - 3 + (J^(2 beta) - 1) / beta)`, `beta = nu / (1 - 2 nu)`.
+    BlatzKo(Elastic),
+    /// `sum_p 2 mu_p / alpha_p^2 (sum_a l_a^alpha_p - 3 + (J^(-alpha_p beta_p) - 1) / beta_p)`.
+    Hyperfoam {
+        /// `[mu_p, alpha_p, beta_p]`, Pa and dimensionless.
+        terms: Vec<[f64; 3]>,
+    },
+    /// `mu sum (l_a - 1)^2 + lambda/2 (sum l_a - 3)^2`.
+    Corotational(Elastic),
+}
+
+/// Principal nominal stresses (Pa) of an energy of the isochoric invariants `a = J^(-2/3) I1 - 3` and
+/// `b = J^(-4/3) I2 - 3` with the slopes that `slopes(a, b)` gives (Pa), and `kappa/2 (J - 1)^2`.
+fn of_invariants(stretch: [f64; 3], bulk: f64, slopes: impl Fn(f64, f64) -> [f64; 2]) -> [f64; 3] {
+    let jacobian = stretch[0] * stretch[1] * stretch[2];
+    let square = stretch.map(|l| l * l);
+    let first: f64 = square.iter().sum();
+    let second = square[0] * square[1] + square[1] * square[2] + square[2] * square[0];
+    let (of_first, of_second) = (jacobian.powf(-2.0 / 3.0), jacobian.powf(-4.0 / 3.0));
+    let [by_a, by_b] = slopes(of_first * first - 3.0, of_second * second - 3.0);
+    let (f, s) = (2.0 * by_a * of_first, 2.0 * by_b * of_second);
+    let volume = bulk * (jacobian - 1.0) * jacobian;
+    stretch.map(|l| {
+        let l2 = l * l;
+        (f * (l2 - first / 3.0) + s * (first * l2 - l2 * l2 - 2.0 * second / 3.0) + volume) / l
+    })
 }
 
 impl Hyperelastic {
@@ -55,15 +106,35 @@ impl Hyperelastic {
             Hyperelastic::NeoHookean(e) => nominal(&|l| e.mu() * (l * l - 1.0) + e.lambda() * jacobian.ln()),
             Hyperelastic::Hencky(e) => nominal(&|l| 2.0 * e.mu() * l.ln() + e.lambda() * jacobian.ln()),
             Hyperelastic::MooneyRivlin { c10, c01, bulk } => {
-                let square = stretch.map(|l| l * l);
-                let first: f64 = square.iter().sum();
-                let second = square[0] * square[1] + square[1] * square[2] + square[2] * square[0];
-                let (f, s) = (2.0 * c10 * jacobian.powf(-2.0 / 3.0), 2.0 * c01 * jacobian.powf(-4.0 / 3.0));
-                let volume = bulk * (jacobian - 1.0) * jacobian;
-                nominal(&|l| {
-                    let l2 = l * l;
-                    f * (l2 - first / 3.0) + s * (first * l2 - l2 * l2 - 2.0 * second / 3.0) + volume
-                })
+                of_invariants(stretch, *bulk, |_, _| [*c10, *c01])
+            }
+            Hyperelastic::FungDemiray { mu, b, bulk } => {
+                of_invariants(stretch, *bulk, |first, _| [0.5 * mu * (b * first).exp(), 0.0])
+            }
+            Hyperelastic::Gent { mu, jm, bulk } => {
+                of_invariants(stretch, *bulk, |first, _| [0.5 * mu * jm / (jm - first), 0.0])
+            }
+            Hyperelastic::Polynomial { terms, bulk } => of_invariants(stretch, *bulk, |first, second| {
+                let power = |x: f64, n: i32| if n < 0 { 0.0 } else { x.powi(n) };
+                let slope = |&(i, j, c): &(i32, i32, f64)| {
+                    let by_first = f64::from(i) * c * power(first, i - 1) * power(second, j);
+                    [by_first, f64::from(j) * c * power(first, i) * power(second, j - 1)]
+                };
+                terms.iter().map(slope).fold([0.0; 2], |sum, slope| [sum[0] + slope[0], sum[1] + slope[1]])
+            }),
+            Hyperelastic::BlatzKo(e) => {
+                let beta = e.poisson() / (1.0 - 2.0 * e.poisson());
+                nominal(&|l| e.mu() * (jacobian.powf(2.0 * beta) - 1.0 / (l * l)))
+            }
+            Hyperelastic::Hyperfoam { terms } => nominal(&|l| {
+                let of_term = |&[mu, alpha, beta]: &[f64; 3]| {
+                    2.0 * mu / alpha * (l.powf(alpha) - jacobian.powf(-alpha * beta))
+                };
+                terms.iter().map(of_term).sum()
+            }),
+            Hyperelastic::Corotational(e) => {
+                let sum: f64 = stretch.iter().sum();
+                stretch.map(|l| 2.0 * e.mu() * (l - 1.0) + e.lambda() * (sum - 3.0))
             }
             Hyperelastic::Ogden { terms, bulk } => {
                 let volume = bulk * (jacobian - 1.0) * jacobian;

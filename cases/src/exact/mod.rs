@@ -7,14 +7,16 @@
 //!
 //! A solution may move ([`BarWave`]), vibrate ([`LameCube`], [`RollerBox`]) or relax
 //! ([`RelaxingCompression`]). It is then the field at one time and gives the field at any other time. It may
-//! be at large strain ([`Homogeneous`], [`FiniteBending`]), or describe only a contact ([`Hertz`]).
-//! [`VibratingCantilever`] is a period, not a field.
+//! be at large strain ([`Homogeneous`], [`FiniteBending`], [`Inflation`]), or describe only a contact ([`Hertz`]).
+//! [`VibratingCantilever`] is a period and [`PressedStrip`] the place of an end, not a field.
 
 mod elastic;
 mod error;
 mod hyperelastic;
 mod medium;
 mod polylog;
+mod pressed_strip;
+mod radial;
 mod solution;
 mod vectors;
 mod vibrating_cantilever;
@@ -23,6 +25,7 @@ pub use elastic::Elastic;
 pub use error::ExactError;
 pub use hyperelastic::Hyperelastic;
 pub use medium::Medium;
+pub use pressed_strip::PressedStrip;
 pub use solution::{Contact, Exact, SolutionEntry, Vibrations};
 pub use vectors::{Matrix3, Point3, Vector3};
 pub use vibrating_cantilever::VibratingCantilever;
@@ -58,6 +61,7 @@ solutions! {
     roller_box::RollerBox [ENTRY],
     homogeneous::Homogeneous [FREE_SLIP, CONFINED, SIMPLE_SHEAR],
     finite_bending::FiniteBending [ENTRY],
+    inflation::Inflation [SPHERE, TUBE],
     hertz::Hertz [ENTRY],
 }
 

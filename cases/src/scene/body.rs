@@ -1,7 +1,7 @@
 //! The body of a scene: its shape, and the names of its surfaces.
 
 use catalogue::{Problem, suggest};
-use geometry::generate::surfaces;
+use geometry::generate::{Ventricle, surfaces};
 use mesh_files::is_surface;
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -50,6 +50,17 @@ pub(crate) enum BodyKeys {
         #[serde(default)]
         #[schemars(extend("x-surfaces" = surfaces::OCTANT))]
         octant: bool,
+    },
+    /// The left ventricle of a heart: the shell between two ellipsoids about the z axis, cut off at z = base, with
+    /// the apex towards -z
+    #[schemars(extend("x-surfaces" = with_all(&surfaces::VENTRICLE)))]
+    Ventricle {
+        /// Radius across and half length of the inner ellipsoid
+        inner: [Q<Length>; 2],
+        /// Radius across and half length of the outer ellipsoid
+        outer: [Q<Length>; 2],
+        /// Height of the cut
+        base: Q<Length>,
     },
     /// The kidney, a bean of 40 x 75 x 30 mm
     #[schemars(extend("x-surfaces" = with_all(&surfaces::BALL)))]
@@ -107,6 +118,8 @@ pub enum Body {
         /// Whether only the octant x, y, z >= 0 is present.
         octant: bool,
     },
+    /// A ventricle between two ellipsoids.
+    Ventricle(Ventricle),
     /// The kidney, as a map of the ball.
     Kidney {
         /// Whether only the half z >= 0 is present, with cells graded towards the z axis.
@@ -137,6 +150,23 @@ impl BodyKeys {
                 let outer = report.positive("outer", outer.0);
                 report.require(outer > inner, "outer", "is not above inner", "the wall needs a thickness");
                 Body::SphereShell { inner, outer, octant }
+            }
+            BodyKeys::Ventricle { inner, outer, base } => {
+                let [inner, outer] = [inner, outer].map(|radii| radii.map(|q| q.0));
+                let base = base.0;
+                for (k, name) in ["inner[0]", "inner[1]"].into_iter().enumerate() {
+                    report.positive(name, inner[k]);
+                    let at = format!("outer[{k}]");
+                    report.require(
+                        outer[k] > inner[k],
+                        &at,
+                        "is not above inner",
+                        "the wall needs a thickness",
+                    );
+                }
+                let help = "the cut has to cross the inner ellipsoid";
+                report.require(base.abs() < inner[1], "base", "misses the inner ellipsoid", help);
+                Body::Ventricle(Ventricle { inner, outer, base })
             }
             BodyKeys::Kidney { half, mildly_graded } => {
                 let help =
@@ -182,6 +212,7 @@ impl Body {
             Body::Cylinder { .. } => "cylinder",
             Body::Ball { .. } => "ball",
             Body::SphereShell { .. } => "sphere-shell",
+            Body::Ventricle(_) => "ventricle",
             Body::Kidney { .. } => "kidney",
             Body::File(_) => "file",
         }
@@ -195,6 +226,7 @@ impl Body {
             Body::Cylinder { .. } => (&surfaces::CYLINDER, &[]),
             Body::Ball { .. } | Body::Kidney { half: false, .. } => (&surfaces::BALL, &[]),
             Body::Kidney { half: true, .. } => (&surfaces::BALL, &surfaces::HALF),
+            Body::Ventricle(_) => (&surfaces::VENTRICLE, &[]),
             Body::SphereShell { octant: false, .. } => (&surfaces::SHELL, &[]),
             Body::SphereShell { octant: true, .. } => (&surfaces::SHELL, &surfaces::OCTANT),
             Body::File(_) => return None,

@@ -61,8 +61,11 @@ pub(crate) struct LoadKeys {
     place: Option<Region>,
     /// Force per area as a vector; for a force along the inner normal take pressure = "1 kPa"
     traction: Option<VectorKeys<Pressure>>,
-    /// Force per area along the inner normal
+    /// Force per area along the inner normal: of the deformed surface with a law of large strain in a procedure
+    /// of large displacements, otherwise of the undeformed surface
     pressure: Option<FieldKeys<Pressure>>,
+    /// Whether a pressure acts along the normals and on the areas of the undeformed surface; false unless given
+    dead: Option<bool>,
     /// Force per volume, everywhere
     body: Option<VectorKeys<BodyForce>>,
 }
@@ -100,6 +103,8 @@ pub struct Load {
     pub place: Place,
     /// Kind and value.
     pub kind: LoadKind,
+    /// Whether a pressure keeps the normals and the areas of the undeformed surface.
+    pub dead: bool,
 }
 
 /// Kinds of loads.
@@ -198,17 +203,20 @@ impl LoadKeys {
                 return None;
             }
         };
+        let (problem, help) = ("belongs to a pressure", "a traction and a body force are always dead loads");
+        report.require(self.dead.is_none() || matches!(kind, LoadKind::Pressure(_)), "dead", problem, help);
+        let dead = self.dead.unwrap_or(false);
         if !matches!(kind, LoadKind::Body(_)) {
             let place = Place::required(self.on, self.place, report);
             body.inspect(|body| body.find(&place, report));
-            return Some(Load { place, kind });
+            return Some(Load { place, kind, dead });
         }
         let place = Place::read(self.on, self.place, report);
         let (problem, help) = ("limits a body force to a region", "a body force acts everywhere");
         report.require(!matches!(place, Place::On(_)), "on", problem, help);
         report.require(!matches!(place, Place::Where(_)), "where", problem, help);
         body.inspect(|body| body.find(&place, report));
-        Some(Load { place, kind })
+        Some(Load { place, kind, dead })
     }
 }
 

@@ -19,7 +19,7 @@ pub(crate) fn scene(scene: &Scene, report: &Report) {
     let (procedure, kind) = (&scene.procedure, scene.procedure.kind());
     let reference = scene.reference.as_ref();
     for (key, material) in scene.materials() {
-        material.demands(procedure, &report.at(&key));
+        material.demands(&scene.body, procedure, &report.at(&key));
     }
     materials::unique(&scene.regions, report);
     let has_exact = matches!(reference, Some(Reference::Exact { .. }));
@@ -146,7 +146,18 @@ pub(crate) fn check(check: &Check, scene: &Scene, report: &Report) {
             "needs [procedure] kind = \"modes\" and [reference] exact = \"...\" in the scene",
         ),
         Needs::Support => (!scene.supports.is_empty(), "needs a [[support]] in the scene"),
+        Needs::SupportMoment => (
+            !scene.supports.is_empty() && scene.output.moments_about.is_some(),
+            "needs a [[support]] and output.moments_about in the scene",
+        ),
+        Needs::ToolMoment => (
+            touched && scene.output.moments_about.is_some(),
+            "needs a [[tool]] and output.moments_about in the scene",
+        ),
         Needs::Mean => (!scene.output.means.is_empty(), "needs output.means in the scene"),
+        Needs::Point => (probed, "needs output.probes in the scene"),
+        Needs::Stretch => (!scene.output.stretches.is_empty(), "needs output.stretches in the scene"),
+        Needs::Enclosed => (!scene.output.volumes.is_empty(), "needs output.volumes in the scene"),
         Needs::Tool => (touched, "needs a [[tool]] in the scene"),
         Needs::ToolReference => (
             touched && (solved || presses(scene)),
@@ -169,18 +180,30 @@ pub(crate) fn check(check: &Check, scene: &Scene, report: &Report) {
         Needs::Motion => (moves && probed, "needs output.probes and dynamics in the scene"),
         Needs::Transfer => (!scene.output.transfers.is_empty(), "needs output.transfer in the scene"),
     };
-    let name = check.address.to_string();
     if !holds {
-        return report.add("metric", Problem::new(needs).found(name));
+        return report.add("metric", Problem::new(needs).found(check.address.to_string()));
     }
-    let (count, what) = match check.address.metric.needs {
-        Needs::Support => (scene.supports.len(), "support"),
-        Needs::Mean => (scene.output.means.len(), "face in output.means"),
-        _ => (scene.tools.len(), "tool"),
-    };
+    number(check, scene, report);
+}
+
+/// Reports a number of a support, point, tool and the like that the scene does not have.
+fn number(check: &Check, scene: &Scene, report: &Report) {
+    let (count, what) = numbered(check.address.metric.needs, scene);
     if let Some(index) = check.address.index.filter(|index| *index > count as u64) {
-        let problem = format!("needs {what} number {index}, but the scene has {count}");
-        report.add("metric", Problem::new(problem).found(name));
+        let problem = Problem::new(format!("needs {what} number {index}, but the scene has {count}"));
+        report.add("metric", problem.found(check.address.to_string()));
+    }
+}
+
+/// Number of the things in the scene that a metric's number counts, and what they are.
+fn numbered(needs: Needs, scene: &Scene) -> (usize, &'static str) {
+    match needs {
+        Needs::Support | Needs::SupportMoment => (scene.supports.len(), "support"),
+        Needs::Mean => (scene.output.means.len(), "face in output.means"),
+        Needs::Point => (scene.output.probes.len(), "point in output.probes"),
+        Needs::Stretch => (scene.output.stretches.len(), "entry of output.stretches"),
+        Needs::Enclosed => (scene.output.volumes.len(), "surface in output.volumes"),
+        _ => (scene.tools.len(), "tool"),
     }
 }
 

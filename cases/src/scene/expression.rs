@@ -23,6 +23,13 @@ pub struct Expression {
     program: Vec<Op>,
 }
 
+/// Expressions with the same text have the same values.
+impl PartialEq for Expression {
+    fn eq(&self, other: &Expression) -> bool {
+        self.text == other.text
+    }
+}
+
 /// An error: an expression without a finite value at a point.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("expression '{expression}' is {value} at ({}, {}, {}) m", at[0], at[1], at[2])]

@@ -8,7 +8,7 @@ use super::units::{Dim, Q, Unit};
 use super::words::words;
 
 /// A scalar over space, in SI.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum ScalarField {
     /// One value everywhere.
     Constant(f64),

@@ -8,11 +8,14 @@ use material::{Law, LawEntry, Material as _};
 use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::Deserialize;
 
+use super::body::Body;
+use super::expression::Expression;
+use super::field::ScalarField;
 use super::procedure::{Procedure, ProcedureKind};
 use super::region::Region;
 use super::report::Report;
 use super::selection::{Names, Place};
-use super::units::{Density, Q, Time};
+use super::units::{Angle, Density, Pressure, Q, Time};
 use super::vocabulary::{Given, Laws, Word, build, settings, tagged};
 use crate::exact::{Elastic, ExactError, Hyperelastic, Medium};
 
@@ -32,6 +35,44 @@ struct BesideLaw {
     density: Option<Q<Density>>,
     #[serde(default)]
     prony: Vec<PronyKeys>,
+    /// Direction of the fibres in the undeformed body, of any length: [1, 0, 0], or expressions in x, y and z
+    /// (metres) such as ["-y", "x", "0"]; for laws that depend on directions
+    fibers: Option<DirectionKeys>,
+    /// Active stress of contracting muscle along the fibres at the end of the loading, with which it grows: the second
+    /// Piola-Kirchhoff stress T f x f beside the passive law; none unless given
+    active: Option<Q<Pressure>>,
+    /// Direction within a sheet across the fibres; its part along the fibre is taken off. Any direction across the
+    /// fibre unless given
+    sheets: Option<DirectionKeys>,
+}
+
+/// Three numbers, or three expressions in x, y and z (metres)
+#[derive(Deserialize, JsonSchema)]
+#[serde(untagged)]
+enum DirectionKeys {
+    Constant([f64; 3]),
+    Expressions([Expression; 3]),
+    Helix(HelixKeys),
+}
+
+/// Fibres of a ventricle: the angle from the circumference towards the base, at the inner and at the outer wall
+/// and linear between them
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+struct HelixKeys {
+    helix: [Q<Angle>; 2],
+}
+
+impl From<DirectionKeys> for Direction {
+    fn from(keys: DirectionKeys) -> Direction {
+        match keys {
+            DirectionKeys::Constant(components) => Direction::Field(components.map(ScalarField::Constant)),
+            DirectionKeys::Expressions(of) => {
+                Direction::Field(of.map(|of| ScalarField::Expression { of, factor: 1.0 }))
+            }
+            DirectionKeys::Helix(keys) => Direction::Helix(keys.helix.map(|angle| angle.0)),
+        }
+    }
 }
 
 impl JsonSchema for MaterialKeys {
@@ -73,6 +114,37 @@ pub struct Material {
     pub density: Option<f64>,
     /// Prony series of the relaxation; empty for a material that does not relax.
     pub prony: Vec<Relaxation>,
+    /// Directions of fibres and sheets; `None` for a law that does not depend on them.
+    pub directions: Option<Directions>,
+    /// Active stress along the fibres at the end of the loading, in pascals; 0 without.
+    pub active: f64,
+}
+
+/// Directions of a material.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Directions {
+    /// Along the fibres.
+    pub fibers: Direction,
+    /// Within a sheet across the fibres, if given.
+    pub sheets: Option<Direction>,
+}
+
+/// A direction as a function of the undeformed position.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Direction {
+    /// A vector of any length.
+    Field([ScalarField; 3]),
+    /// In the wall of a ventricle, at an angle (radians) from the circumference towards the base: at the inner and
+    /// at the outer wall, and linear in the depth.
+    Helix([f64; 2]),
+}
+
+impl Direction {
+    /// Whether the direction is zero everywhere.
+    fn is_zero(&self) -> bool {
+        let zero = |field: &ScalarField| matches!(field, ScalarField::Constant(0.0));
+        matches!(self, Direction::Field(components) if components.iter().all(zero))
+    }
 }
 
 /// A term of a Prony series: a share of the shear response that relaxes exponentially.
@@ -102,8 +174,37 @@ impl MaterialKeys {
         let entry = self.law.0;
         let values = settings(&self.law, self.settings, report)?;
         let law = build(entry, &values, "law", report)?;
-        Some(Material { entry, values, law, density, prony })
+        let given = (self.beside.fibers.map(Into::into), self.beside.sheets.map(Into::into));
+        let directions = directions(&law, given, report);
+        let active = self.beside.active.map_or(0.0, |active| active.0);
+        let help = "take a law with fibres, such as law = \"guccione\"";
+        report.require(active == 0.0 || directions.is_some(), "active", "has no fibre to act along", help);
+        Some(Material { entry, values, law, density, prony, directions, active })
     }
+}
+
+/// Checks that directions are given for a law that depends on them, and for no other.
+fn directions(
+    law: &Law,
+    (fibers, sheets): (Option<Direction>, Option<Direction>),
+    report: &Report,
+) -> Option<Directions> {
+    if !law.has_axes() {
+        for (key, given) in [("fibers", &fibers), ("sheets", &sheets)] {
+            let problem = format!("has no effect: the law {} is the same in all directions", law.name());
+            report.require(given.is_none(), key, &problem, "leave it out, or take a law with fibres");
+        }
+        return None;
+    }
+    let Some(fibers) = fibers else {
+        report.missing("fibers", "give the direction of the fibres, such as fibers = [1, 0, 0]");
+        return None;
+    };
+    for (key, direction) in [("fibers", Some(&fibers)), ("sheets", sheets.as_ref())] {
+        let sound = direction.is_none_or(|direction| !direction.is_zero());
+        report.require(sound, key, "has no direction", "give a vector such as [1, 0, 0]");
+    }
+    Some(Directions { fibers, sheets })
 }
 
 fn prony(terms: Vec<PronyKeys>, report: &Report) -> Vec<Relaxation> {
@@ -158,9 +259,21 @@ impl Material {
         }
         (self.entry.build)(&values)
     }
-    /// Reports contradictions with the procedure.
-    pub(crate) fn demands(&self, procedure: &Procedure, report: &Report) {
+    /// Reports contradictions with the body and the procedure.
+    pub(crate) fn demands(&self, body: &Body, procedure: &Procedure, report: &Report) {
         let kind = procedure.kind();
+        if self.active != 0.0 && kind == ProcedureKind::Explicit {
+            let help = "take [procedure] kind = \"static\" or \"implicit-dynamic\"";
+            report.add("active", Problem::new("is not available in explicit dynamics yet").help(help));
+        }
+        if let Some(Directions { fibers, sheets }) = &self.directions {
+            for (key, direction) in [("fibers", Some(fibers)), ("sheets", sheets.as_ref())] {
+                let sound =
+                    !matches!(direction, Some(Direction::Helix(_))) || matches!(body, Body::Ventricle(_));
+                let help = "take body = { shape = \"ventricle\", ... }, or give numbers or expressions";
+                report.require(sound, &format!("{key}.helix"), "needs a ventricle as the body", help);
+            }
+        }
         let name = self.name();
         if matches!(kind, ProcedureKind::Linear | ProcedureKind::Modes) && !self.law.is_small_strain() {
             let problem = Problem::new("is a law of large strain, but the procedure is linear").found(name);
@@ -198,6 +311,20 @@ pub fn medium(law: &Law, young: f64, poisson: f64) -> Result<Medium, ExactError>
             Some(Hyperelastic::MooneyRivlin { c10: law.c10(), c01: law.c01(), bulk: law.bulk() })
         }
         Law::Ogden(law) => Some(Hyperelastic::Ogden { terms: law.terms().to_vec(), bulk: law.bulk() }),
+        Law::FungDemiray(law) => {
+            Some(Hyperelastic::FungDemiray { mu: law.mu(), b: law.b(), bulk: law.bulk() })
+        }
+        Law::Gent(law) => Some(Hyperelastic::Gent { mu: law.mu(), jm: law.jm(), bulk: law.bulk() }),
+        Law::Yeoh(law) => {
+            let terms = (1..).zip(law.constants()).map(|(i, c)| (i, 0, *c)).collect();
+            Some(Hyperelastic::Polynomial { terms, bulk: law.bulk() })
+        }
+        Law::Polynomial(law) => {
+            Some(Hyperelastic::Polynomial { terms: law.terms().to_vec(), bulk: law.bulk() })
+        }
+        Law::BlatzKo(_) => Some(Hyperelastic::BlatzKo(elastic)),
+        Law::Hyperfoam(law) => Some(Hyperelastic::Hyperfoam { terms: law.terms().to_vec() }),
+        Law::Corotational(_) => Some(Hyperelastic::Corotational(elastic)),
         _ => None,
     };
     Ok(Medium { elastic, law })

@@ -52,13 +52,13 @@ pub use error::{ErrorKind, SceneError};
 pub use expression::{Expression, NotFinite};
 pub use field::{ScalarField, VectorField};
 pub use load::{load, load_with, parse, parse_with, schema};
-pub use material::{Material, MaterialRegion, Relaxation, medium};
+pub use material::{Direction, Directions, Material, MaterialRegion, Relaxation, medium};
 pub use mesh_file::MeshFile;
 pub use method::{
     Basis, Cloud, ConstraintRows, Dilation, Efg, Element, Essential, EssentialKind, External, Family, Fem,
     Functions, Integration, Jitter, Mass, Method, Refine, Regions, Setting, Size, SupportRule, SupportShape,
 };
-pub use output::{Output, Repeated, Target, Transfer};
+pub use output::{Enclosed, Output, Repeated, Stretch, Target, Transfer};
 pub use procedure::{
     Explicit, Implicit, LinearSolver, Newton, OnStall, Precision, Procedure, ProcedureKind, Ramp, Static,
 };

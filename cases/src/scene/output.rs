@@ -23,6 +23,13 @@ pub(crate) struct OutputKeys {
     /// Faces whose area mean of the displacement is reported: [{ on = "z-max" }, { where = "z == 20 mm and x
     /// >= 3 mm" }]
     means: Option<Vec<MeanKeys>>,
+    /// Points at which the stretch along a direction is reported: [{ at = ["5 mm", "0 mm", "0 mm"], along = [1,
+    /// 0, 0] }]
+    stretches: Option<Vec<StretchKeys>>,
+    /// Surfaces whose enclosed volume is reported: [{ on = "inner" }]
+    volumes: Option<Vec<VolumeKeys>>,
+    /// Point about which the moments of tools and supports are reported
+    moments_about: Option<[Q<Length>; 3]>,
     transfer: Option<TransfersKeys>,
     /// Secondary reference: a method of this scene that every run is also compared with at the targets. For a
     /// published method whose own error is part of a published difference
@@ -43,6 +50,29 @@ struct MeanKeys {
     /// Comparisons joined by 'and'
     #[serde(rename = "where")]
     place: Option<Region>,
+}
+
+/// A point and a direction of the undeformed body
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+struct StretchKeys {
+    at: [Q<Length>; 3],
+    /// Direction of any length
+    along: [f64; 3],
+}
+
+/// A closed surface, or an open surface with the apex of the cone that closes it
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+struct VolumeKeys {
+    /// Names given by the shape or the mesh file
+    on: Option<Names>,
+    /// Comparisons joined by 'and'
+    #[serde(rename = "where")]
+    place: Option<Region>,
+    /// Fixed point in space from which straight lines to the rim of an open surface close the volume. If the
+    /// rim moves in planes through this point, the planes close it
+    apex: Option<[Q<Length>; 3]>,
 }
 
 table! {
@@ -119,12 +149,18 @@ struct FileKeys {
 }
 
 /// Output of a scene.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Output {
     /// Points at which results are reported, in metres.
     pub probes: Vec<[f64; 3]>,
     /// Parts of the surface whose mean displacement is reported.
     pub means: Vec<Place>,
+    /// Points and directions whose stretch is reported.
+    pub stretches: Vec<Stretch>,
+    /// Surfaces whose enclosed volume is reported.
+    pub volumes: Vec<Enclosed>,
+    /// Point about which moments are reported, m.
+    pub moments_about: Option<[f64; 3]>,
     /// Transfers of the nodal displacements to other points.
     pub transfers: Vec<Transfer>,
     /// Id of the secondary reference: a method that every run is also compared with at the targets.
@@ -133,6 +169,24 @@ pub struct Output {
     pub pictures: bool,
     /// Repetition of the loading in frames.
     pub repeated: Option<Repeated>,
+}
+
+/// A point and a direction whose stretch is reported.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Stretch {
+    /// Point of the undeformed body, m.
+    pub at: [f64; 3],
+    /// Unit direction in the undeformed body.
+    pub along: [f64; 3],
+}
+
+/// A surface whose enclosed volume is reported.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Enclosed {
+    /// The surface.
+    pub surface: Place,
+    /// Apex of the cone that closes an open surface, m.
+    pub apex: Option<[f64; 3]>,
 }
 
 /// A transfer of nodal displacements to other points.
@@ -165,10 +219,21 @@ impl OutputKeys {
             let help = "name a face, such as { on = \"z-max\" }, or leave the key out";
             report.require(!means.is_empty(), "means", "is empty", help);
         }
+        if let Some(stretches) = &self.stretches {
+            let help = "give a point and a direction, or leave the key out";
+            report.require(!stretches.is_empty(), "stretches", "is empty", help);
+        }
+        if let Some(volumes) = &self.volumes {
+            let help = "name a surface, such as { on = \"inner\" }, or leave the key out";
+            report.require(!volumes.is_empty(), "volumes", "is empty", help);
+        }
         let mean = |of: MeanKeys, report: &Report| Some(Place::required(of.on, of.place, report));
         Output {
             probes: self.probes.unwrap_or_default().into_iter().map(|x| x.map(|q| q.0)).collect(),
             means: report.each("means", self.means.unwrap_or_default(), mean),
+            stretches: report.each("stretches", self.stretches.unwrap_or_default(), StretchKeys::read),
+            volumes: report.each("volumes", self.volumes.unwrap_or_default(), VolumeKeys::read),
+            moments_about: self.moments_about.map(|x| x.map(|q| q.0)),
             transfers: match self.transfer {
                 None => Vec::new(),
                 Some(TransfersKeys::One(one)) => one.read(&report.at("transfer")).into_iter().collect(),
@@ -199,6 +264,22 @@ impl RepeatedKeys {
     }
 }
 
+impl StretchKeys {
+    fn read(self, report: &Report) -> Option<Stretch> {
+        let length = self.along.iter().map(|c| c * c).sum::<f64>().sqrt();
+        let sound = length > 0.0 && length.is_finite();
+        report.require(sound, "along", "has no direction", "give a vector such as [1, 0, 0]");
+        Some(Stretch { at: self.at.map(|q| q.0), along: self.along.map(|c| c / length) })
+    }
+}
+
+impl VolumeKeys {
+    fn read(self, report: &Report) -> Option<Enclosed> {
+        let surface = Place::required(self.on, self.place, report);
+        Some(Enclosed { surface, apex: self.apex.map(|x| x.map(|q| q.0)) })
+    }
+}
+
 impl TransferKeys {
     fn read(self, report: &Report) -> Option<Transfer> {
         let to = match self.to {
@@ -224,6 +305,9 @@ impl Output {
             for (key, given) in [
                 ("probes", !self.probes.is_empty()),
                 ("means", !self.means.is_empty()),
+                ("stretches", !self.stretches.is_empty()),
+                ("volumes", !self.volumes.is_empty()),
+                ("moments_about", self.moments_about.is_some()),
                 ("transfer", !self.transfers.is_empty()),
                 ("beside", self.beside.is_some()),
                 ("pictures", self.pictures),

@@ -118,8 +118,8 @@ pub(crate) enum ProcedureKeys {
 
 /// Procedure of a scene with its settings. In a static procedure, loads, prescribed displacements and tool
 /// drives grow in proportion over the steps. In dynamics, loads and displacements grow over the duration or
-/// over the time `over`, and a tool moves over the time of its drive. Loads are dead loads: per undeformed
-/// area or volume, with a fixed direction.
+/// over the time `over`, and a tool moves over the time of its drive. Tractions and body forces are dead
+/// loads: per undeformed area or volume, with a fixed direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Procedure {
     /// Tables only; nothing is solved.

@@ -8,7 +8,7 @@ use records::Reference;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::outcome::{Counters, LoadStep, Metric, Outcome, Plan, Unfinished, Warning};
+use crate::outcome::{Counters, LoadStep, Metric, Outcome, Plan, Probe, Unfinished, Warning};
 
 /// Version of the object, raised by every change that affects its readers.
 const FORMAT: u32 = 1;
@@ -122,7 +122,7 @@ struct StepObject<'a> {
     /// Mean displacement of each requested surface, m.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     means: Vec<[f64; 3]>,
-    /// Time and energies in dynamics.
+    /// Numbers of points and surfaces; time and energies in dynamics.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     metrics: BTreeMap<String, Number>,
 }
@@ -132,8 +132,8 @@ fn tools<'a>(names: &'a [String], step: &LoadStep) -> Vec<ToolObject<'a>> {
     each.map(|(name, t)| ToolObject { name, closure: t.closure, force: t.force.into() }).collect()
 }
 
-fn numbers(metrics: &[Metric]) -> BTreeMap<String, Number> {
-    metrics.iter().map(|m| (m.name(), Number { value: m.value, unit: m.unit() })).collect()
+fn numbers<'a>(metrics: impl IntoIterator<Item = &'a Metric>) -> BTreeMap<String, Number> {
+    metrics.into_iter().map(|m| (m.name(), Number { value: m.value, unit: m.unit() })).collect()
 }
 
 fn arrays(vectors: &[Vector3]) -> Vec<[f64; 3]> {
@@ -190,17 +190,15 @@ impl<'a> RunObject<'a> {
                     x: p.x.coords.into(),
                     u: p.u.into(),
                     outside: p.outside,
-                    stress: p
-                        .stress
-                        .map(|s| [s[(0, 0)], s[(1, 1)], s[(2, 2)], s[(0, 1)], s[(1, 2)], s[(2, 0)]]),
+                    stress: p.stress.as_ref().map(Probe::components),
                 })
                 .collect(),
             tools: outcome.last.as_ref().map_or_else(Vec::new, |last| tools(&outcome.tools, last)),
             supports: (outcome.supports.iter())
-                .map(|s| SupportObject { name: &s.name, force: s.force.into() })
+                .map(|s| SupportObject { name: &s.name, force: s.resultant.force.into() })
                 .collect(),
             means: outcome.means.iter().map(|m| MeanObject { name: &m.name, u: m.u.into() }).collect(),
-            modes: outcome.modes.iter().map(|mode| numbers(mode)).collect(),
+            modes: outcome.modes.iter().map(numbers).collect(),
             steps: outcome
                 .steps
                 .iter()
@@ -211,9 +209,9 @@ impl<'a> RunObject<'a> {
                     iterations: step.iterations,
                     tools: tools(&outcome.tools, step),
                     probes: arrays(&step.probes),
-                    supports: arrays(&step.supports),
+                    supports: step.supports.iter().map(|sum| sum.force.into()).collect(),
                     means: arrays(&step.means),
-                    metrics: numbers(&step.more),
+                    metrics: numbers(step.points.iter().chain(&step.more)),
                 })
                 .collect(),
             reference: outcome.reference.as_ref(),

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
 
-use cases::scene::{Dilation, LinearSolver, Newton, OnStall, Procedure, Static};
+use cases::scene::{Dilation, LinearSolver, Newton, OnStall, Output, Procedure, Static};
 use catalogue::{Value, Values};
 use clap::Args;
 use geometry::{CellKind, Mesh, Point3, Vector3};
@@ -118,9 +118,11 @@ fn setup(text: &Text) -> Result<Setup, String> {
         materials: text.materials.iter().map(moduli).collect::<Result<_, _>>()?,
         densities: vec![None; text.materials.len()],
         relaxation: vec![None; text.materials.len()],
+        directions: Vec::new(),
+        active: Vec::new(),
         supports: Vec::new(),
         loads: Vec::new(),
-        means: Vec::new(),
+        output: Output::default(),
         tools: Vec::new(),
         procedure,
         mass: None,

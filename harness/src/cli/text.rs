@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 use catalogue::metric::{self, Address, Metric};
 use records::{Check, Reference, Status};
 use reports::Seconds;
+use shape::position_alone;
 
 use crate::cli::colour;
 use crate::outcome::timing::PHASES;
@@ -149,8 +150,8 @@ pub fn outcomes(outcomes: &[Outcome], by: Seconds) -> String {
     aligned(&rows)
 }
 
-/// Formats the tables below that of the runs: support forces, mean displacements and frequencies; empty
-/// without any.
+/// Formats the tables below that of the runs: support forces, numbers of faces, points and volumes, and
+/// frequencies; empty without any.
 pub fn places(outcomes: &[Outcome]) -> String {
     let mut text = String::new();
     let row = |method: &str, rest: Vec<String>| [vec![method.to_string()], rest].concat();
@@ -158,7 +159,7 @@ pub fn places(outcomes: &[Outcome]) -> String {
         .flat_map(|outcome| {
             let each = outcome.supports.iter().map(|support| {
                 let along = |axis: usize| match support.axes[axis] {
-                    true => digits(support.force[axis]),
+                    true => digits(support.resultant.force[axis]),
                     false => "free".into(),
                 };
                 row(&outcome.identity.method, vec![support.name.clone(), along(0), along(1), along(2)])
@@ -174,6 +175,25 @@ pub fn places(outcomes: &[Outcome]) -> String {
         })
     });
     section(&mut text, &["mean displacement of a face [mm]", "face", "x", "y", "z"], means.collect());
+    let probes = outcomes.iter().flat_map(|outcome| {
+        (1..).zip(&outcome.probes).map(|(number, probe): (usize, _)| {
+            let [x, y, z] = [probe.u.x, probe.u.y, probe.u.z].map(|u| digits(1e3 * u));
+            row(&outcome.identity.method, vec![number.to_string(), position_alone(&probe.x), x, y, z])
+        })
+    });
+    section(&mut text, &["displacement of a point [mm]", "point", "at", "x", "y", "z"], probes.collect());
+    for (of, head, scale) in [
+        (&metric::STRETCH, ["stretch", "point", "[1]"], 1.0),
+        (&metric::ENCLOSED_VOLUME, ["enclosed volume", "surface", "[mL]"], 1e6),
+    ] {
+        let rows = outcomes.iter().flat_map(|outcome| {
+            let known = (0..).map_while(|index| Some((index + 1, outcome.value(of.at(index))?)));
+            known.map(|(number, value): (usize, f64)| {
+                row(&outcome.identity.method, vec![number.to_string(), digits(scale * value)])
+            })
+        });
+        section(&mut text, &head, rows.collect());
+    }
     let modes = outcomes.iter().flat_map(|outcome| {
         (1..).zip(&outcome.modes).map(|(number, mode): (usize, _)| {
             let of = |metric: &Metric| {

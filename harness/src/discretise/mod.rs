@@ -8,7 +8,8 @@ use catalogue::metric::Metric;
 use fem::{Elements, VolumeRule};
 use geometry::shapes::Shape;
 use geometry::{Cloud, Mesh, Point3};
-use shape::{DilationGroups, RowSource, Rows, SourceError, VolumeRows};
+use material::{AtPoint, Law};
+use shape::{DilationGroups, Matrix3, RowSource, Rows, SourceError, VolumeRows};
 
 pub(crate) mod gradients;
 pub(crate) mod place;
@@ -124,6 +125,8 @@ pub struct Volume {
     pub rows: VolumeRows,
     /// Region of each point; empty if the body has one region.
     pub region: Vec<u16>,
+    /// Axes of the material at each point, as columns: fibre, sheet and normal. Empty if no law depends on them.
+    pub axes: Vec<Matrix3>,
     /// Groups of points that share a dilation.
     pub groups: Option<DilationGroups>,
     /// Shape values of the pressure field at the points, if the method has a pressure field.
@@ -136,6 +139,11 @@ impl Volume {
     /// Returns the region of a point.
     pub fn region(&self, q: usize) -> usize {
         region_at(&self.region, q)
+    }
+
+    /// Returns the law at a point, of those of the regions.
+    pub fn law<'a>(&'a self, laws: &'a [Law], q: usize) -> AtPoint<'a> {
+        AtPoint::new(&laws[self.region(q)], self.axes.get(q))
     }
 }
 
@@ -231,7 +239,7 @@ impl Discretisation {
         counters.pressure_parameters += pressure.as_ref().map_or(0, Rows::node_count) as u64;
         counters.dilation_groups += groups.as_ref().map_or(0, DilationGroups::len) as u64;
         counters.point_laws += region.len() as u64;
-        Ok((source, Volume { rows, region, groups, pressure, diagnostics }))
+        Ok((source, Volume { rows, region, axes: Vec::new(), groups, pressure, diagnostics }))
     }
 }
 

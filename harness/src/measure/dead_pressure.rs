@@ -32,12 +32,16 @@ pub(super) fn warnings(run: &Solved) -> Result<Vec<Warning>, Failure> {
     let mut found = Vec::new();
     for load in run.setup.loads.iter().filter(|_| run.setup.exact.is_none()) {
         let Applied::Surface(SurfaceLoad::Pressure(pressure)) = &load.applied else { continue };
+        if load.follows {
+            continue;
+        }
         let Dead { turn, stretch, change } = dead(run, load, pressure)?;
         if turn > TURN || stretch.abs() > STRETCH {
             let message = format!(
                 "acts along the normals and on the areas of the undeformed faces, which turn by up to {turn:.1} \
                  degrees and change their area by up to {:+.1} %: a pressure on the deformed surface is a different \
-                 load. If a force of fixed direction is intended, give a traction",
+                 load, which a law of large strain has without dead = true. If a force of fixed direction is \
+                 intended, give a traction",
                 100.0 * stretch
             );
             let key = format!("{}.pressure", load.key);

@@ -13,13 +13,17 @@ pub(crate) fn places(outcome: &mut Outcome, run: &Solved) -> Result<(), Failure>
     let Solved { setup, prepared, solution, .. } = *run;
     let held = setup.supports.iter().zip(prepared.support_axes()).zip(solution.support_forces());
     outcome.supports = held
-        .map(|((support, axes), &force)| SupportForce { name: place::words(&support.place), axes, force })
+        .map(|((support, axes), &resultant)| SupportForce {
+            name: place::words(&support.place),
+            axes,
+            resultant,
+        })
         .collect();
-    let rows = prepared.means(&setup.means)?;
+    let rows = prepared.means(&setup.output.means)?;
     let means = |u: &[Vector3]| -> Vec<Vector3> {
         rows.iter().map(|row| row.iter().map(|&(node, weight)| u[node as usize] * weight).sum()).collect()
     };
-    outcome.means = (setup.means.iter().zip(means(&solution.u)))
+    outcome.means = (setup.output.means.iter().zip(means(&solution.u)))
         .map(|(face, u)| FaceMean { name: place::words(face), u })
         .collect();
     if let Some(history) = &solution.history {
@@ -29,7 +33,11 @@ pub(crate) fn places(outcome: &mut Outcome, run: &Solved) -> Result<(), Failure>
     }
     for (index, support) in outcome.supports.iter().enumerate() {
         for axis in (0..3).filter(|&axis| support.axes[axis]) {
-            push(&mut outcome.metrics, metric::REACTION.components()[axis].at(index), support.force[axis]);
+            push(
+                &mut outcome.metrics,
+                metric::REACTION.components()[axis].at(index),
+                support.resultant.force[axis],
+            );
         }
     }
     for (index, face) in outcome.means.iter().enumerate() {

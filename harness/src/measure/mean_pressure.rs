@@ -2,13 +2,14 @@
 //! or from the method's own pressure field. A plain displacement gradient would give a pressure that
 //! projected methods never use.
 
-use material::{Law, Material as _, volume_change};
+use material::split::dilation;
+use material::{AtPoint, Law, Material};
 use shape::{DilationGroups, Matrix3};
 
 use crate::discretise::Volume;
 
 /// Cauchy stress `P F^T / J` (Pa) at a displacement gradient; `P` itself at small strain.
-pub fn cauchy(law: &Law, h: &Matrix3) -> Matrix3 {
+pub fn cauchy(law: &impl Material, h: &Matrix3) -> Matrix3 {
     let p = law.stress(h);
     if law.is_small_strain() {
         return p;
@@ -21,7 +22,7 @@ pub fn cauchy(law: &Law, h: &Matrix3) -> Matrix3 {
 /// displacement gradients (3, 3) at the points. `parameters` (Pa, tension positive) are those of the method's
 /// pressure field, if it has one.
 pub fn at_points(laws: &[Law], volume: &Volume, gradients: &[Matrix3], parameters: &[f64]) -> Vec<f64> {
-    let law = |q: usize| &laws[volume.region(q)];
+    let law = |q: usize| volume.law(laws, q);
     if let Some(rows) = &volume.pressure {
         let at = |q| {
             let (nodes, values) = rows.row(q);
@@ -30,7 +31,7 @@ pub fn at_points(laws: &[Law], volume: &Volume, gradients: &[Matrix3], parameter
         return (0..gradients.len()).map(at).collect();
     }
     match &volume.groups {
-        None => gradients.iter().enumerate().map(|(q, h)| -cauchy(law(q), h).trace() / 3.0).collect(),
+        None => gradients.iter().enumerate().map(|(q, h)| -cauchy(&law(q), h).trace() / 3.0).collect(),
         Some(groups) => projected(groups, law, volume.rows.weights(), gradients),
     }
 }
@@ -39,7 +40,7 @@ pub fn at_points(laws: &[Law], volume: &Volume, gradients: &[Matrix3], parameter
 /// group's dilation.
 fn projected<'l>(
     groups: &DilationGroups,
-    law: impl Fn(usize) -> &'l Law,
+    law: impl Fn(usize) -> AtPoint<'l>,
     weights: &[f64],
     gradients: &[Matrix3],
 ) -> Vec<f64> {
@@ -47,8 +48,8 @@ fn projected<'l>(
     for a in 0..groups.len() {
         let (points, shares) = groups.group(a);
         let mean = |value: &dyn Fn(usize) -> f64| mean(points, shares, weights, value);
-        let theta = mean(&|q| dilation(law(q), &gradients[q]));
-        let of_group = mean(&|q| -cauchy(law(q), &dilated(law(q), &gradients[q], theta)).trace() / 3.0);
+        let theta = mean(&|q| dilation(law(q).is_small_strain(), &gradients[q]));
+        let of_group = mean(&|q| -cauchy(&law(q), &dilated(&law(q), &gradients[q], theta)).trace() / 3.0);
         for (&q, share) in points.iter().zip(shares) {
             pressure[q as usize] += share * of_group;
         }
@@ -63,15 +64,10 @@ pub(super) fn mean(points: &[u32], shares: &[f64], weights: &[f64], value: &dyn 
     sum / measure
 }
 
-/// Dilation `J - 1`; `tr H` at small strain.
-pub(super) fn dilation(law: &Law, h: &Matrix3) -> f64 {
-    if law.is_small_strain() { h.trace() } else { volume_change(h) }
-}
-
 /// Displacement gradient of `F_bar = ((1 + theta) / J)^(1/3) F`; at small strain, of the strain with the
 /// trace `theta`.
-pub(super) fn dilated(law: &Law, h: &Matrix3, theta: f64) -> Matrix3 {
-    let j = dilation(law, h);
+pub(super) fn dilated(law: &impl Material, h: &Matrix3, theta: f64) -> Matrix3 {
+    let j = dilation(law.is_small_strain(), h);
     if law.is_small_strain() {
         return h + Matrix3::identity() * ((theta - j) / 3.0);
     }

@@ -15,6 +15,7 @@ mod over_time;
 mod patch;
 mod penetration;
 mod picture;
+mod points;
 mod probe_history;
 mod probes;
 mod request;
@@ -45,6 +46,7 @@ pub(crate) use face_results::places;
 pub(crate) use modes::report as report_modes;
 pub(crate) use over_time::over_time;
 pub(crate) use picture::picture;
+pub(crate) use points::{check as check_points, points};
 pub(crate) use probe_history::metrics as probe_history;
 pub(crate) use probes::{check_probes, probe_errors, probes};
 pub(crate) use request::Request;
@@ -106,7 +108,7 @@ pub(crate) fn measure(
     if let Essential::Coupling(coupled) = &method.essential {
         push(metrics, &metric::FINITE_ELEMENT_NODES, coupled.vertices.len() as f64);
     }
-    let resultant = prepared.resultant();
+    let resultant = prepared.resultant(&solution.u);
     for (axis, of) in metric::LOAD.components().into_iter().enumerate() {
         push(metrics, of, resultant[axis]);
     }

@@ -1,6 +1,7 @@
 //! Forces on the supports and mean displacements of the faces at the end of a run.
 
 use geometry::Vector3;
+use shape::Resultant;
 
 /// Support of the scene and its force on the body.
 #[derive(Clone, Debug, PartialEq)]
@@ -9,8 +10,8 @@ pub struct SupportForce {
     pub name: String,
     /// Constrained components: x, y, z.
     pub axes: [bool; 3],
-    /// Force on the body, N.
-    pub force: Vector3,
+    /// Force on the body, N, and its moment.
+    pub resultant: Resultant,
 }
 
 /// Face of the body and its mean displacement.

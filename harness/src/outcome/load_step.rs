@@ -2,7 +2,8 @@
 
 use catalogue::metric;
 use contact::{Tool, ToolState};
-use geometry::Vector3;
+use geometry::{Point3, Vector3};
+use shape::Resultant;
 
 use super::metrics::Metric;
 
@@ -16,6 +17,8 @@ pub struct ToolStep {
     pub closure: f64,
     /// Force on the tool, N.
     pub force: Vector3,
+    /// Moment on the tool about the coordinate origin, N m.
+    pub moment: Vector3,
     /// Force that the tool exerts along its direction of travel, N.
     pub pushed: f64,
     /// Surface points in contact.
@@ -35,6 +38,7 @@ impl ToolStep {
         ToolStep {
             closure: state.closure,
             force: state.force,
+            moment: state.moment + tool.place(state.closure).coords.cross(&state.force),
             // The subtraction yields 0 for a tool without contact; a sign would yield -0.
             pushed: 0.0 - state.force.dot(&tool.along()),
             active: state.active as u64,
@@ -42,6 +46,11 @@ impl ToolStep {
             area: state.area,
             penetration: state.penetration,
         }
+    }
+
+    /// Returns the moment on the tool about a point (m), N m.
+    pub(crate) fn moment_about(&self, point: &Point3) -> Vector3 {
+        Resultant { force: self.force, moment: self.moment }.about(point)
     }
 
     /// Whether so few points carry the force that it depends on their positions: the surface is too coarse
@@ -54,6 +63,7 @@ impl ToolStep {
     pub const UNTOUCHED: ToolStep = ToolStep {
         closure: 0.0,
         force: Vector3::new(0.0, 0.0, 0.0),
+        moment: Vector3::new(0.0, 0.0, 0.0),
         pushed: 0.0,
         active: 0,
         carriers: 0.0,
@@ -69,8 +79,8 @@ pub struct LoadStep {
     pub load: f64,
     /// States of the tools of the scene.
     pub tools: Vec<ToolStep>,
-    /// Force of each support on the body, N; empty if unknown.
-    pub supports: Vec<Vector3>,
+    /// Resultant of each support's forces on the body; empty if unknown.
+    pub supports: Vec<Resultant>,
     /// Mean displacement of each face for which the scene requests it, m.
     pub means: Vec<Vector3>,
     /// Strain energy, J.
@@ -81,6 +91,8 @@ pub struct LoadStep {
     pub iterations: u64,
     /// Displacement at the scene's probes, m.
     pub probes: Vec<Vector3>,
+    /// Numbers of points and surfaces: displacements, stresses, stretches, volumes.
+    pub points: Vec<Metric>,
     /// Errors against the reference at the same step.
     pub against: Vec<Metric>,
     /// Other results of the procedure: time and energies in dynamics.
@@ -104,6 +116,7 @@ impl LoadStep {
             smallest_j: 1.0,
             iterations: 0,
             probes: Vec::new(),
+            points: Vec::new(),
             against: Vec::new(),
             more: Vec::new(),
         }

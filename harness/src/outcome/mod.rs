@@ -93,6 +93,13 @@ pub struct Probe {
     pub outside: f64,
 }
 
+impl Probe {
+    /// Components xx, yy, zz, xy, yz and zx of a stress, Pa.
+    pub(crate) fn components(stress: &Matrix3) -> [f64; 6] {
+        [(0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (2, 0)].map(|at| stress[at])
+    }
+}
+
 /// Transfer of this run's displacement to the target points by one scheme.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Transfer {

@@ -105,9 +105,9 @@ impl Outcome {
             push(&mut all, metric::TOOL_FORCE.at(index), tool.pushed);
             push(&mut all, metric::CONTACT_POINTS.at(index), tool.active as f64);
         }
-        for (index, (support, force)) in self.supports.iter().zip(&step.supports).enumerate() {
+        for (index, (support, sum)) in self.supports.iter().zip(&step.supports).enumerate() {
             for axis in (0..3).filter(|&axis| support.axes[axis]) {
-                push(&mut all, metric::REACTION.components()[axis].at(index), force[axis]);
+                push(&mut all, metric::REACTION.components()[axis].at(index), sum.force[axis]);
             }
         }
         for (index, u) in step.means.iter().enumerate() {
@@ -115,7 +115,7 @@ impl Outcome {
                 push(&mut all, of.at(index), u[axis]);
             }
         }
-        all.extend(step.more.iter().chain(&step.against));
+        all.extend(step.points.iter().chain(&step.more).chain(&step.against));
         all
     }
 

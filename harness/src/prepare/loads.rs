@@ -1,20 +1,18 @@
 //! Loads at the integration points of their surfaces.
 
 use fem::SurfaceRule;
-use geometry::{Facet, Vector3, quadrature};
-use shape::{FixedDof, RowSource, SurfaceRows};
-use statics::Load;
+use geometry::{Facet, Vector3};
+use shape::{FixedDof, SurfaceRows};
+use statics::{FollowingPressure, Load};
 
 use super::Prepared;
 use super::region_check::loaded;
+use super::surfaces::{cut_surface, flux};
 use super::values::{Values, not_finite};
 use crate::discretise::Discretisation;
-use crate::discretise::place::CutTriangle;
+use crate::discretise::place::Patch;
 use crate::error::Failure;
-use crate::scenario::setup::{self, Applied, SurfaceLoad};
-
-/// Points per clipped triangle: a rule of degree 4, exact for a quadratic traction on the triangle.
-const CUT_POINTS: usize = 6;
+use crate::scenario::setup::{self, Applied, ScalarField, SurfaceLoad};
 
 impl Prepared {
     /// Returns the loads for the solver.
@@ -52,8 +50,11 @@ impl Prepared {
         load: &setup::Load,
         field: &SurfaceLoad,
     ) -> Result<(), Failure> {
-        let at_points = |surface| at_points(&load.key, field, surface);
         let patch = loaded(load, method.mesh())?;
+        if let (SurfaceLoad::Pressure(field), true) = (field, load.follows) {
+            return self.follow(load, field, &patch);
+        }
+        let at_points = |surface| at_points(&load.key, field, surface);
         if !patch.whole.is_empty() {
             let table = match (load.varies, self.is_smoothed_by_centres()?) {
                 (false, _) => at_points(self.source.surface(&patch.whole)?)?,
@@ -64,6 +65,16 @@ impl Prepared {
         }
         if !patch.cut.is_empty() {
             self.surfaces.push(at_points(cut_surface(&*self.source, &patch.cut)?)?);
+        }
+        Ok(())
+    }
+
+    /// Evaluates a pressure on the deformed surface, which needs the gradients of the shape functions.
+    fn follow(&mut self, load: &setup::Load, field: &ScalarField, patch: &Patch) -> Result<(), Failure> {
+        for surface in flux(&*self.source, patch)? {
+            let values = surface.points().iter().map(field).collect::<Result<Vec<f64>, _>>();
+            let values = values.map_err(not_finite(&load.key, "pressure"))?;
+            self.following.push(FollowingPressure::new(&surface, &values)?);
         }
         Ok(())
     }
@@ -117,21 +128,4 @@ fn at_points(key: &str, field: &SurfaceLoad, surface: SurfaceRows) -> Result<(Su
         }
     };
     Ok((surface, values))
-}
-
-/// Builds surface rows over clipped triangles.
-pub(super) fn cut_surface(source: &dyn RowSource, cut: &[CutTriangle]) -> Result<SurfaceRows, Failure> {
-    let rule = quadrature::tri(CUT_POINTS).expect("a tabulated rule");
-    let (mut points, mut weights, mut normals) = (Vec::new(), Vec::new(), Vec::new());
-    for triangle in cut {
-        let area = triangle.area_vector();
-        let [a, b, c] = triangle.corners;
-        for (xi, w) in rule.points.iter().zip(&rule.weights) {
-            points.push(a + (b - a) * xi[0] + (c - a) * xi[1]);
-            weights.push(2.0 * w * area.norm());
-            normals.push(area.normalize());
-        }
-    }
-    let (rows, _) = source.at_points(&points)?;
-    Ok(SurfaceRows::new(rows, weights, normals)?)
 }

@@ -5,7 +5,7 @@ use geometry::Mesh;
 use shape::SurfaceRows;
 
 use super::Prepared;
-use super::loads::cut_surface;
+use super::surfaces::cut_surface;
 use crate::discretise::place;
 use crate::error::Failure;
 

@@ -1,6 +1,7 @@
 //! The prepare phase: all tables for assembly, for one method on one body under one setup.
 
 mod agreement;
+mod axes;
 mod conditions;
 mod contact_tables;
 mod loads;
@@ -10,6 +11,7 @@ pub(crate) mod region_check;
 mod sharp;
 mod support_forces;
 mod support_gap;
+pub(crate) mod surfaces;
 mod values;
 
 use std::collections::HashMap;
@@ -22,8 +24,8 @@ use shape::{
     FixedDof, FluxRows, GradRows, PointRows, RowSource, Rows, SurfaceRows, TraceRows, Unity, VolumeRows,
 };
 use statics::{
-    Assembled, ConstraintRow, Factored, LinearBody, LinearProblem, Load, PenaltySurface, SolveError, Weak,
-    WeakSupport, multiplier_rows,
+    Assembled, ConstraintRow, Factored, FollowingPressure, LinearBody, LinearProblem, Load, PenaltySurface,
+    SolveError, Weak, WeakSupport, multiplier_rows,
 };
 
 use crate::discretise::place::tolerance;
@@ -66,6 +68,8 @@ pub struct Prepared {
     /// Mean node spacing, m.
     pub spacing: f64,
     surfaces: Vec<(SurfaceRows, Values)>,
+    /// Pressures on the deformed surface.
+    following: Vec<FollowingPressure>,
     body_force: Vec<Vec<Vector3>>,
     /// Nodal forces of a problem in files, N.
     nodal: Option<Vec<Vector3>>,
@@ -92,13 +96,15 @@ pub fn prepare(
     plan: &Plan,
     counters: &mut Counters,
 ) -> Result<Prepared, Failure> {
-    let (source, volume) = method.volume(&setup.alike(), plan, counters)?;
+    let (source, mut volume) = method.volume(&setup.alike(), plan, counters)?;
+    volume.axes = axes::axes(&volume, setup)?;
     let spacing = source.spacing(&volume.rows);
     let mut prepared = Prepared {
         source,
         volume,
         spacing,
         surfaces: Vec::new(),
+        following: Vec::new(),
         body_force: Vec::new(),
         nodal: None,
         fixed: Vec::new(),
@@ -116,6 +122,7 @@ pub fn prepare(
         prepared.constrain(method, &setup.supports)?;
     }
     counters.surface_rows += prepared.surfaces.iter().map(|(s, _)| s.weights().len() as u64).sum::<u64>();
+    counters.surface_rows += prepared.following.iter().map(|p| p.len() as u64).sum::<u64>();
     counters.flux_rows += prepared.weak.iter().map(|w| w.values.len() as u64).sum::<u64>();
     let constraints = prepared.constraints.len() as u64;
     *(if prepared.eliminates { &mut counters.eliminated_rows } else { &mut counters.multiplier_rows }) +=
@@ -234,9 +241,16 @@ impl Prepared {
         Ok(fem::surface_rows(self.source.mesh(), facets, &rule)?)
     }
 
-    /// Returns the resultant of all surface loads and body forces, N.
-    pub fn resultant(&self) -> Vector3 {
-        let mut sum = Vector3::zeros();
+    /// Returns the pressures on the deformed surface, for the solver.
+    pub fn following(&self) -> &[FollowingPressure] {
+        &self.following
+    }
+
+    /// Returns the resultant of all surface loads and body forces at the nodal parameters `u` (m), N.
+    pub fn resultant(&self, u: &[Vector3]) -> Vector3 {
+        let mut nodal = vec![Vector3::zeros(); u.len()];
+        self.following.iter().for_each(|pressure| pressure.add_force(u, 1.0, &mut nodal));
+        let mut sum: Vector3 = nodal.iter().sum();
         for (surface, values) in &self.surfaces {
             for (q, w) in surface.weights().iter().enumerate() {
                 sum += *w

@@ -2,20 +2,22 @@
 
 use std::ops::Range;
 
-use geometry::Vector3;
-use shape::FixedDof;
+use geometry::{Point3, Vector3};
+use shape::{FixedDof, Resultant};
 
 use super::Prepared;
 use super::conditions::{Conditions, Held};
 
 /// Forces (N) on the body at a solution, by kind of condition.
 pub struct ConditionForces<'a> {
+    /// Position of a node, m: deformed under Newton's method and in dynamics, otherwise undeformed.
+    pub at: &'a dyn Fn(usize) -> Point3,
     /// Force of the nodal supports on each node; empty without nodal supports.
     pub nodes: &'a [Vector3],
     /// Force of each constraint row.
-    pub rows: &'a [Vector3],
+    pub rows: &'a [Resultant],
     /// Force of each weakly constrained surface.
-    pub weak: &'a [Vector3],
+    pub weak: &'a [Resultant],
 }
 
 impl Prepared {
@@ -33,35 +35,39 @@ impl Prepared {
         self.held.iter().map(|held| held.axes)
     }
 
-    /// Returns the force (N) of each support on the body. A degree of freedom in several supports counts for
-    /// the first of them, so that the sum balances the loads.
-    pub fn support_forces(&self, forces: &ConditionForces) -> Vec<Vector3> {
+    /// Returns the resultant of each support's forces on the body. A degree of freedom in several supports
+    /// counts for the first of them, so that the sum balances the loads.
+    pub fn support_forces(&self, forces: &ConditionForces) -> Vec<Resultant> {
         let mut seen = vec![false; 3 * forces.nodes.len()];
         let each = self.held.iter().map(|Held { from, to, .. }| {
-            let mut sum = Vector3::zeros();
+            let mut sum = Resultant::default();
             for &FixedDof { node, axis, .. } in self.fixed.get(from.fixed..to.fixed).unwrap_or_default() {
                 let (i, a) = (node as usize, usize::from(axis));
                 // Without nodal supports there are no nodal forces.
                 if i < forces.nodes.len() && !std::mem::replace(&mut seen[3 * i + a], true) {
-                    sum[a] += forces.nodes[i][a];
+                    sum.add(&(forces.at)(i), &Vector3::ith(a, forces.nodes[i][a]));
                 }
             }
-            let of = |all: &[Vector3], range: Range<usize>| -> Vector3 {
-                all.get(range).unwrap_or_default().iter().sum()
+            let of = |all: &[Resultant], range: Range<usize>| -> Resultant {
+                all.get(range).unwrap_or_default().iter().copied().sum()
             };
             sum + of(forces.rows, from.rows..to.rows) + of(forces.weak, from.weak..to.weak)
         });
         each.collect()
     }
 
-    /// Returns the force (N) of each penalty surface on the body under Newton's method. `u` (m) are the nodal
-    /// parameters and `part` is the applied fraction of the prescribed displacements.
-    pub fn penalty_forces(&self, u: &[Vector3], part: f64) -> Vec<Vector3> {
+    /// Returns the resultant of each penalty surface's forces on the body under Newton's method. `u` (m) are
+    /// the nodal parameters and `part` is the applied fraction of the prescribed displacements.
+    pub fn penalty_forces(&self, u: &[Vector3], part: f64) -> Vec<Resultant> {
         let each = self.penalties.iter().map(|held| {
-            let points = held.surface.rows().apply(u);
-            let at = points.iter().zip(&held.values).zip(held.surface.weights());
-            let sum: Vector3 = at.map(|((u, g), w)| (g * part - u) * *w).sum();
-            Vector3::from_fn(|a, _| if held.axes[a] { held.beta * sum[a] } else { 0.0 })
+            let mut sum = Resultant::default();
+            let moved = held.surface.rows().apply(u);
+            let points = held.surface.points().iter().zip(&moved).zip(&held.values);
+            for (((x, u), g), w) in points.zip(held.surface.weights()) {
+                let lacking = (g * part - u) * (held.beta * w);
+                sum.add(&(x + u), &Vector3::from_fn(|a, _| if held.axes[a] { lacking[a] } else { 0.0 }));
+            }
+            sum
         });
         each.collect()
     }

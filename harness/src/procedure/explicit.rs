@@ -11,9 +11,9 @@ use explicit::{
     Lumping, MovingTool, Precision, Prescribed, Springs, Tools, critical_step_touching, lumped_mass,
     point_masses,
 };
-use geometry::Vector3;
+use geometry::{Point3, Vector3};
 use lanes::LanePath;
-use shape::VolumeRows;
+use shape::{Resultant, VolumeRows};
 use statics::nodal_forces;
 
 use super::problem::Problem;
@@ -36,7 +36,7 @@ const RECHECK: usize = 1000;
 /// a thousand to a million.
 const MOST_STEPS: f64 = 1e7;
 
-pub(super) fn stages(asked: &Explicit) -> Stages {
+pub(super) fn stages(setup: &Setup, asked: &Explicit) -> Stages {
     let duration = asked.ramp.duration;
     let steps = match asked.step {
         Some(step) => format!("{duration} s in steps of {step:e} s"),
@@ -45,7 +45,7 @@ pub(super) fn stages(asked: &Explicit) -> Stages {
     Stages {
         mass: (true, "lumped".into()),
         stiffness: (false, "explicit: only forces are evaluated".into()),
-        time_steps: (true, steps),
+        time_steps: (true, steps + &setup.pressures()),
         factorisation: (false, "explicit: the mass is diagonal".into()),
         newton: (false, "explicit".into()),
         ..Stages::linear()
@@ -98,8 +98,9 @@ fn motion(problem: &Problem, asked: &Explicit, counters: &mut Counters) -> Resul
     let loading = Loading::new(problem, asked)?;
     let loaded: Vec<usize> =
         (0..loading.loads.len()).filter(|&i| loading.loads[i] != Vector3::zeros()).collect();
-    let mut load = |t: f64, _: &[Vector3], _: &[Vector3], f: &mut [Vector3]| {
+    let mut load = |t: f64, u: &[Vector3], _: &[Vector3], f: &mut [Vector3]| {
         loaded.iter().for_each(|&i| f[i] += loading.loads[i] * loading.part(t));
+        prepared.following().iter().for_each(|pressure| pressure.add_force(u, loading.part(t), f));
     };
     let loading = &loading;
     let motions = loading.motions();
@@ -138,10 +139,10 @@ fn motion(problem: &Problem, asked: &Explicit, counters: &mut Counters) -> Resul
         Err(failure @ ExplicitError::StepTooLarge { .. }) => Some(failure),
         Err(failure) => return Err(failure.into()),
         Ok(motion) => {
-            let led = loading.led.keys().copied().collect();
+            let (nodes, led) = (problem.method.nodes(), loading.led.keys().copied().collect());
             let points = (!problem.method.interpolates).then(|| point_masses(rows, &density, &volume.region));
             let masses = points.transpose()?.map(|points| Masses { points, lumped: &mass });
-            let mut run = Run { motion, asked, setup, prepared, led, masses, states, watch };
+            let mut run = Run { motion, asked, setup, prepared, nodes, led, masses, states, watch };
             let failure = run.march(&mut load, interval).err();
             made = run.motion.steps() as u64;
             counters.time_steps += made;
@@ -180,6 +181,7 @@ pub(super) fn body<'a>(setup: &'a Setup, prepared: &'a Prepared) -> ExplicitBody
         volume: &volume.rows,
         laws: &setup.laws,
         region: &volume.region,
+        axes: &volume.axes,
         groups: volume.groups.as_ref(),
     }
 }
@@ -307,6 +309,8 @@ struct Run<'a, 'b> {
     asked: &'b Explicit,
     setup: &'b Setup,
     prepared: &'b Prepared,
+    /// Undeformed positions, m.
+    nodes: &'b [Point3],
     /// Prescribed degrees of freedom, in the order of the integrator.
     led: Vec<(u32, u8)>,
     /// Masses of a cloud; `None` for elements.
@@ -376,13 +380,14 @@ impl Run<'_, '_> {
         Ok(count)
     }
 
-    /// Force of each support on a body with this number of nodes, at the last step, N.
-    fn supports(&self, nodes: usize) -> Vec<Vector3> {
-        let mut forces = vec![Vector3::zeros(); nodes];
+    /// Resultant of each support's forces on the body at the last step, whose displacements are `u` (m).
+    fn supports(&self, u: &[Vector3]) -> Vec<Resultant> {
+        let mut forces = vec![Vector3::zeros(); u.len()];
         for (&(node, axis), force) in self.led.iter().zip(self.motion.reactions()) {
             forces[node as usize][usize::from(axis)] = *force;
         }
-        self.prepared.support_forces(&ConditionForces { nodes: &forces, rows: &[], weak: &[] })
+        let at = |i: usize| self.nodes[i] + u[i];
+        self.prepared.support_forces(&ConditionForces { at: &at, nodes: &forces, rows: &[], weak: &[] })
     }
 
     fn reported(&self, balance: &Balance, u: &[Vector3], time: f64) -> LoadStep {
@@ -401,12 +406,13 @@ impl Run<'_, '_> {
         LoadStep {
             load: time / self.asked.ramp.duration,
             tools: tools.collect(),
-            supports: self.supports(u.len()),
+            supports: self.supports(u),
             means: Vec::new(),
             strain_energy: Some(balance.strain),
             smallest_j: smallest_j(self.prepared, u),
             iterations: 0,
             probes: Vec::new(),
+            points: Vec::new(),
             against: Vec::new(),
             more: more.map(|(entry, value)| Metric::new(entry, value)).to_vec(),
         }

@@ -92,6 +92,7 @@ fn motion(problem: &Problem, asked: &Implicit, counters: &mut Counters) -> Resul
         solve_in_time(&problem, &params(asked), |done, motion, _| {
             let part = ramps.supports.value(done.step.time);
             supports = prepared.support_forces(&ConditionForces {
+                at: &|i| method.nodes()[i] + motion.u[i],
                 nodes: &motion.reaction,
                 rows: &[],
                 weak: &prepared.penalty_forces(&motion.u, part),
@@ -205,6 +206,7 @@ fn reported(done: &TimeStep, setup: &Setup, duration: f64) -> LoadStep {
         smallest_j: step.smallest,
         iterations: solves(step),
         probes: Vec::<Vector3>::new(),
+        points: Vec::new(),
         against: Vec::new(),
         more,
     }

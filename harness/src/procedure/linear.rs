@@ -31,10 +31,12 @@ pub(super) fn solve(
     let assembled = meters.timings.time("assemble", || assemble(&system))?;
     meters.counters.assemblies += 1;
     let solved = solved(problem, assembled, asked, meters)?;
+    let nodes = method.nodes();
     let supports = prepared.support_forces(&ConditionForces {
+        at: &|i| nodes[i],
         nodes: &solved.factored.reactions(&solved.solution, 1.0),
-        rows: &solved.factored.forces_of_rows(&solved.solution),
-        weak: &solved.factored.forces_of_weak(&solved.solution, 1.0),
+        rows: &solved.factored.forces_of_rows(nodes, &solved.solution),
+        weak: &solved.factored.forces_of_weak(nodes, &solved.solution, 1.0),
     });
     let statics::Solution { u, info, .. } = solved.solution;
     // These diagnostics are not part of the solution: they are not timed and are computed once for all

@@ -101,7 +101,7 @@ fn stages_of(method: &Discretisation, setup: &Setup) -> Stages {
         Procedure::Linear { solver } => linear::stages(method, setup, *solver),
         Procedure::Modes { .. } => modes::stages(setup),
         Procedure::Static(asked) => statics::stages(method, setup, asked),
-        Procedure::Explicit(asked) => explicit::stages(asked),
+        Procedure::Explicit(asked) => explicit::stages(setup, asked),
         Procedure::ImplicitDynamic(asked) => implicit_dynamic::stages(setup, asked),
     }
 }

@@ -7,7 +7,7 @@ use explicit::{
     ExplicitError, InternalForce, KernelInfo, LanczosParams, Lumping, Pressing, PressingTool, RelaxationInfo,
     RelaxationParams, Rested, lumped_mass, relax_under,
 };
-use geometry::Vector3;
+use geometry::{Point3, Vector3};
 use lanes::LanePath;
 use shape::FixedDof;
 use statics::nodal_forces;
@@ -76,7 +76,7 @@ pub(super) fn possible(method: &Discretisation) -> (bool, &'static str) {
 
 /// Relaxes to the end of each load step beyond `from` in turn.
 pub(super) fn continue_from(
-    setup: &Setup,
+    (nodes, setup): (&[Point3], &Setup),
     count: usize,
     prepared: &Prepared,
     from: Start,
@@ -110,8 +110,9 @@ pub(super) fn continue_from(
         }
         let at = |(&(node, axis), value): (&(u32, u8), &f64)| FixedDof { node, axis, value: value * load };
         let fixed: Vec<FixedDof> = constrained.iter().map(at).collect();
-        let mut external = |_: &[Vector3], f: &mut [Vector3]| {
+        let mut external = |u: &[Vector3], f: &mut [Vector3]| {
             f.iter_mut().zip(&loads).for_each(|(f, full)| *f += full * load);
+            prepared.following().iter().for_each(|pressure| pressure.add_force(u, load, f));
         };
         if let Some(pressing) = &mut pressing {
             pressing.drive(setup.tools.iter().map(|set| part_of(set.drive, load)));
@@ -132,20 +133,13 @@ pub(super) fn continue_from(
             }
         };
         done.made += info.steps as u64;
-        let states = pressing.as_ref().map_or(&[][..], Pressing::states);
-        let tools = states.iter().zip(&setup.tools).map(|(state, set)| ToolStep::of(state, &set.tool));
-        done.steps.push(LoadStep {
-            load,
-            tools: tools.collect(),
-            supports: prepared.support_forces(&ConditionForces { nodes: &reaction, rows: &[], weak: &[] }),
-            means: Vec::new(),
-            strain_energy: Some(force.energy(&u).map_err(ExplicitError::from)?),
-            smallest_j: smallest_j(prepared, &u),
-            iterations: 0,
-            probes: Vec::new(),
-            against: Vec::new(),
-            more: metrics(&info),
-        });
+        done.steps.push(step_at_rest(
+            (nodes, setup),
+            prepared,
+            (load, &u, &reaction),
+            &mut force,
+            (pressing.as_ref(), &info),
+        )?);
         done.fields.push(u.clone());
     }
     counters.relaxation_steps += done.made;
@@ -154,6 +148,36 @@ pub(super) fn continue_from(
         counters.contact_skips += pressing.counts().skipped;
     }
     Ok(done)
+}
+
+/// The record of a load step that came to rest with the displacements `u`, m, and the reactions, N.
+fn step_at_rest(
+    (nodes, setup): (&[Point3], &Setup),
+    prepared: &Prepared,
+    (load, u, reaction): (f64, &[Vector3], &[Vector3]),
+    force: &mut InternalForce,
+    (pressing, info): (Option<&Pressing>, &RelaxationInfo),
+) -> Result<LoadStep, Failure> {
+    let states = pressing.map_or(&[][..], Pressing::states);
+    let tools = states.iter().zip(&setup.tools).map(|(state, set)| ToolStep::of(state, &set.tool));
+    Ok(LoadStep {
+        load,
+        tools: tools.collect(),
+        supports: prepared.support_forces(&ConditionForces {
+            at: &|i| nodes[i] + u[i],
+            nodes: reaction,
+            rows: &[],
+            weak: &[],
+        }),
+        means: Vec::new(),
+        strain_energy: Some(force.energy(u).map_err(ExplicitError::from)?),
+        smallest_j: smallest_j(prepared, u),
+        iterations: 0,
+        probes: Vec::new(),
+        points: Vec::new(),
+        against: Vec::new(),
+        more: metrics(info),
+    })
 }
 
 fn part_of(drive: Drive, load: f64) -> Drive {

@@ -2,6 +2,7 @@
 
 use explicit::KernelInfo;
 use geometry::Vector3;
+use shape::Resultant;
 use statics::{Modes, SolveInfo};
 
 use crate::error::Failure;
@@ -15,8 +16,8 @@ pub(crate) struct Solution {
     /// Parameters of the method's own pressure field at the end, Pa, tension positive; empty without such a
     /// field.
     pub(crate) pressure: Vec<f64>,
-    /// Force of each support on the body at the end of a linear procedure, N.
-    pub(crate) supports: Vec<Vector3>,
+    /// Resultant of each support's forces on the body at the end of a linear procedure.
+    pub(crate) supports: Vec<Resultant>,
     /// Number of unknowns, pressures included.
     pub(crate) dofs: usize,
     /// Relative residual of the last static equilibrium.
@@ -72,8 +73,8 @@ impl Solution {
         self.linear.as_ref().map(|info| info.path.name()).or(of_vibration).or(self.tangents)
     }
 
-    /// Force of each support on the body at the end, N; empty if unknown.
-    pub(crate) fn support_forces(&self) -> &[Vector3] {
+    /// Resultant of each support's forces on the body at the end; empty if unknown.
+    pub(crate) fn support_forces(&self) -> &[Resultant] {
         self.history.as_ref().map_or(&self.supports, |history| &history.last.supports)
     }
 

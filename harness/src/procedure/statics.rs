@@ -96,6 +96,7 @@ fn path(problem: &Problem, asked: &Static, counters: &mut Counters) -> Result<(S
         let systems = tangents.systems();
         solve_static(&StaticProblem { systems, ..problem.clone() }, &params, |step, rest| {
             supports = prepared.support_forces(&ConditionForces {
+                at: &|i| method.nodes()[i] + rest.u[i],
                 nodes: rest.reaction,
                 rows: &[],
                 weak: &prepared.penalty_forces(rest.u, step.time),
@@ -126,7 +127,7 @@ fn path(problem: &Problem, asked: &Static, counters: &mut Counters) -> Result<(S
     if path.failure.is_some() && relaxes {
         let closures = last.tools.iter().map(|tool| tool.closure).collect();
         let from = Start { load: last.load, u: u.clone(), closures, history: path.history };
-        let done = relaxation::continue_from(setup, asked.steps, prepared, from, counters)?;
+        let done = relaxation::continue_from((method.nodes(), setup), asked.steps, prepared, from, counters)?;
         steps.extend(done.steps.iter().cloned());
         fields.extend(done.fields.iter().cloned());
         if let (Some(step), Some(field)) = (done.steps.last(), done.fields.last()) {
@@ -252,8 +253,17 @@ pub(crate) fn with_static_problem<T>(
         setup.tools.iter().map(|t| DrivenTool { tool: &t.tool, drive: t.drive }).collect();
     solve(&StaticProblem {
         nodes: method.nodes(),
-        solid: Solid { volume: &volume.rows, laws: &setup.laws, region: &volume.region, dilation },
+        solid: Solid {
+            volume: &volume.rows,
+            laws: &setup.laws,
+            region: &volume.region,
+            axes: &volume.axes,
+            active: &setup.active,
+            activation: 1.0,
+            dilation,
+        },
         loads: &prepared.loads(),
+        following: prepared.following(),
         fixed: prepared.fixed(),
         penalties: &prepared.penalties(),
         contact,
@@ -278,6 +288,7 @@ fn reported(step: &Step, setup: &Setup) -> LoadStep {
         smallest_j: step.smallest,
         iterations: solves(step),
         probes: Vec::new(),
+        points: Vec::new(),
         against: Vec::new(),
         more: Vec::new(),
     }
@@ -286,9 +297,10 @@ fn reported(step: &Step, setup: &Setup) -> LoadStep {
 /// Reason in the plan why Newton's method iterates.
 pub(super) fn newton_reason(setup: &Setup, steps: usize, kind: &str) -> String {
     let steps = if steps == 1 { format!("1 {kind} step") } else { format!("{steps} {kind} steps") };
+    let pressures = setup.pressures();
     match (setup.laws.iter().all(|law| law.is_small_strain()), setup.tools.is_empty()) {
         (true, true) => format!("{steps}; law and loads are linear, so one iteration per step would suffice"),
-        (false, true) => format!("{steps} with a law of large strain"),
-        (_, false) => format!("{steps} with contact"),
+        (false, true) => format!("{steps} with a law of large strain{pressures}"),
+        (_, false) => format!("{steps} with contact{pressures}"),
     }
 }

@@ -68,6 +68,11 @@ impl Group<'_> {
         if !matches!(setup.procedure, Procedure::Linear { .. } | Procedure::Static(_)) {
             return refused("can't be passed to another solver: give kind = \"linear\" or \"static\"");
         }
+        if scenario.following().is_some() {
+            return refused(
+                "has a pressure on the deformed surface, which can't be passed to another solver: add dead = true",
+            );
+        }
         if plan.runs(StageName::Refinement) {
             return refused("refines its cloud with its own solutions: take a method without refine");
         }

@@ -19,9 +19,9 @@ use records::{Record, SurfaceField};
 use crate::discretise::Discretisation;
 use crate::error::Failure;
 use crate::measure::{
-    self, Field, OwnError, Recovered, Reference, Request, check_probes, displacement, measure, of_tables,
-    over_time, picture, places, probe_errors, probe_history, probes, report_modes, report_steps, states,
-    surface, transfers, warnings,
+    self, Field, OwnError, Recovered, Reference, Request, check_points, check_probes, displacement, measure,
+    of_tables, over_time, picture, places, points, probe_errors, probe_history, probes, report_modes,
+    report_steps, states, surface, transfers, warnings,
 };
 use crate::outcome::timing::{Meters, Timed, Timings};
 use crate::outcome::{Counters, Identity, Outcome, Plan, Size, StageName};
@@ -60,7 +60,8 @@ pub(crate) fn run(
     request: &Request,
 ) -> Result<FinishedRun, Failure> {
     check_probes(method.mesh(), request.probes)?;
-    check_means(method.mesh(), &setup.means)?;
+    check_means(method.mesh(), &setup.output.means)?;
+    check_points(method.mesh(), &setup.output)?;
     rayon::scope(|_| on_pool(identity, plan, method, setup, request))
 }
 
@@ -219,6 +220,7 @@ fn loaded(
     let over_time = over_time(run, &outcome.plan, request, &outcome.steps)?;
     outcome.metrics.extend(over_time);
     outcome.probes = probes(run, recovered.as_ref(), request.probes)?;
+    points(outcome, run, request.probes)?;
     if let Some(exact) = &setup.exact {
         probe_errors(&mut outcome.metrics, &outcome.probes, exact.as_ref(), &solution.u);
     }

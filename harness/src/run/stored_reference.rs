@@ -257,6 +257,7 @@ impl Stored {
             smallest_j: 1.0,
             iterations: 0,
             probes: vectors(&step.probes),
+            points: Vec::new(),
             against: Vec::new(),
             more: Vec::new(),
         });

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use cases::scene::{Body, Element, ErrorKind, Jitter, MeshFile, Size};
 use geometry::generate::{
     self, Drawn, GenerateError, ShellExtent, ball_mesh, box_mesh, cylinder_mesh, half_kidney_mesh,
-    is_convertible, kidney_mesh, raise_order, sphere_shell_mesh,
+    is_convertible, kidney_mesh, raise_order, sphere_shell_mesh, ventricle_mesh,
 };
 use geometry::quality::InvertedElement;
 use geometry::shapes::{Ball, Cuboid, Cylinder, HalfKidney, Kidney, Shape, SphereShell};
@@ -19,7 +19,7 @@ use crate::error::{Failure, Key};
 /// Most nodes of a mesh; a larger number in a scene for one machine is taken for a typing error.
 pub(super) const MOST_NODES: usize = 3_000_000;
 
-/// Returns the body in closed form; `None` for the octant of a shell and for a file, whose shape comes from
+/// Returns the body in closed form; `None` for the octant of a shell, for a ventricle and for a file, whose shape comes from
 /// [`file_body::load`].
 pub fn shape(body: &Body) -> Option<Arc<dyn Shape + Send + Sync>> {
     match *body {
@@ -29,7 +29,7 @@ pub fn shape(body: &Body) -> Option<Arc<dyn Shape + Send + Sync>> {
         Body::SphereShell { inner, outer, octant: false } => Some(Arc::new(SphereShell { inner, outer })),
         Body::Kidney { half: false, .. } => Some(Arc::new(Kidney)),
         Body::Kidney { half: true, .. } => Some(Arc::new(HalfKidney)),
-        Body::SphereShell { octant: true, .. } | Body::File(_) => None,
+        Body::SphereShell { octant: true, .. } | Body::Ventricle(_) | Body::File(_) => None,
     }
 }
 
@@ -67,6 +67,7 @@ pub(super) fn unchecked(
                 let extent = if octant { ShellExtent::Octant } else { ShellExtent::Whole };
                 sphere_shell_mesh(kind, inner, outer, [n, n], 1.0, extent)
             }
+            Body::Ventricle(ref wall) => ventricle_mesh(kind, wall, [expected::VENTRICLE * n, n]),
             Body::Kidney { half: false, .. } => kidney_mesh(kind, n),
             Body::Kidney { half: true, mildly_graded } => {
                 let drawn = if mildly_graded { Drawn::Mildly } else { Drawn::Strongly };
@@ -220,6 +221,7 @@ pub(super) fn base(body: &Body) -> usize {
         | Body::Ball { .. }
         | Body::Kidney { .. }
         | Body::SphereShell { .. }
+        | Body::Ventricle(_)
         | Body::File(_) => 2,
     }
 }

@@ -8,6 +8,9 @@ use geometry::stuffing::expected_nodes;
 
 use super::{Scenario, file_body};
 
+/// Cells along a side of the core around a ventricle's apex for each cell through its wall.
+pub(super) const VENTRICLE: usize = 4;
+
 impl Scenario<'_> {
     /// Returns the approximate number of nodes of the method's meshes and clouds, including its background; 0
     /// for files.
@@ -70,6 +73,10 @@ pub(super) fn of_family(body: &Body, kind: CellKind, n: f64) -> f64 {
         // Half of a body with 3 n by 7 n / 2 by n cells in the core and n layers around them. Mild grading
         // has a quarter more.
         Body::Kidney { half: true, .. } => 20.0 * n * n * n,
+        Body::Ventricle(_) => {
+            let across = VENTRICLE as f64 * n;
+            (across * across + 4.0 * across * (across / 2.0).ceil()) * n
+        }
         Body::SphereShell { octant, .. } => n * n * n * if octant { 3.0 } else { 6.0 },
         Body::File(_) => return of_spacing(body, kind, narrowest(body) / n),
     };
@@ -95,6 +102,7 @@ pub(super) fn narrowest(body: &Body) -> f64 {
         Body::Box { min, max } => (0..3).map(|a| max[a] - min[a]).fold(f64::MAX, f64::min),
         Body::Cylinder { radius, .. } | Body::Ball { radius } => radius,
         Body::SphereShell { inner, outer, .. } => outer - inner,
+        Body::Ventricle(ref wall) => wall.outer[0] - wall.inner[0],
         Body::Kidney { .. } => Kidney::C,
         Body::File(ref file) => file_body::load(file).map_or(0.0, |body| body.narrowest()),
     }

@@ -60,8 +60,16 @@ impl Scenario<'_> {
         Ok(self.about(fem.element.name(), BTreeMap::new(), limits))
     }
 
-    /// Refuses a procedure that problem files do not support yet.
+    /// Refuses a procedure or a load that problem files do not support yet.
     pub(crate) fn check_files(&self) -> Result<(), Failure> {
+        if let Some(key) = self.following() {
+            let help = "add dead = true for a pressure on the undeformed surface";
+            return Err(Failure::input(
+                Key::Scene(key),
+                "acts on the deformed surface, which is not supported in problem files yet",
+                help,
+            ));
+        }
         match self.scene.procedure.kind() {
             ProcedureKind::Linear | ProcedureKind::Static => Ok(()),
             _ => Err(Failure::input(
@@ -70,6 +78,13 @@ impl Scenario<'_> {
                 "linear and static procedures are supported",
             )),
         }
+    }
+
+    /// Key of the first pressure on the deformed surface.
+    pub(crate) fn following(&self) -> Option<String> {
+        let (laws, _) = self.laws().ok()?;
+        let index = self.scene.loads.iter().position(|load| self.follows(load, &laws))?;
+        Some(format!("load[{index}].pressure"))
     }
 
     /// Lists the features a solver needs for the scene: the word that an adapter lists in `can`, and a phrase
@@ -85,6 +100,10 @@ impl Scenario<'_> {
         asked.extend(self.scene.materials().map(|(_, m)| (m.name(), format!("the law \"{}\"", m.name()))));
         if !self.scene.tools.is_empty() {
             asked.push(("tools", "rigid tools ([[tool]])".into()));
+        }
+        if let Some(key) = self.following() {
+            let what = "a pressure on the deformed surface, which problem files do not support yet";
+            asked.push(("", format!("{what} ({key}; dead = true keeps the undeformed surface)")));
         }
         asked
     }

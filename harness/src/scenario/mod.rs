@@ -9,6 +9,7 @@ mod discretise;
 mod estimate;
 mod expected;
 mod external;
+mod fibers;
 mod file_body;
 mod grading;
 mod identity;
@@ -28,12 +29,12 @@ pub(crate) use notes::warnings;
 pub(crate) use tools::{PlacedTool, tools};
 
 use cases::exact::{Exact, Medium};
-use cases::scene::{self, LoadKind, Prescribed, Reference, Scene, VectorField};
+use cases::scene::{self, LoadKind, Prescribed, Procedure, Reference, Scene, VectorField};
 use geometry::{Point3, Vector3};
-use material::{Law, LinearElastic, Prony};
+use material::{Law, LinearElastic, Material as _, Prony};
 
 use crate::error::{Failure, Key};
-use setup::{Applied, Load, Setup, Support, SurfaceLoad};
+use setup::{Applied, Directions, Load, Setup, Support, SurfaceLoad};
 
 /// A scene's method with the changes of a study.
 #[derive(Clone, Debug)]
@@ -80,14 +81,17 @@ impl Scenario<'_> {
         let medium = self.medium(&laws[0], materials[0])?;
         let e = &medium;
         let exact = self.exact(e)?;
+        let loads = self.loads(e, &laws)?;
         Ok(Setup {
             laws,
             materials,
             densities: self.scene.materials().map(|(_, material)| material.density).collect(),
+            directions: self.directions(),
+            active: self.active(),
             supports: self.supports(e)?,
-            loads: self.loads(e)?,
+            loads,
             relaxation: self.relaxation()?,
-            means: self.scene.output.means.clone(),
+            output: self.scene.output.clone(),
             tools: tools(self.scene)?,
             procedure: self.scene.procedure,
             mass: self.method.mass,
@@ -126,7 +130,7 @@ impl Scenario<'_> {
             .collect()
     }
 
-    fn loads(&self, e: &Medium) -> Result<Vec<Load>, Failure> {
+    fn loads(&self, e: &Medium, laws: &[Law]) -> Result<Vec<Load>, Failure> {
         self.scene
             .loads
             .iter()
@@ -161,9 +165,46 @@ impl Scenario<'_> {
                     applied,
                     varies,
                     along_normal,
+                    follows: self.follows(load, laws),
                 })
             })
             .collect()
+    }
+
+    /// Whether a load is a pressure on the deformed surface: unless the scene makes it dead, if the procedure is
+    /// one of large displacements and a law one of large strain.
+    fn follows(&self, load: &scene::Load, laws: &[Law]) -> bool {
+        let linear = matches!(
+            self.scene.procedure,
+            Procedure::Prepare | Procedure::Linear { .. } | Procedure::Modes { .. }
+        );
+        matches!(load.kind, LoadKind::Pressure(_))
+            && !load.dead
+            && !linear
+            && laws.iter().any(|law| !law.is_small_strain())
+    }
+
+    fn active(&self) -> Vec<f64> {
+        let each: Vec<f64> = self.scene.materials().map(|(_, material)| material.active).collect();
+        if each.iter().all(|active| *active == 0.0) { Vec::new() } else { each }
+    }
+
+    fn directions(&self) -> Vec<Option<Directions>> {
+        let field = |of: &scene::Direction| -> setup::VectorField {
+            match (of.clone(), &self.scene.body) {
+                (scene::Direction::Field(of), _) => Box::new(move |x| components(&of, x)),
+                (scene::Direction::Helix(angles), scene::Body::Ventricle(wall)) => {
+                    let wall = *wall;
+                    Box::new(move |x| Ok(fibers::helix(&wall, angles, x)))
+                }
+                (scene::Direction::Helix(_), _) => Box::new(|_| Err("needs a ventricle".into())),
+            }
+        };
+        let each = self.scene.materials().map(|(key, material)| {
+            let scene::Directions { fibers, sheets } = material.directions.as_ref()?;
+            Some(Directions { key, fibers: field(fibers), sheets: sheets.as_ref().map(field) })
+        });
+        each.collect()
     }
 
     fn relaxation(&self) -> Result<Vec<Option<Prony>>, Failure> {

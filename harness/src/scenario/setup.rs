@@ -1,7 +1,7 @@
 //! The problem on a body independent of the method: materials, supports and loads as functions of position.
 
 use cases::exact::{Contact, Exact};
-use cases::scene::{Mass, Place, Procedure};
+use cases::scene::{Mass, Output, Place, Procedure};
 use geometry::{Point3, Vector3};
 use material::{Law, LinearElastic, Prony};
 
@@ -25,6 +25,16 @@ pub struct Support {
     pub axes: [bool; 3],
     /// The displacement, m.
     pub value: VectorField,
+}
+
+/// Directions of a material.
+pub struct Directions {
+    /// The material's key in the scene, such as `material`.
+    pub key: String,
+    /// Along the fibres, of any length.
+    pub fibers: VectorField,
+    /// Within a sheet across the fibres, of any length, if given.
+    pub sheets: Option<VectorField>,
 }
 
 /// The kind of a load, with its field.
@@ -55,6 +65,8 @@ pub struct Load {
     pub varies: bool,
     /// Whether the load depends on the outward normal.
     pub along_normal: bool,
+    /// Whether a pressure acts on the deformed surface.
+    pub follows: bool,
 }
 
 /// A problem without its method: materials, supports, loads, tools and known solutions.
@@ -67,12 +79,16 @@ pub struct Setup {
     pub densities: Vec<Option<f64>>,
     /// Stress relaxation by region; `None` for an elastic material.
     pub relaxation: Vec<Option<Prony>>,
+    /// Directions of the material by region; `None` for a law that does not depend on them.
+    pub directions: Vec<Option<Directions>>,
+    /// Active stress along the fibre by region, Pa; empty if no region contracts.
+    pub active: Vec<f64>,
     /// Essential conditions.
     pub supports: Vec<Support>,
     /// Loads.
     pub loads: Vec<Load>,
-    /// Parts of the surface whose mean displacement is reported.
-    pub means: Vec<Place>,
+    /// Points and surfaces of which results are reported.
+    pub output: Output,
     /// Rigid tools.
     pub tools: Vec<PlacedTool>,
     /// Solution procedure.
@@ -117,6 +133,23 @@ impl Setup {
     /// Whether Newton's method solves the problem.
     pub fn solves_by_newton(&self) -> bool {
         matches!(self.procedure, Procedure::Static(_) | Procedure::ImplicitDynamic(_))
+    }
+
+    /// Describes in the plan which pressures follow the deformed surface and which do not; empty without any.
+    pub fn pressures(&self) -> String {
+        let keys = |follows: bool| -> Vec<&str> {
+            let pressure = |load: &&Load| matches!(load.applied, Applied::Surface(SurfaceLoad::Pressure(_)));
+            let of_kind = self.loads.iter().filter(pressure).filter(|load| load.follows == follows);
+            of_kind.map(|load| load.key.as_str()).collect()
+        };
+        let mut text = String::new();
+        for (follows, surface) in [(true, "deformed"), (false, "undeformed")] {
+            let keys = keys(follows);
+            if !keys.is_empty() {
+                text += &format!("; pressure on the {surface} surface: {}", keys.join(", "));
+            }
+        }
+        text
     }
 
     /// Whether the stress depends on the strain history.

@@ -1,6 +1,6 @@
-//! Results other than errors: support forces, mean displacements of faces, and frequencies.
+//! Results other than errors: support forces, numbers of faces, points and volumes, and frequencies.
 
-use catalogue::metric::{self, Metric};
+use catalogue::metric::{self, Address};
 use records::Purpose;
 
 use crate::history::curve;
@@ -20,16 +20,20 @@ fn finest<'a>(runs: &[Run<'a>]) -> Vec<(Run<'a>, String)> {
     out
 }
 
-/// Adds a row for every place of every run; places are numbered in the order of the scene.
-fn of_places(mut table: Table, runs: &[Run], vector: &'static Metric, scale: f64) -> Table {
+/// Adds a row with `numbers` for every place of every run; places are numbered in the order of the scene.
+fn of_places<const N: usize>(mut table: Table, runs: &[Run], numbers: [Address; N], scale: f64) -> Table {
     for (run, label) in finest(runs) {
-        let at = |place: usize| vector.components().map(|component| run.value(component.at(place)));
-        let recorded = |found: &[Option<f64>; 3]| found.iter().any(Option::is_some);
+        let at = |place: usize| numbers.map(|number| run.value(number.at(place)));
+        let recorded = |found: &[Option<f64>; N]| found.iter().any(Option::is_some);
         for (place, found) in (1..).zip((0..).map(at).take_while(recorded)) {
-            let [x, y, z] = found.map(|value| Cell::Digits(value.map(|v| v * scale), 4));
-            let case = Cell::Text(&run.is.case);
-            let nodes = Cell::Count(run.is.nodes);
-            table.row(&[case, Cell::Text(&label), nodes, Cell::Count(place), x, y, z]);
+            let mut row = vec![
+                Cell::Text(&run.is.case),
+                Cell::Text(&label),
+                Cell::Count(run.is.nodes),
+                Cell::Count(place),
+            ];
+            row.extend(found.map(|value| Cell::Digits(value.map(|v| v * scale), 4)));
+            table.row(&row);
         }
     }
     table
@@ -51,7 +55,7 @@ pub(super) fn supports(runs: &[Run]) -> Table {
     of_places(
         Table::new("support-forces", "Forces of supports", caption, &header),
         runs,
-        &metric::REACTION,
+        metric::REACTION.components(),
         1.0,
     )
 }
@@ -72,9 +76,66 @@ pub(super) fn means(runs: &[Run]) -> Table {
     of_places(
         Table::new("face-means", "Mean displacement of faces", caption, &header),
         runs,
-        &metric::MEAN,
+        metric::MEAN.components(),
         1e3,
     )
+}
+
+/// Table of the displacement of every probe.
+pub(super) fn probes(runs: &[Run]) -> Table {
+    let header = [
+        ("case", Words),
+        ("method", Words),
+        ("nodes", Number),
+        ("point", Number),
+        ("x [mm]", Number),
+        ("y [mm]", Number),
+        ("z [mm]", Number),
+    ];
+    let caption = "Displacement of the points in output.probes at the end, for the finest run of each method; points are \
+                   numbered as in the scene";
+    let table = Table::new("probes", "Displacement of points", caption, &header);
+    of_places(table, runs, metric::PROBE.components(), 1e3)
+}
+
+/// Table of the stress of every probe.
+pub(super) fn probe_stresses(runs: &[Run]) -> Table {
+    let header = [
+        ("case", Words),
+        ("method", Words),
+        ("nodes", Number),
+        ("point", Number),
+        ("xx [kPa]", Number),
+        ("yy [kPa]", Number),
+        ("zz [kPa]", Number),
+        ("xy [kPa]", Number),
+        ("yz [kPa]", Number),
+        ("zx [kPa]", Number),
+    ];
+    let caption = "Recovered Cauchy stress of the points in output.probes at the end, for the finest run of each method; \
+                   points are numbered as in the scene";
+    let table = Table::new("probe-stresses", "Stress of points", caption, &header);
+    of_places(table, runs, metric::PROBE_STRESS.tensor(), 1e-3)
+}
+
+/// Table of every requested stretch.
+pub(super) fn stretches(runs: &[Run]) -> Table {
+    let header =
+        [("case", Words), ("method", Words), ("nodes", Number), ("point", Number), ("stretch [1]", Number)];
+    let caption = "Ratio of deformed to undeformed length at the points and along the directions in output.stretches at \
+                   the end, for the finest run of each method";
+    let table = Table::new("stretches", "Stretches", caption, &header);
+    of_places(table, runs, [metric::STRETCH.whole()], 1.0)
+}
+
+/// Table of every requested volume.
+pub(super) fn volumes(runs: &[Run]) -> Table {
+    let header =
+        [("case", Words), ("method", Words), ("nodes", Number), ("surface", Number), ("volume [mL]", Number)];
+    let caption = "Volume enclosed by the surfaces in output.volumes at the end, for the finest run of each method; \
+                   surfaces are numbered as in the scene";
+    let table = Table::new("enclosed-volumes", "Enclosed volumes", caption, &header);
+    of_places(table, runs, [metric::ENCLOSED_VOLUME.whole()], 1e6)
 }
 
 /// Table of the frequency of every mode.
@@ -129,6 +190,10 @@ mod tests {
             of(800, "mean-x", 1e-3),
             of(800, "mean-y", 0.0),
             of(800, "mean-z", -2e-3),
+            of(800, "probe-x", 1e-3),
+            of(800, "probe-stress-zx", 250.0),
+            of(800, "stretch", 1.25),
+            of(800, "enclosed-volume", 2e-6),
         ];
         let rows = |table: Table| -> Vec<String> { table.shown().iter().map(|row| row.join(" ")).collect() };
         assert_eq!(
@@ -136,6 +201,10 @@ mod tests {
             ["block tet4 800 1 — — 1.500", "block tet4 800 2 -0.2500 — —"]
         );
         assert_eq!(rows(means(&runs(&records))), ["block tet4 800 1 1.000 0 -2.000"]);
+        assert_eq!(rows(probes(&runs(&records))), ["block tet4 800 1 1.000 — —"]);
+        assert_eq!(rows(probe_stresses(&runs(&records))), ["block tet4 800 1 — — — — — 0.2500"]);
+        assert_eq!(rows(stretches(&runs(&records))), ["block tet4 800 1 1.250"]);
+        assert_eq!(rows(volumes(&runs(&records))), ["block tet4 800 1 2.000"]);
         let modes: Vec<_> = [("mode", 1.0), ("frequency", 12.5), ("omega-ratio", 1.01)]
             .into_iter()
             .map(|(quantity, value)| records::Record { mode: Some(1), ..of(100, quantity, value) })

@@ -30,6 +30,8 @@ pub enum Dimension {
     Angle,
     /// Joules.
     Energy,
+    /// Newton metres. The units are those of an energy, the meaning is not.
+    Moment,
     /// Kilograms.
     Mass,
     /// Cubic metres.
@@ -59,6 +61,7 @@ impl Dimension {
         Dimension::Rate,
         Dimension::Angle,
         Dimension::Energy,
+        Dimension::Moment,
         Dimension::Mass,
         Dimension::Volume,
         Dimension::AngularFrequency,
@@ -80,7 +83,7 @@ impl Dimension {
             Dimension::Curvature => [-1, 0, 0, 0, 0],
             Dimension::Rate | Dimension::Frequency => [0, 0, -1, 0, 0],
             Dimension::Angle => [0, 0, 0, 1, 0],
-            Dimension::Energy => [2, 1, -2, 0, 0],
+            Dimension::Energy | Dimension::Moment => [2, 1, -2, 0, 0],
             Dimension::Mass => [0, 1, 0, 0, 0],
             Dimension::Volume => [3, 0, 0, 0, 0],
             Dimension::AngularFrequency => [0, 0, -1, 1, 0],
@@ -104,6 +107,7 @@ impl Dimension {
             Dimension::Rate => "rate",
             Dimension::Angle => "angle",
             Dimension::Energy => "energy",
+            Dimension::Moment => "moment",
             Dimension::Mass => "mass",
             Dimension::Volume => "volume",
             Dimension::AngularFrequency => "angular frequency",
@@ -128,6 +132,7 @@ impl Dimension {
             Dimension::Rate => "1/s",
             Dimension::Angle => "rad",
             Dimension::Energy => "J",
+            Dimension::Moment => "N m",
             Dimension::Mass => "kg",
             Dimension::Volume => "m^3",
             Dimension::AngularFrequency => "rad/s",
@@ -152,6 +157,7 @@ impl Dimension {
             Dimension::Rate => &["/s", "1/s", "/ms"],
             Dimension::Angle => &["deg", "rad", "mrad"],
             Dimension::Energy => &["J", "mJ", "N mm"],
+            Dimension::Moment => &["N m", "N mm"],
             Dimension::Mass => &["kg", "g", "t"],
             Dimension::Volume => &["mm^3", "m^3", "cm^3"],
             Dimension::AngularFrequency => &["rad/s", "rad/ms"],

@@ -94,14 +94,14 @@ fn benches(c: &mut Criterion) {
     ] {
         let (volume, groups, u) = solid(kind, cells);
         for groups in [None, Some(&groups)] {
-            let body = ExplicitBody { volume: &volume, laws: &laws, region: &[], groups };
+            let body = ExplicitBody { volume: &volume, laws: &laws, region: &[], axes: &[], groups };
             let items = cells * cells * cells * per_cell;
             compare(&mut group, body, &u, items);
         }
     }
     for (cells, per_cell) in [(6, 28), (18, 18)] {
         let (volume, u) = cloud(cells, per_cell);
-        let body = ExplicitBody { volume: &volume, laws: &laws, region: &[], groups: None };
+        let body = ExplicitBody { volume: &volume, laws: &laws, region: &[], axes: &[], groups: None };
         compare(&mut group, body, &u, volume.weights().len());
     }
     group.finish();

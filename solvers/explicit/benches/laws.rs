@@ -82,7 +82,7 @@ fn forces<'a>(
     path: LanePath,
 ) -> Vec<(&'a str, InternalForce<'a>)> {
     let force = |law: &'a Law| {
-        let body = ExplicitBody { volume, laws: std::slice::from_ref(law), region: &[], groups };
+        let body = ExplicitBody { volume, laws: std::slice::from_ref(law), region: &[], axes: &[], groups };
         (law.name(), InternalForce::new(body, path).unwrap())
     };
     laws.iter().map(force).filter(|(_, force)| force.info().kernel.is_parallel()).collect()

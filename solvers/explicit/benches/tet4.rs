@@ -233,7 +233,7 @@ fn main() {
     let solids = CELLS.map(|cells| solid(CellKind::Tet4, cells));
     let mut cubes = [0, 1, 2].map(|k| {
         let (volume, _, u) = &solids[k];
-        let body = ExplicitBody { volume, laws: &laws, region: &[], groups: None };
+        let body = ExplicitBody { volume, laws: &laws, region: &[], axes: &[], groups: None };
         let bytes = vec![1.0; 11 * volume.weights().len()];
         (InternalForce::new(body, path).unwrap(), u, vec![Vector3::zeros(); u.len()], bytes)
     });

@@ -1,7 +1,7 @@
 //! Body for explicit computation.
 
-use material::Law;
-use shape::{DilationGroups, Vector3, VolumeRows};
+use material::{AtPoint, Law};
+use shape::{DilationGroups, Matrix3, Vector3, VolumeRows};
 
 use super::error::ExplicitError;
 
@@ -14,6 +14,9 @@ pub struct ExplicitBody<'a> {
     pub laws: &'a [Law],
     /// Region index of every quadrature point; empty if all points are in region 0.
     pub region: &'a [u16],
+    /// Axes of the material at each point, as columns: fibre, sheet and normal. Empty if no law depends on
+    /// directions.
+    pub axes: &'a [Matrix3],
     /// Groups of points that share one dilation (F-bar), if any.
     pub groups: Option<&'a DilationGroups>,
 }
@@ -23,8 +26,8 @@ impl ExplicitBody<'_> {
         self.region.get(q).copied().unwrap_or(0)
     }
 
-    pub(super) fn law(&self, q: usize) -> &Law {
-        &self.laws[self.region(q) as usize]
+    pub(super) fn law(&self, q: usize) -> AtPoint<'_> {
+        AtPoint::new(&self.laws[self.region(q) as usize], self.axes.get(q))
     }
 
     /// Returns a length of the order of the smallest spacing: the inverse of the largest shape gradient, m.

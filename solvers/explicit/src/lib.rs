@@ -16,7 +16,7 @@
 //! let mesh = box_mesh(CellKind::Tet4, Point3::origin(), max, [2; 3], [1.0; 3], None)?;
 //! let volume = fem::volume_rows(&mesh, &fem::VolumeRule::STANDARD)?;
 //! let laws = [Law::NeoHookean(NeoHookean::new(20e3, 0.45)?)];
-//! let body = ExplicitBody { volume: &volume, laws: &laws, region: &[], groups: None };
+//! let body = ExplicitBody { volume: &volume, laws: &laws, region: &[], axes: &[], groups: None };
 //! let mut force = InternalForce::new(body, LanePath::best())?;
 //! let u: Vec<Vector3> = mesh.points().iter().map(|x| Vector3::new(0.0, 0.0, 0.1 * x.z)).collect();
 //! let mut f = vec![Vector3::zeros(); u.len()];

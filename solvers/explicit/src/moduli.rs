@@ -30,9 +30,12 @@ pub(super) enum LaneLaw {
 }
 
 impl LaneLaw {
-    /// Returns the laws of all regions of a body. Returns `None` if points share a dilation and a law does
-    /// not split into a part for shape change and a part for volume change.
+    /// Returns the laws of all regions of a body. Returns `None` if a law depends on directions, or if points
+    /// share a dilation and a law does not split into a part for shape change and a part for volume change.
     pub fn of_regions(body: &ExplicitBody) -> Option<Vec<LaneLaw>> {
+        if body.laws.iter().any(Law::has_axes) {
+            return None;
+        }
         let law = |law: &Law| match (law, body.groups) {
             (Law::NeoHookean(law), _) => {
                 Some(LaneLaw::NeoHookean(Moduli { mu: law.mu(), lambda: law.lambda() }))

@@ -1,4 +1,4 @@
-//! Structured meshes: boxes, balls, cylinders, sphere shells and the kidney, in every cell kind.
+//! Structured meshes: boxes, balls, cylinders, sphere shells, ventricles and the kidney, in every cell kind.
 //!
 //! Each mesh is laid out as hexahedra in a parameter space and converted there to the requested cell kind
 //! (tetrahedra by [`to_tets`], quadratic cells by [`raise_order`]). Only then all nodes are mapped to the
@@ -13,6 +13,7 @@ mod lattice;
 mod parts;
 mod shell;
 pub mod surfaces;
+mod ventricle;
 mod wedges;
 
 pub use ball::{Drawn, ball_mesh, half_kidney_mesh, kidney_mesh};
@@ -20,6 +21,7 @@ pub use boxes::{Jitter, box_mesh};
 pub use convert::{converted, is_convertible, raise_order, tets_on_nodes, to_tets, turned};
 pub use cylinder::cylinder_mesh;
 pub use shell::{ShellExtent, sphere_shell_mesh};
+pub use ventricle::{Ventricle, ventricle_mesh};
 
 use crate::element::CellKind;
 use crate::mesh::{Mesh, MeshError};

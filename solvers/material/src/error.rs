@@ -45,6 +45,14 @@ pub enum MaterialError {
         /// Exponent of the term.
         alpha: f64,
     },
+    /// A constant that is not positive and finite.
+    #[error("{name} is {value}; it must be positive and finite")]
+    Constant {
+        /// Name of the constant.
+        name: &'static str,
+        /// The value given.
+        value: f64,
+    },
     /// A Prony term that is not positive and finite.
     #[error("Prony term {} is g = {g}, tau = {tau} s; both must be positive and finite", term + 1)]
     PronyTerm {
@@ -69,6 +77,24 @@ pub enum MaterialError {
     },
 }
 
+impl MaterialError {
+    /// Checks that shear and bulk modulus (Pa) are positive and finite.
+    pub(crate) fn check_moduli(mu: f64, bulk: f64) -> Result<(), MaterialError> {
+        if !(mu > 0.0 && mu.is_finite()) {
+            return Err(MaterialError::Shear { mu });
+        }
+        if !(bulk > 0.0 && bulk.is_finite()) {
+            return Err(MaterialError::Bulk { bulk });
+        }
+        Ok(())
+    }
+
+    /// Checks that a constant is positive and finite.
+    pub(crate) fn check_positive(name: &'static str, value: f64) -> Result<(), MaterialError> {
+        if value > 0.0 && value.is_finite() { Ok(()) } else { Err(MaterialError::Constant { name, value }) }
+    }
+}
+
 /// Converts the error to a problem at the scene's parameter, if there is one.
 impl From<MaterialError> for Problem {
     fn from(bad: MaterialError) -> Problem {
@@ -78,6 +104,7 @@ impl From<MaterialError> for Problem {
             MaterialError::Bulk { .. } => Some("bulk"),
             MaterialError::Share { .. } => Some("share"),
             MaterialError::OgdenTerm { .. } => Some("alpha"),
+            MaterialError::Constant { name, .. } => Some(name),
             MaterialError::Shear { .. }
             | MaterialError::PronyTerm { .. }
             | MaterialError::PronySum { .. }

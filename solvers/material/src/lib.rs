@@ -22,6 +22,7 @@
 
 #![allow(non_snake_case)]
 
+mod at_point;
 mod error;
 mod kinematics;
 pub mod lane;
@@ -31,10 +32,12 @@ mod principal;
 mod prony;
 mod separated;
 mod spectral;
+pub mod split;
 #[cfg(test)]
 mod tests;
 mod viscoelastic;
 
+pub use at_point::AtPoint;
 pub use error::MaterialError;
 pub use kinematics::{less_ln_1p, volume_change};
 pub use law::*;

@@ -10,13 +10,19 @@ use crate::separated::Separated;
 /// index of a `Matrix3`.
 pub type Tangent = nalgebra::SMatrix<f64, 9, 9>;
 
-/// An isotropic elastic law, given by its energy per undeformed volume.
+/// An elastic law, given by its energy per undeformed volume. A law that depends on directions is written in
+/// the axes of its material: fibre, sheet and normal are the coordinate axes (see [`AtPoint`](crate::AtPoint)).
 ///
 /// For `det F <= 0` the laws with a logarithm or a power of `J` (all except the linear and the St.
 /// Venant-Kirchhoff law) return values that are not finite. Callers must check `J` first.
 pub trait Material {
     /// Whether the law is valid only for small displacement gradients, rotations included.
     fn is_small_strain(&self) -> bool {
+        false
+    }
+
+    /// Whether the law depends on directions of the material.
+    fn has_axes(&self) -> bool {
         false
     }
 

@@ -105,6 +105,11 @@ fn add_dyad(tangent: &mut Tangent, A: &Matrix3, B: &Matrix3) {
     }
 }
 
+/// Returns `sinh(x) / x`, 1 at 0.
+pub(super) fn sinh_over(x: f64) -> f64 {
+    if x == 0.0 { 1.0 } else { x.sinh() / x }
+}
+
 /// Returns `atanh(x) / x`, 1 at 0.
 fn atanh_over(x: f64) -> f64 {
     if x == 0.0 { 1.0 } else { x.atanh() / x }

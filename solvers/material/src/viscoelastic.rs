@@ -23,7 +23,8 @@ pub fn deviator(P: &Matrix3, H: &Matrix3) -> Matrix3 {
 /// ```
 ///
 /// with the elastic stress `P0` of the law. The tangent is symmetric for laws in which `p` depends on `J`
-/// alone (isochoric neo-Hookean, Hencky, Mooney-Rivlin, Ogden) and unsymmetric for the others.
+/// alone and unsymmetric for the others: Saint Venant-Kirchhoff, compressible neo-Hookean, Blatz-Ko,
+/// hyperfoam and corotational.
 pub fn relaxed_stress_and_tangent(
     law: &impl Material,
     H: &Matrix3,

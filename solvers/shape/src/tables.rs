@@ -330,4 +330,15 @@ impl FluxRows {
     pub fn normals(&self) -> &[Vector3] {
         &self.normals
     }
+
+    /// Returns the directed areas `w cof(F) n` (m^2) of the surface deformed by the nodal parameters `u` (m).
+    pub fn directed_areas(&self, u: &[Vector3]) -> Vec<Vector3> {
+        let area = |q: usize| {
+            let f = Matrix3::identity() + self.at.displacement_gradient(q, u);
+            let [a, b, c] = [0, 1, 2].map(|k| Vector3::from(f.column(k)));
+            let n = self.normals[q] * self.weights[q];
+            b.cross(&c) * n.x + c.cross(&a) * n.y + a.cross(&b) * n.z
+        };
+        (0..self.weights.len()).map(area).collect()
+    }
 }

@@ -34,8 +34,17 @@ fn benches(c: &mut Criterion) {
         for (how, systems) in [("factored", LinearSystems::Factored), ("iterated", iterated)] {
             let problem = StaticProblem {
                 nodes: pressed.mesh.points(),
-                solid: Solid { volume: &pressed.volume, laws: &laws, region: &[], dilation },
+                solid: Solid {
+                    volume: &pressed.volume,
+                    laws: &laws,
+                    region: &[],
+                    axes: &[],
+                    active: &[],
+                    activation: 1.0,
+                    dilation,
+                },
                 loads: &loads,
+                following: &[],
                 fixed: &pressed.fixed,
                 penalties: &[],
                 contact: None,

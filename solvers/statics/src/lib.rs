@@ -92,8 +92,9 @@ pub use implicit::{
 pub use load::{Load, nodal_forces};
 pub use modes::{ALL_MODES_LIMIT, Modes, lowest_modes, modes};
 pub use nonlinear::{
-    Frames, Inverted, Iteration, LinearSystems, NewtonParams, PenaltySurface, Rest, Solid, SolidDilation,
-    StaticError, StaticParams, StaticPath, StaticProblem, StaticWork, Step, Worst, solve_static,
+    FollowingPressure, Frames, Inverted, Iteration, LinearSystems, NewtonParams, PenaltySurface, Rest, Solid,
+    SolidDilation, StaticError, StaticParams, StaticPath, StaticProblem, StaticWork, Step, Worst,
+    solve_static,
 };
 pub use problem::{Assembled, LinearProblem, assemble};
 pub use recover::{body_stress, mean_pressure, strain_energy, stress};

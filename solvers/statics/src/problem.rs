@@ -1,7 +1,7 @@
 //! A linear problem and its assembly.
 
 use algebra::{BlockPattern, Connectivity, Incidence, Stiffness};
-use shape::{FixedDof, Vector3};
+use shape::{FixedDof, Point3, Resultant, Vector3};
 
 use crate::assembly::add_volume;
 use crate::body::{LinearBody, check_len};
@@ -78,13 +78,15 @@ impl Pointwise {
         }
     }
 
-    /// Returns the resultant (N) of the forces that each weak support exerts on the body, at nodal parameters
+    /// Returns the resultant of the forces that each weak support exerts on the body, at nodal parameters
     /// `u` (m) and `factor` times the prescribed values.
-    pub fn resultants(&self, u: &[Vector3], factor: f64) -> Vec<Vector3> {
+    pub fn resultants(&self, nodes: &[Point3], u: &[Vector3], factor: f64) -> Vec<Resultant> {
         let each = self.weak.iter().map(|(table, of)| {
             let mut forces = vec![Vector3::zeros(); u.len()];
             table.subtract_residual(of, u, factor, &mut forces);
-            forces.iter().sum()
+            let mut sum = Resultant::default();
+            nodes.iter().zip(&forces).for_each(|(x, force)| sum.add(x, force));
+            sum
         });
         each.collect()
     }

@@ -1,7 +1,7 @@
 //! Factorisation and solution of an assembled problem.
 
 use algebra::{DENSE_LIMIT, FactorError, Factorization, Multigrid, Solved, SolverPath, Stiffness, Symmetric};
-use shape::{Coarser, Vector3};
+use shape::{Coarser, Point3, Resultant, Vector3};
 
 use crate::body::check_len;
 use crate::error::SolveError;
@@ -405,22 +405,24 @@ impl<'a> Factored<'a> {
         out
     }
 
-    /// Returns the resultant (N) of the forces that each constraint row exerts on the body: `-lambda_k c_k`,
-    /// summed along each axis.
-    pub fn forces_of_rows(&self, solution: &Solution) -> Vec<Vector3> {
+    /// Returns the resultant of the forces that each constraint row exerts on the body with these `nodes` (m):
+    /// `-lambda_k c_k` along each axis.
+    pub fn forces_of_rows(&self, nodes: &[Point3], solution: &Solution) -> Vec<Resultant> {
         let each = self.problem.rows.iter().zip(&solution.multipliers);
         each.map(|(row, lambda)| {
-            row.terms.iter().fold(Vector3::zeros(), |mut sum, &(dof, c)| {
-                sum[dof % 3] -= lambda * c;
-                sum
-            })
+            let mut sum = Resultant::default();
+            for &(dof, c) in &row.terms {
+                sum.add(&nodes[dof / 3], &Vector3::ith(dof % 3, -lambda * c));
+            }
+            sum
         })
         .collect()
     }
 
-    /// Returns the resultant (N) of the forces that each weak support exerts on the body.
-    pub fn forces_of_weak(&self, solution: &Solution, factor: f64) -> Vec<Vector3> {
-        self.problem.pointwise.as_ref().map_or_else(Vec::new, |forms| forms.resultants(&solution.u, factor))
+    /// Returns the resultant of the forces that each weak support exerts on the body with these `nodes` (m).
+    pub fn forces_of_weak(&self, nodes: &[Point3], solution: &Solution, factor: f64) -> Vec<Resultant> {
+        let forms = self.problem.pointwise.as_ref();
+        forms.map_or_else(Vec::new, |forms| forms.resultants(nodes, &solution.u, factor))
     }
 
     /// Stiffness before elimination.

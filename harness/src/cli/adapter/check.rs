@@ -43,7 +43,7 @@ const LOADED: &str = "support = [{ on = \"z-min\", fix = \"xyz\" }, { on = \"z-m
     load = [{ on = \"z-max\", pressure = \"0.4 kPa\" }, { body = [\"100 N/m^3\", \"0 N/m^3\", \"-500 N/m^3\"] }]\n\
     reference = { method = \"ours\" }\n";
 const HELD: &str = "support = [{ on = \"z-min\", fix = \"xyz\" }]\n\
-    load = [{ on = \"z-max\", pressure = \"2 kPa\" }, { on = \"x-max\", traction = [\"0.5 kPa\", \"0.2 kPa\", \"0 kPa\"] }]\n\
+    load = [{ on = \"z-max\", pressure = \"2 kPa\", dead = true }, { on = \"x-max\", traction = [\"0.5 kPa\", \"0.2 kPa\", \"0 kPa\"] }]\n\
     procedure = { kind = \"static\", steps = 4, tolerance = 1e-10 }\nreference = { method = \"ours\" }\n";
 
 const CASES: [Case; 6] = [

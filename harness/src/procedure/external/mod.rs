@@ -9,6 +9,7 @@ use cases::scene::Procedure;
 use catalogue::metric;
 use geometry::{Matrix3, Vector3};
 use material::{Law, Material as _};
+use shape::Resultant;
 
 use super::problem::Problem;
 use super::solution::{OfProgram, Solution, StepHistory};
@@ -101,7 +102,7 @@ pub(crate) fn taken(problem: &Problem, fields: Vec<Vec<Vector3>>, end: f64) -> R
     let u = fields.into_iter().next_back().unwrap_or_default();
     let inner = is_of_nodes(problem).then(|| inner_forces(problem, &u));
     let residual = inner.as_ref().map(|inner| residual(problem, &outer, inner, load));
-    let supports = inner.map_or_else(Vec::new, |inner| supports(problem, &outer, &inner, load));
+    let supports = inner.map_or_else(Vec::new, |inner| supports(problem, &u, &outer, &inner, load));
     Ok(Solution { u, supports, dofs: problem.free_dofs(), residual, history, ..Solution::default() })
 }
 
@@ -135,7 +136,7 @@ fn history(problem: &Problem, outer: &[Vector3], fields: &[Vec<Vector3>], end: f
         .map(|(step, u)| {
             let (energy, smallest_j) = energy(problem, u);
             let load = end * f64::from(step) / count;
-            let supported = of_nodes.then(|| supports(problem, outer, &inner_forces(problem, u), load));
+            let supported = of_nodes.then(|| supports(problem, u, outer, &inner_forces(problem, u), load));
             LoadStep {
                 load,
                 strain_energy: Some(energy).filter(|energy| plain && energy.is_finite()),
@@ -166,13 +167,20 @@ fn residual(problem: &Problem, outer: &[Vector3], inner: &[Vector3], load: f64) 
     if largest > 0.0 { size(&left) / largest } else { 0.0 }
 }
 
-/// Force of each support on the body from the internal forces at this load fraction, N; empty if a force is
-/// not finite.
-fn supports(problem: &Problem, outer: &[Vector3], inner: &[Vector3], load: f64) -> Vec<Vector3> {
+/// Resultant of each support's forces on the body from the internal forces at this load fraction; empty if a
+/// force is not finite.
+fn supports(
+    problem: &Problem,
+    u: &[Vector3],
+    outer: &[Vector3],
+    inner: &[Vector3],
+    load: f64,
+) -> Vec<Resultant> {
     let nodes: Vec<Vector3> = inner.iter().zip(outer).map(|(inner, outer)| inner - outer * load).collect();
-    let forces = ConditionForces { nodes: &nodes, rows: &[], weak: &[] };
+    let at = |i: usize| problem.method.nodes()[i] + u[i];
+    let forces = ConditionForces { at: &at, nodes: &nodes, rows: &[], weak: &[] };
     let found = problem.prepared.support_forces(&forces);
-    if found.iter().all(|force| force.iter().all(|f| f.is_finite())) { found } else { Vec::new() }
+    if found.iter().all(|sum| sum.force.iter().all(|f| f.is_finite())) { found } else { Vec::new() }
 }
 
 /// Internal nodal forces by this program's own elements, N.

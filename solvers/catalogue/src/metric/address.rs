@@ -10,15 +10,18 @@ use crate::problem::Problem;
 
 /// Components of a vector, in the order of coordinates.
 const COMPONENTS: [&str; 3] = ["x", "y", "z"];
+/// Components of a symmetric tensor, in the order of tables.
+const TENSOR: [&str; 6] = ["xx", "yy", "zz", "xy", "yz", "zx"];
 
 /// One number of a metric in a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Address {
     /// Metric.
     pub metric: &'static Metric,
-    /// Component of a vector: `x`, `y` or `z`; empty for its magnitude and for a scalar.
+    /// Component of a vector (`x`, `y` or `z`) or of a symmetric tensor (`xx` to `zx`); empty for the
+    /// magnitude of a vector and for a scalar.
     pub component: &'static str,
-    /// Number of the tool, support or face, from 1; `None` if the metric is that of the whole run.
+    /// Number of the tool, support, face or point, from 1; `None` if the metric is that of the whole run.
     pub index: Option<u64>,
 }
 
@@ -46,16 +49,23 @@ impl Metric {
         [x, y, z, self.whole()]
     }
 
-    /// Returns the addresses that this metric has in a run with one tool, support or face.
+    /// Returns the addresses of the components xx, yy, zz, xy, yz and zx.
+    pub fn tensor(&'static self) -> [Address; 6] {
+        TENSOR.map(|component| Address { component, ..self.whole() })
+    }
+
+    /// Returns the addresses that this metric has in a run with one tool, support, face or point.
     pub fn addresses(&'static self) -> impl Iterator<Item = Address> {
-        [self.whole()].into_iter().chain(self.components()).filter(|of| match self.shape {
-            Shape::Scalar => of.component.is_empty(),
-            Shape::Vector => true,
-            Shape::Components => !of.component.is_empty(),
+        let all = [self.whole()].into_iter().chain(self.components()).chain(self.tensor());
+        all.filter(|of| match (self.shape, of.component.len()) {
+            (Shape::Scalar, length) => length == 0,
+            (Shape::Vector, length) => length < 2,
+            (Shape::Components, length) => length == 1,
+            (Shape::Tensor, length) => length == 2,
         })
     }
 
-    /// Returns the address of the number of one tool, support or face, whose position in its list counts
+    /// Returns the address of the number of one tool, support, face or point, whose position in its list counts
     /// from 0.
     pub const fn at(&'static self, position: usize) -> Address {
         self.whole().at(position)
@@ -63,7 +73,7 @@ impl Metric {
 }
 
 impl Address {
-    /// Returns the same address for one tool, support or face, whose position in its list counts from 0.
+    /// Returns the same address for one tool, support, face or point, whose position in its list counts from 0.
     pub const fn at(self, position: usize) -> Address {
         Address { index: Some(position as u64 + 1), ..self }
     }
@@ -72,6 +82,7 @@ impl Address {
     pub fn label(&self) -> String {
         match self.component {
             "" => self.metric.label.into(),
+            component if component.len() > 1 => format!("{} {component}", self.metric.label),
             component => format!("{} along {component}", self.metric.label),
         }
     }
@@ -90,7 +101,7 @@ impl fmt::Display for Address {
 }
 
 /// Returns an address in one word: the name of the metric, its component if there is one, and the number of
-/// its tool, support or face from 2 on.
+/// its tool, support, face or point from 2 on.
 pub fn address(metric: &str, component: &str, index: Option<u64>) -> String {
     let component = if component.is_empty() { String::new() } else { format!("-{component}") };
     let index = index.filter(|index| *index > 1).map_or(String::new(), |index| format!("-{index}"));
@@ -104,7 +115,7 @@ pub fn find(name: &str) -> Option<Address> {
         _ => (name, 1),
     };
     let (bare, component) = match rest.rsplit_once('-') {
-        Some((bare, end)) if COMPONENTS.contains(&end) => (bare, end),
+        Some((bare, end)) if COMPONENTS.contains(&end) || TENSOR.contains(&end) => (bare, end),
         _ => (rest, ""),
     };
     let metric = METRICS.iter().copied().find(|metric| metric.name == bare)?;
@@ -144,7 +155,7 @@ pub fn named(name: &str) -> Result<Address, Problem> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{REACTION, RMS, TOOL_FORCE};
+    use super::super::{PROBE_STRESS, REACTION, RMS, TOOL_FORCE};
     use super::*;
 
     #[test]
@@ -162,9 +173,15 @@ mod tests {
                 }
             }
         }
-        let written = [RMS.whole(), RMS.components()[0], TOOL_FORCE.at(1), REACTION.components()[1].at(2)]
-            .map(|address| address.to_string());
-        assert_eq!(written, ["rms", "rms-x", "tool-force-2", "reaction-y-3"]);
+        let written = [
+            RMS.whole(),
+            RMS.components()[0],
+            TOOL_FORCE.at(1),
+            REACTION.components()[1].at(2),
+            PROBE_STRESS.tensor()[3].at(1),
+        ]
+        .map(|address| address.to_string());
+        assert_eq!(written, ["rms", "rms-x", "tool-force-2", "reaction-y-3", "probe-stress-xy-2"]);
     }
 
     #[test]
@@ -175,6 +192,9 @@ mod tests {
             "tool-force-+2",
             "rms-2",
             "rms-w",
+            "rms-xx",
+            "probe-stress",
+            "probe-stress-x",
             "reaction",
             "l2-x",
             "force",

@@ -39,7 +39,7 @@ pub enum Kind {
     Count,
     /// One value per tool, numbered from 1.
     Tool,
-    /// One value per support, or per face with a requested mean, numbered like the tools.
+    /// One value per support, face, point or volume of a list in the scene, numbered like the tools.
     Place,
 }
 
@@ -52,6 +52,8 @@ pub enum Shape {
     Vector,
     /// Components along x, y and z.
     Components,
+    /// Components xx, yy, zz, xy, yz and zx of a symmetric tensor.
+    Tensor,
 }
 
 /// Requirement for computing a metric.
@@ -95,8 +97,18 @@ pub enum Needs {
     StepsReference,
     /// A support.
     Support,
+    /// A support, and a point for moments.
+    SupportMoment,
+    /// A tool, and a point for moments.
+    ToolMoment,
     /// A face with a requested mean.
     Mean,
+    /// Probes.
+    Point,
+    /// A point with a requested stretch.
+    Stretch,
+    /// A surface with a requested volume.
+    Enclosed,
     /// Dynamics with probes.
     Motion,
     /// Dynamics with probes, and an exact solution that depends on time.
@@ -114,7 +126,7 @@ impl Metric {
         matches!(self.kind, Kind::Error | Kind::Cost | Kind::Phase(_))
     }
 
-    /// Whether a run has a number for each of its tools, supports or faces.
+    /// Whether a run has a number for each of its tools, supports, faces or points.
     pub const fn is_numbered(&self) -> bool {
         matches!(self.kind, Kind::Tool | Kind::Place)
     }

@@ -137,6 +137,22 @@ metrics! {
         "force of a support on the body, at the end; the forces of all supports, loads and tools are in equilibrium";
     MEAN: "mean", "mean displacement", Length, Place, Mean, Components,
         "area-weighted mean displacement of a face listed in output.means, at the end";
+    TOOL_MOMENT: "tool-moment", "moment on a tool", Moment, Tool, ToolMoment, Components,
+        "moment of the tissue on a tool about output.moments_about, at the end";
+    REACTION_MOMENT: "reaction-moment", "moment of a support", Moment, Place, SupportMoment, Components,
+        "moment of a support on the body about output.moments_about, at the end";
+    // Points and volumes.
+    PROBE: "probe", "displacement of a point", Length, Place, Point, Vector,
+        "displacement of a point of output.probes, at the end";
+    POSITION: "position", "position of a point", Length, Place, Point, Components,
+        "deformed position of a point of output.probes, at the end";
+    PROBE_STRESS: "probe-stress", "stress of a point", Pressure, Place, Point, Tensor,
+        "recovered Cauchy stress of a point of output.probes, at the end; none for viscoelastic tissue";
+    STRETCH: "stretch", "stretch of a point", None, Place, Stretch,
+        "ratio of deformed to undeformed length along the direction and at the point of an entry of \
+         output.stretches, at the end";
+    ENCLOSED_VOLUME: "enclosed-volume", "enclosed volume", Volume, Place, Enclosed,
+        "volume enclosed by a surface of output.volumes, at the end";
     // Load steps, Newton's method, relaxation.
     LOAD_CARRIED: "load-carried", "applied load fraction", None, Value, Steps,
         "fraction of the load that was reached, 0 to 1";

@@ -52,7 +52,7 @@ impl Body {
     }
 
     pub fn force<'a>(&'a self, laws: &'a [Law]) -> InternalForce<'a> {
-        let body = ExplicitBody { volume: &self.volume, laws, region: &[], groups: None };
+        let body = ExplicitBody { volume: &self.volume, laws, region: &[], axes: &[], groups: None };
         InternalForce::new(body, LanePath::best()).unwrap()
     }
 

@@ -30,8 +30,21 @@ pub fn cylinder_mesh(
 ) -> Result<Mesh, GenerateError> {
     check_positive("the radius", radius)?;
     check_positive("the height", height)?;
+    upright(kind, cells, grading, surfaces::CYLINDER, |[x, y], z| {
+        Point3::new(radius * x, radius * y, height * z)
+    })
+}
+
+/// Meshes the image of the cylinder of radius 1 and height 1 under `map`, which takes a point of the unit disc
+/// and a height. `names` are those of the side, the bottom and the top.
+pub(super) fn upright(
+    kind: CellKind,
+    [n, along]: [usize; 2],
+    grading: f64,
+    [side, bottom, top]: [&str; 3],
+    map: impl Fn([f64; 2], f64) -> Point3,
+) -> Result<Mesh, GenerateError> {
     check_positive("the grading", grading)?;
-    let [n, along] = cells;
     check_cells("the number of cells across the cylinder", n)?;
     check_cells("the number of cells along the cylinder", along)?;
     let layers = n.div_ceil(2);
@@ -58,16 +71,12 @@ pub fn cylinder_mesh(
             mesh.hexahedron(lattice::CORNERS.map(key), place);
         }
     }
-    let [side, bottom, top] = surfaces::CYLINDER;
     let mesh = mesh.finish(&[
         (side, &|q: &Point3| q.x.abs().max(q.y.abs()) == 1.0),
         (bottom, &|q: &Point3| q.z == 0.0),
         (top, &|q: &Point3| q.z == 1.0),
     ])?;
-    Ok(into_kind(mesh, kind).moved(|q| {
-        let [x, y] = onto_disc(q.x, q.y);
-        Point3::new(radius * x, radius * y, height * q.z)
-    })?)
+    Ok(into_kind(mesh, kind).moved(|q| map(onto_disc(q.x, q.y), q.z))?)
 }
 
 /// Maps the square [-1, 1]^2 onto the unit disc. The map is continuous, and smooth within each of the five

@@ -12,6 +12,9 @@ pub const BALL: [&str; 1] = ["surface"];
 /// Additional facet groups of half a kidney: the cut z = 0.
 pub const HALF: [&str; 1] = ["symmetry"];
 
+/// Facet groups of a ventricle: the cut, and the inner and the outer wall.
+pub const VENTRICLE: [&str; 3] = ["base", "inner", "outer"];
+
 /// Facet groups of a sphere shell: the inner and the outer sphere.
 pub const SHELL: [&str; 2] = ["inner", "outer"];
 

@@ -4,7 +4,9 @@
 //! Optional capabilities (lanes, a split into shape and volume) have defaults in [`Material`] that are
 //! correct for any law but slower.
 
+mod isochoric;
 mod moduli;
+mod of_strain;
 
 use catalogue::{Build, Entry, Problem, Value, Values};
 use shape::Matrix3;
@@ -107,6 +109,12 @@ macro_rules! laws {
                 }
             }
 
+            fn has_axes(&self) -> bool {
+                match self {
+                    $(Law::$law(law) => law.has_axes(),)*
+                }
+            }
+
             fn mu(&self) -> f64 {
                 match self {
                     $(Law::$law(law) => Material::mu(law),)*
@@ -130,15 +138,29 @@ laws! {
     hencky::Hencky,
     mooney_rivlin::MooneyRivlin,
     ogden::Ogden,
+    fung_demiray::FungDemiray,
+    gent::Gent,
+    yeoh::Yeoh,
+    polynomial::Polynomial,
+    blatz_ko::BlatzKo,
+    hyperfoam::Hyperfoam,
+    corotational::Corotational,
+    guccione::Guccione,
 }
 
 /// Shares of the shear modulus and exponents of a rubber in Ogden's law, for [`Law::all`].
 pub(crate) const OGDEN: [(f64, f64); 3] = [(0.7, 1.3), (0.1, 5.0), (0.2, -2.0)];
 /// Share of the second Mooney-Rivlin constant, for [`Law::all`].
 pub(crate) const SECOND: f64 = 0.3;
+/// Exponent of Demiray's law and limit of Gent's law, for [`Law::all`].
+const STIFFENING: f64 = 0.2;
+const LONGEST: f64 = 60.0;
+/// Laws that [`Law::all`] leaves out: those of foams, whose volumetric terms have the power `nu / (1 - 2 nu)`
+/// of `J` and explode as the material becomes incompressible, and those that depend on directions.
+const OTHER_MODULI: [&str; 3] = ["blatz-ko", "hyperfoam", "guccione"];
 
 impl Law {
-    /// Returns every law with the same moduli at small strain, in the order of tables, for tests of common
+    /// Returns the isotropic laws, without those of foams, with the same moduli at small strain, in the order of tables, for tests of common
     /// properties. Parameters other than Young's modulus (Pa) and Poisson's ratio have their defaults, or
     /// values of a rubber.
     pub fn all(young: f64, poisson: f64) -> Result<Vec<Law>, Problem> {
@@ -151,6 +173,15 @@ impl Law {
                 give("young", Value::Number(young))?;
                 give("poisson", Value::Number(poisson))?;
                 give("share", Value::Number(SECOND))?;
+                give("b", Value::Number(STIFFENING))?;
+                give("jm", Value::Number(LONGEST))?;
+            } else if entry.parameter("alpha").is_none() {
+                let half = 0.5 * hooke.mu();
+                give("poisson", Value::Number(poisson))?;
+                give("c", Value::List(vec![half, 0.1 * half, 0.02 * half]))?;
+                for (name, part) in [("c10", 0.8), ("c01", 0.2), ("c20", 0.1), ("c11", 0.05), ("c03", 0.01)] {
+                    give(name, Value::Number(part * half))?;
+                }
             } else {
                 let mu = OGDEN.map(|(share, alpha)| 2.0 * share * hooke.mu() / alpha);
                 give("mu", Value::List(mu.into()))?;
@@ -159,6 +190,6 @@ impl Law {
             }
             (entry.build)(&values)
         };
-        LAWS.iter().map(sample).collect()
+        LAWS.iter().filter(|entry| !OTHER_MODULI.contains(&entry.name)).map(sample).collect()
     }
 }

@@ -108,6 +108,11 @@ impl MooneyRivlin {
         self.c01
     }
 
+    /// Returns the law with the slopes of an energy as constants (Pa), which need not be positive.
+    pub(super) fn with_slopes([c10, c01]: [f64; 2], bulk: f64) -> MooneyRivlin {
+        MooneyRivlin { c10, c01, bulk }
+    }
+
     fn moduli(&self, k: &Kinematics) -> Moduli {
         let a = (-2.0 / 3.0 * k.ln_j()).exp();
         Moduli { J: 1.0 + k.j, first: 2.0 * self.c10 * a, second: 2.0 * self.c01 * a * a }

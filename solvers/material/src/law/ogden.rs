@@ -13,7 +13,7 @@ use crate::lane::series::{self, BOUNDS, Power, unrolled};
 use crate::lane::stretch::{Stretch, pair_of, pairs, squared};
 use crate::lane::{LaneStrain, Lanes};
 use crate::material::{Material, Tangent, Volumetric, one_by_one};
-use crate::principal::{Principal, Slopes};
+use crate::principal::{Principal, Slopes, sinh_over};
 use crate::separated::Separated;
 
 /// Ogden's law `W = sum_p mu_p / alpha_p (l_1^alpha_p + l_2^alpha_p + l_3^alpha_p - 3) + (J - 1)^2 / D1` with
@@ -279,11 +279,6 @@ fn stress<const FMA: bool, const N: usize>(
 fn isochoric(log: &[f64; 3]) -> [f64; 3] {
     let mean = (log[0] + log[1] + log[2]) / 3.0;
     log.map(|e| e - mean)
-}
-
-/// Returns `sinh(x) / x`, 1 at 0.
-fn sinh_over(x: f64) -> f64 {
-    if x == 0.0 { 1.0 } else { x.sinh() / x }
 }
 
 #[cfg(test)]

@@ -2,6 +2,7 @@
 
 mod closed_forms;
 mod lane;
+mod others;
 mod properties;
 mod viscoelastic;
 

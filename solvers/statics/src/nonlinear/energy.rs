@@ -2,6 +2,7 @@
 //! Internal energy of a body, with its first and second derivatives.
 
 use material::Material;
+use material::split::{Split, add_dilation_hessian, cofactor, flat};
 use rayon::prelude::*;
 use shape::{Matrix3, Vector3};
 
@@ -10,7 +11,6 @@ use super::groups::Pairs;
 use super::lanes::{GroupHessian, PointTangent};
 use super::shared::Shared;
 use super::solid::{Kinematics, Solid, SolidDilation};
-use super::split::{Split, add_dilation_hessian, cofactor, flat};
 
 /// First derivatives of the energy.
 pub(crate) struct Internal {
@@ -53,7 +53,7 @@ impl Solid<'_> {
                 .into_par_iter()
                 .with_min_len(128)
                 .map(|q| {
-                    let law = self.law(q);
+                    let law = &self.law(q);
                     (law.stress(&H[q]) * weights[q], law.energy(&H[q]) * weights[q])
                 })
                 .unzip(),
@@ -66,7 +66,7 @@ impl Solid<'_> {
                     .into_par_iter()
                     .with_min_len(64)
                     .map(|q| {
-                        let law = self.law(q);
+                        let law = &self.law(q);
                         let theta = self.mixed_dilation(q, &H[q], j_minus_1[q], p[q])?;
                         let split = Split::new(law, &H[q], j_minus_1[q], theta);
                         let cof = cofactor(law.is_small_strain(), &H[q]);
@@ -109,7 +109,7 @@ impl Solid<'_> {
                 let p = self.pressures(rows, p);
                 let each: Vec<(PointTangent, (Matrix3, f64))> = points
                     .map(|q| {
-                        let law = self.law(q);
+                        let law = &self.law(q);
                         let theta = self.mixed_dilation(q, &H[q], j_minus_1[q], p[q])?;
                         let (_, second) = Split::new(law, &H[q], j_minus_1[q], theta).second(law);
                         let by_p = second.by_F_theta / second.by_theta_theta;

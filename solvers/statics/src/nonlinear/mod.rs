@@ -3,6 +3,7 @@
 
 mod energy;
 mod error;
+mod following;
 mod frames;
 mod group_means;
 mod groups;
@@ -29,6 +30,7 @@ pub(crate) use stepper::{Attempt, Stepper};
 pub(crate) use system::SurfaceTable;
 
 pub use error::{Inverted, StaticError, Worst};
+pub use following::FollowingPressure;
 pub use frames::Frames;
 pub use newton::{Iteration, NewtonParams};
 pub use problem::{LinearSystems, PenaltySurface, StaticProblem};

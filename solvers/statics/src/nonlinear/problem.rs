@@ -3,6 +3,7 @@
 use contact::{ContactSurface, DrivenTool};
 use shape::{Coarser, FixedDof, Point3, SurfaceRows, Vector3};
 
+use super::following::FollowingPressure;
 use super::solid::Solid;
 use crate::load::Load;
 
@@ -33,16 +34,18 @@ pub enum LinearSystems<'a> {
     },
 }
 
-/// A body with loads, supports and tools. Loads are dead loads (per reference area or volume). Loads,
-/// prescribed displacements and drives grow in proportion to the time, 0 to 1.
+/// A body with loads, supports and tools. Loads, pressures, prescribed displacements and drives grow in
+/// proportion to the time, 0 to 1.
 #[derive(Clone, Debug)]
 pub struct StaticProblem<'a> {
     /// Reference positions, m.
     pub nodes: &'a [Point3],
     /// The body.
     pub solid: Solid<'a>,
-    /// Loads, which are summed.
+    /// Dead loads (per reference area or volume), which are summed.
     pub loads: &'a [Load<'a>],
+    /// Pressures on the deformed surface.
+    pub following: &'a [FollowingPressure],
     /// Prescribed nodal parameters.
     pub fixed: &'a [FixedDof],
     /// Surfaces constrained by penalty.

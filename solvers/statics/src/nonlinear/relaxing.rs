@@ -5,7 +5,8 @@
 //! `d psi / dF`, which is `F S_dev`. The sum over the dilation groups of a point is linear in this stress, so
 //! one history per point suffices. Source: Simo and Hughes, Computational Inelasticity, section 10.3.
 
-use material::{Law, Material as _, Prony, PronyStep, Tangent};
+use material::split::{Split, cofactor, flat};
+use material::{AtPoint, Material as _, Prony, PronyStep, Tangent};
 use rayon::prelude::*;
 use shape::{Matrix3, Vector3};
 
@@ -14,7 +15,6 @@ use super::error::StaticError;
 use super::groups::Pairs;
 use super::lanes::PointTangent;
 use super::solid::{Solid, SolidDilation};
-use super::split::{Split, cofactor, flat};
 
 /// Stress history of all points of a body.
 #[derive(Clone, Debug)]
@@ -105,7 +105,7 @@ impl<'a> Memory<'a> {
 
 /// A point with its projected volume change: `H`, `J - 1` and pairs (share, `theta - 1`) of the dilations.
 struct Point<'a> {
-    law: &'a Law,
+    law: AtPoint<'a>,
     H: Matrix3,
     splits: Vec<(f64, Split)>,
 }
@@ -124,7 +124,7 @@ impl Relaxing {
         let change = points(solid, pairs, u, p, |q, point| {
             let small = point.law.is_small_strain();
             let elastic: Matrix3 =
-                point.splits.iter().map(|(share, split)| split.first(point.law).by_F * *share).sum();
+                point.splits.iter().map(|(share, split)| split.first(&point.law).by_F * *share).sum();
             let (S, carried) = if small {
                 (elastic, self.carried[q])
             } else {
@@ -161,7 +161,7 @@ impl Relaxing {
             let small = point.law.is_small_strain();
             let mut D = Tangent::zeros();
             for (share, split) in &point.splits {
-                let (_, second) = split.second(point.law);
+                let (_, second) = split.second(&point.law);
                 D += second.by_FF * (share * less);
                 if matches!(solid.dilation, SolidDilation::Standard) {
                     let mixed = flat(&second.by_F_theta);
@@ -211,7 +211,7 @@ fn points<T: Send>(
         .with_min_len(64)
         .map(|q| {
             let law = solid.law(q);
-            let split = |theta_minus_1: f64| Split::new(law, &H[q], j_minus_1[q], theta_minus_1);
+            let split = |theta_minus_1: f64| Split::new(&law, &H[q], j_minus_1[q], theta_minus_1);
             let splits = match solid.dilation {
                 SolidDilation::Standard => vec![(1.0, split(j_minus_1[q]))],
                 SolidDilation::Groups(_) => (pairs.expect("groups have pairs").of(q).iter())

@@ -6,6 +6,7 @@
 //! every pair of group and point.
 
 use lanes::LanePath;
+use material::split::{Split, add_dilation_hessian, cofactor};
 use material::{Material, Separated, Tangent};
 use rayon::prelude::*;
 use shape::{DilationGroups, Matrix3, Vector3};
@@ -14,7 +15,6 @@ use super::error::Inverted;
 use super::groups::Pairs;
 use super::lanes::{GroupHessian, GroupRow, Lanes, PointTangent, add_row};
 use super::solid::{Kinematics, Solid};
-use super::split::{Split, add_dilation_hessian, cofactor};
 
 /// Groups per task.
 const GROUPS: usize = 8;
@@ -81,7 +81,7 @@ impl<'a> Shared<'a> {
 
     /// Returns the split of `F_q` for the dilation `theta`.
     fn split(&self, q: usize, theta_minus_1: f64) -> Split {
-        Split::new(self.solid.law(q), &self.kinematics.H[q], self.kinematics.j_minus_1[q], theta_minus_1)
+        Split::new(&self.solid.law(q), &self.kinematics.H[q], self.kinematics.j_minus_1[q], theta_minus_1)
     }
 
     fn cofactor(&self, q: usize) -> Matrix3 {
@@ -101,7 +101,7 @@ impl<'a> Shared<'a> {
     fn stress_by_point(&self, parts: &[Separated]) -> (Vec<Matrix3>, Vec<f64>) {
         let weights = self.solid.volume.weights();
         let shape: Vec<(Matrix3, f64)> = self.points(|q| {
-            let law = self.solid.law(q);
+            let law = &self.solid.law(q);
             let split = self.split(q, 0.0);
             (split.first(law).by_F, split.energy(law))
         });
@@ -120,7 +120,7 @@ impl<'a> Shared<'a> {
     fn stress_by_pair(&self) -> (Vec<Matrix3>, Vec<f64>) {
         let weights = self.solid.volume.weights();
         let each: Vec<(Matrix3, f64, Vec<f64>)> = self.points(|q| {
-            let law = self.solid.law(q);
+            let law = &self.solid.law(q);
             let (mut P, mut energy) = (Matrix3::zeros(), 0.0);
             let mut mean_stress = Vec::with_capacity(self.pairs.of(q).len());
             for &(a, share) in self.pairs.of(q) {
@@ -148,7 +148,7 @@ impl<'a> Shared<'a> {
             .into_par_iter()
             .with_min_len(64)
             .map(|q| {
-                let law = self.solid.law(q);
+                let law = &self.solid.law(q);
                 let split = self.split(q, 0.0);
                 let (first, second) = split.second(law);
                 let scale = self.at_point(q, |a| parts[a].A[0]);
@@ -200,7 +200,7 @@ impl<'a> Shared<'a> {
         let weights = self.solid.volume.weights();
         let (point, each): (Vec<PointTangent>, Vec<Vec<PairSecond>>) = self
             .points(|q| {
-                let law = self.solid.law(q);
+                let law = &self.solid.law(q);
                 let mut D = Tangent::zeros();
                 let mut of_pair = Vec::with_capacity(self.pairs.of(q).len());
                 for &(a, share) in self.pairs.of(q) {

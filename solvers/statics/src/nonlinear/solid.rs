@@ -1,13 +1,14 @@
 #![allow(non_snake_case)] // F, H, J, P as in the formulas
 //! A body at finite (or small) strain, for any law and any projection of the volume change.
 
-use material::{Law, Material};
+use material::split::dilation;
+use material::{AtPoint, Law, Material};
 use rayon::prelude::*;
 use shape::{DilationGroups, Matrix3, Rows, Vector3, VolumeRows};
 
 use super::error::{Inverted, StaticError};
 use super::groups::Pairs;
-use super::split::{dilation, dilation_at_pressure};
+use super::split::dilation_at_pressure;
 
 /// Treatment of the volume change.
 #[derive(Clone, Copy, Debug)]
@@ -31,6 +32,13 @@ pub struct Solid<'a> {
     pub laws: &'a [Law],
     /// Region of each point; empty if all points are in region 0.
     pub region: &'a [u16],
+    /// Axes of the material at each point, as columns: fibre, sheet and normal directions. Empty if no law
+    /// depends on directions.
+    pub axes: &'a [Matrix3],
+    /// Active stress along the fibre by region at the end of the loading, Pa; empty if no region contracts.
+    pub active: &'a [f64],
+    /// Fraction of the active stress that acts; loads and active stress grow together.
+    pub activation: f64,
     /// Projection of the volume change.
     pub dilation: SolidDilation<'a>,
 }
@@ -44,8 +52,13 @@ pub(super) struct Kinematics {
 
 impl Solid<'_> {
     /// Returns the law at a point.
-    pub(crate) fn law(&self, q: usize) -> &Law {
-        &self.laws[self.region.get(q).copied().unwrap_or(0) as usize]
+    pub(crate) fn law(&self, q: usize) -> AtPoint<'_> {
+        let region = self.region.get(q).copied().unwrap_or(0) as usize;
+        let law = AtPoint::new(&self.laws[region], self.axes.get(q));
+        match self.active.get(region) {
+            Some(active) => law.contracting(active * self.activation),
+            None => law,
+        }
     }
 
     /// Number of nodes.
@@ -104,7 +117,7 @@ impl Solid<'_> {
         j_minus_1: f64,
         p: f64,
     ) -> Result<f64, StaticError> {
-        let law = self.law(q);
+        let law = &self.law(q);
         dilation_at_pressure(law, H, j_minus_1, p, j_minus_1)
             // Far from J the guess p = kappa (theta - 1) may be better.
             .or_else(|| {

@@ -7,6 +7,7 @@ use rayon::prelude::*;
 use shape::{Matrix3, Vector3};
 
 use super::energy::{Hessian, Internal};
+use super::following::{FollowingPressure, Pressed};
 use super::groups::Pairs;
 use super::lanes::{BlockSum, Vector4, group_products, point_products};
 use super::solid::{Solid, SolidDilation};
@@ -79,6 +80,24 @@ impl SurfaceTable {
     }
 }
 
+/// Stiffness of the surfaces of a system.
+#[derive(Default)]
+pub(crate) struct SurfaceStiffness {
+    /// By surface, for every point, N/m: `-w dt/dx` with the weight `w`, the traction `t` and the position
+    /// `x`.
+    pub blocks: Vec<Vec<Matrix3>>,
+    /// By following pressure.
+    pub pressed: Vec<Pressed>,
+}
+
+/// Skew part of a tangent.
+pub(crate) struct Skew {
+    /// (surface, point, block in N/m) for every sliding point.
+    points: Vec<(usize, usize, Matrix3)>,
+    /// Pairs of nodes under a following pressure, each with the vector `c` (N/m) of the block `[c]x`.
+    pairs: Vec<([u32; 2], Vector3)>,
+}
+
 /// Structure of the system of a solid with loaded or constrained surfaces.
 pub(crate) struct System<'a> {
     solid: Solid<'a>,
@@ -90,6 +109,7 @@ pub(crate) struct System<'a> {
     /// For each pressure node, its pairs (point, value).
     pressure_of: Vec<Vec<(u32, f64)>>,
     pub surfaces: Vec<SurfaceTable>,
+    following: &'a [FollowingPressure],
     /// The last assembled tangent of the displacements.
     pub stiffness: Stiffness,
     /// Index of each degree of freedom among the unknowns, [`CONSTRAINED`] if prescribed; pressures follow.
@@ -102,7 +122,12 @@ pub(crate) struct System<'a> {
 }
 
 impl<'a> System<'a> {
-    pub fn new(solid: Solid<'a>, constrained: &[bool], surfaces: Vec<SurfaceTable>) -> System<'a> {
+    pub fn new(
+        solid: Solid<'a>,
+        constrained: &[bool],
+        surfaces: Vec<SurfaceTable>,
+        following: &'a [FollowingPressure],
+    ) -> System<'a> {
         let nodes = solid.node_count();
         let rows = solid.volume.rows();
         let points = Sorted::new((0..rows.len()).map(|q| {
@@ -127,6 +152,7 @@ impl<'a> System<'a> {
         let mut tables = vec![(points.connectivity(), &points_of)];
         tables.extend(groups.zip(groups_of.as_ref()));
         tables.extend(surfaces.iter().map(|s| (s.rows.connectivity(), &s.of_node)));
+        tables.extend(following.iter().map(FollowingPressure::pattern));
         let stiffness = Stiffness::zeros(BlockPattern::new(nodes, &tables));
         let mut free = 0;
         let place = constrained
@@ -147,6 +173,7 @@ impl<'a> System<'a> {
             groups_of,
             pressure_of,
             surfaces,
+            following,
             stiffness,
             place,
             free,
@@ -180,11 +207,10 @@ impl<'a> System<'a> {
     }
 
     /// Assembles the tangent of the displacements from the second derivatives `hessian` of the energy and the
-    /// stiffness of the surfaces. Point `q` of surface `s` adds `N_I N_J D` to the block of the nodes I and
-    /// J, with the symmetric part `D` of `surface[s][q]` (N/m). For a traction `t` at the position `x` this
-    /// stiffness is `-w dt/dx` with the weight `w`.
-    pub fn assemble(&mut self, hessian: &Hessian, surface: &[Vec<Matrix3>]) {
-        let System { pairs, points, points_of, groups_of, surfaces, stiffness, .. } = self;
+    /// symmetric part of the stiffness of the surfaces. Point `q` of surface `s` adds `N_I N_J D` to the
+    /// block of the nodes I and J, with the symmetric part `D` of `surface.blocks[s][q]`.
+    pub fn assemble(&mut self, hessian: &Hessian, surface: &SurfaceStiffness) {
+        let System { pairs, points, points_of, groups_of, surfaces, following, stiffness, .. } = self;
         let groups = pairs.as_ref().map(Pairs::connectivity).zip(groups_of.as_ref());
         let path = LanePath::best();
         let gather = |seen: &[(u32, u32)], slot: &[u32], sums: &mut [BlockSum]| {
@@ -199,7 +225,7 @@ impl<'a> System<'a> {
             for (block, sum) in row.iter_mut().zip(sums) {
                 *block = std::mem::replace(sum, BlockSum::ZERO).block();
             }
-            for (table, blocks) in surfaces.iter().zip(surface) {
+            for (table, blocks) in surfaces.iter().zip(&surface.blocks) {
                 for &(q, k) in table.of_node.of(i) {
                     let (q, k) = (q as usize, k as usize);
                     let D = (blocks[q] + blocks[q].transpose()) * (0.5 * table.rows.data[k]);
@@ -210,6 +236,9 @@ impl<'a> System<'a> {
                         row[slot[table.rows.nodes[j] as usize] as usize] += D * table.rows.data[j];
                     }
                 }
+            }
+            for (pressure, pressed) in following.iter().zip(&surface.pressed) {
+                pressure.symmetric_part(pressed, i, |j, block| row[slot[j as usize] as usize] += block);
             }
         });
     }
@@ -272,8 +301,8 @@ impl<'a> System<'a> {
         matrix
     }
 
-    /// Returns the skew parts of `surface` that are not zero, as (surface, point, block).
-    pub fn skew_points(&self, surface: &[Vec<Matrix3>]) -> Vec<(usize, usize, Matrix3)> {
+    /// Returns the skew part of the stiffness of the surfaces.
+    pub fn skew(&self, surface: &SurfaceStiffness) -> Skew {
         let of_table = |(s, blocks): (usize, &Vec<Matrix3>)| {
             let skew = move |(q, block): (usize, &Matrix3)| (s, q, (block - block.transpose()) * 0.5);
             blocks
@@ -283,41 +312,55 @@ impl<'a> System<'a> {
                 .filter(|point| point.2 != Matrix3::zeros())
                 .collect::<Vec<_>>()
         };
-        surface.iter().enumerate().flat_map(of_table).collect()
+        let pressed = self.following.iter().zip(&surface.pressed);
+        Skew {
+            points: surface.blocks.iter().enumerate().flat_map(of_table).collect(),
+            pairs: pressed.flat_map(|(pressure, pressed)| pressure.skew_part(pressed)).collect(),
+        }
     }
 
-    /// Adds the product with the skew parts `skew` ([`System::skew_points`]) to `out`, N.
-    pub fn add_skew(&self, skew: &[(usize, usize, Matrix3)], u: &[Vector3], out: &mut [Vector3]) {
-        for &(s, q, block) in skew {
+    /// Adds the product with the skew part of a tangent to `out`, N.
+    pub fn add_skew(&self, skew: &Skew, u: &[Vector3], out: &mut [Vector3]) {
+        for &(s, q, block) in &skew.points {
             let (nodes, values) = self.surfaces[s].rows.row(q);
             let at: Vector3 = nodes.iter().zip(values).map(|(&node, v)| u[node as usize] * *v).sum();
             let force = block * at;
             nodes.iter().zip(values).for_each(|(&node, v)| out[node as usize] += force * *v);
         }
+        for &([i, j], axial) in &skew.pairs {
+            let (i, j) = (i as usize, j as usize);
+            out[i] += axial.cross(&u[j]);
+            if i != j {
+                out[j] += axial.cross(&u[i]);
+            }
+        }
     }
 
-    /// Returns the entries `(row, column, value)` that the skew parts of `surface` add to the symmetric
+    /// Returns the entries `(row, column, value)` of the skew part of a tangent, to be added to the symmetric
     /// matrix.
-    pub fn skew(&self, surface: &[Vec<Matrix3>]) -> Vec<(usize, usize, f64)> {
+    pub fn entries(&self, skew: &Skew) -> Vec<(usize, usize, f64)> {
         let mut entries = Vec::new();
-        for (table, blocks) in self.surfaces.iter().zip(surface) {
-            for (q, block) in blocks.iter().enumerate() {
-                let skew = (block - block.transpose()) * 0.5;
-                if skew == Matrix3::zeros() {
-                    continue;
+        let mut add = |i: u32, j: u32, block: &Matrix3, [vi, vj]: [f64; 2]| {
+            for (a, b) in [(0, 1), (0, 2), (1, 2), (1, 0), (2, 0), (2, 1)] {
+                let (row, column) = (self.place[3 * i as usize + a], self.place[3 * j as usize + b]);
+                if row != CONSTRAINED && column != CONSTRAINED {
+                    entries.push((row, column, block[(a, b)] * vi * vj));
                 }
-                let (nodes, values) = table.rows.row(q);
-                for (&i, vi) in nodes.iter().zip(values) {
-                    for (&j, vj) in nodes.iter().zip(values) {
-                        for (a, b) in [(0, 1), (0, 2), (1, 2), (1, 0), (2, 0), (2, 1)] {
-                            let (row, column) =
-                                (self.place[3 * i as usize + a], self.place[3 * j as usize + b]);
-                            if row != CONSTRAINED && column != CONSTRAINED {
-                                entries.push((row, column, skew[(a, b)] * vi * vj));
-                            }
-                        }
-                    }
+            }
+        };
+        for (s, q, block) in &skew.points {
+            let (nodes, values) = self.surfaces[*s].rows.row(*q);
+            for (&i, vi) in nodes.iter().zip(values) {
+                for (&j, vj) in nodes.iter().zip(values) {
+                    add(i, j, block, [*vi, *vj]);
                 }
+            }
+        }
+        for &([i, j], axial) in &skew.pairs {
+            let block = axial.cross_matrix();
+            add(i, j, &block, [1.0; 2]);
+            if i != j {
+                add(j, i, &block, [1.0; 2]);
             }
         }
         entries

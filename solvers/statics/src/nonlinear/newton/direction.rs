@@ -2,13 +2,13 @@
 
 use algebra::{Factorization, Unsymmetric};
 
-use super::levels::SkewPoints;
+use crate::nonlinear::system::Skew;
 
 /// A tangent ready to be solved, over the free unknowns and the displacements of the tools that have a
 /// border.
 pub(super) enum Factored {
     /// The assembled tangent, iterated, with its skew part.
-    Iterated(SkewPoints),
+    Iterated(Skew),
     Symmetric(Factorization),
     Unsymmetric(Unsymmetric),
 }

@@ -68,7 +68,7 @@ pub(super) struct Equations<'a> {
     pub counts: ContactCounts,
     /// Number of evaluated states.
     pub evaluations: u64,
-    /// Full nodal loads, N.
+    /// Full nodal forces of the dead loads, N.
     load: Vec<Vector3>,
     /// Volume of the body, m^3.
     volume: f64,
@@ -95,7 +95,7 @@ impl<'a> Equations<'a> {
         let constrained: Vec<bool> = prescribed.iter().map(Option::is_some).collect();
         Ok(Equations {
             problem,
-            system: System::new(problem.solid, &constrained, surfaces),
+            system: System::new(problem.solid, &constrained, surfaces, problem.following),
             prescribed,
             terms: None,
             displacement_driven: vec![false; problem.tools.len()],
@@ -106,6 +106,11 @@ impl<'a> Equations<'a> {
             volume: problem.solid.volume.weights().iter().sum(),
             stiffness: stiffness(&problem.solid),
         })
+    }
+
+    /// Returns the body with the active stress at `time`, which grows with the loads.
+    pub fn solid(&self, time: f64) -> Solid<'a> {
+        Solid { activation: self.scales(time).loads, ..self.problem.solid }
     }
 
     /// Returns the fractions of loads, supports and drives at `time`.
@@ -202,14 +207,17 @@ impl<'a> Equations<'a> {
         self.evaluations += 1;
         let Scales { loads, supports, .. } = self.scales(time);
         let pairs = self.system.pairs.as_ref();
-        let mut internal = self.problem.solid.internal(pairs, &state.u, &state.pressure)?;
+        let solid = self.solid(time);
+        let mut internal = solid.internal(pairs, &state.u, &state.pressure)?;
         let mut deviator = Vec::new();
         if let Some(relaxing) = self.terms.as_ref().and_then(|t| t.relaxing.as_ref()) {
-            let solid = &self.problem.solid;
-            deviator = relaxing.relax(solid, pairs, &state.u, &state.pressure, &mut internal)?;
+            deviator = relaxing.relax(&solid, pairs, &state.u, &state.pressure, &mut internal)?;
         }
         let inner = self.system.internal_force(&internal);
         let mut out: Vec<Vector3> = self.load.iter().map(|f| f * loads).collect();
+        for pressure in self.problem.following {
+            pressure.add_force(&state.u, loads, &mut out);
+        }
         for (penalty, table) in self.problem.penalties.iter().zip(&self.system.surfaces) {
             let at = table.displacement(&state.u);
             let traction: Vec<Vector3> = (at.iter().zip(&penalty.values))

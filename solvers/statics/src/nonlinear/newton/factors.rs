@@ -23,12 +23,12 @@ const ITERATION: f64 = 9.0;
 const MOST: usize = 12;
 const LEAST: usize = 4;
 
-/// Entries of the unsymmetric part.
-pub(super) type Skew = Vec<(usize, usize, f64)>;
+/// Entries of the skew part.
+pub(super) type Entries = Vec<(usize, usize, f64)>;
 
 /// A tangent with a kept factor and the resulting step, or the unchanged tangent if the kept factor does not
 /// suffice.
-type Kept = Result<(Factored, Vec<f64>), (Symmetric, Skew)>;
+type Kept = Result<(Factored, Vec<f64>), (Symmetric, Entries)>;
 
 /// Relative shifts of the diagonal that are tried during descent.
 const SHIFTS: [f64; 7] = [0.0, 1e-5, 1e-4, 1e-3, 1e-2, 0.1, 1.0];
@@ -95,7 +95,7 @@ impl Factors {
         &mut self,
         policy: &Policy,
         matrix: Symmetric,
-        skew: Skew,
+        skew: Entries,
         right: &[f64],
         borderless: bool,
     ) -> Result<Kept, StaticError> {
@@ -163,8 +163,8 @@ impl Factors {
         got.map(Arc::new)
     }
 
-    /// Factors the tangent: Cholesky, or `L D L^T` with a pressure field. With sliding friction the factor of
-    /// the symmetric part is a preconditioner.
+    /// Factors the tangent: Cholesky, or `L D L^T` with a pressure field. With sliding friction or an
+    /// unbalanced following pressure the factor of the symmetric part is a preconditioner.
     ///
     /// Past a limit point the tangent is not definite, and its step leads to the nearest equilibrium, stable
     /// or not. With [`Descent::Down`] the diagonal is raised until the tangent is definite, and the step
@@ -173,7 +173,7 @@ impl Factors {
         &mut self,
         policy: &Policy,
         mut matrix: Symmetric,
-        skew: Skew,
+        skew: Entries,
         borders: Vec<Border>,
     ) -> Result<Factored, StaticError> {
         self.analyse(&matrix)?;

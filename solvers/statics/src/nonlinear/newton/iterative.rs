@@ -4,7 +4,8 @@
 //! Points that share dilations have the tangent `K = A + B^T (k / V) B`, with the change `B u` of the volumes
 //! V of the groups and the part k of their bulk moduli above ten times the shear modulus. The pressures
 //! `(k / V) B u` are iterated with the displacements, and the preconditioner approximates A alone (see
-//! [`algebra::Multigrid`]). A contains the geometric stiffness, contact and friction.
+//! [`algebra::Multigrid`]). A contains the geometric stiffness, contact, friction and
+//! following pressures.
 //!
 //! The levels of a tangent serve the following tangents too. If A has no direction of negative curvature, K
 //! has none either.
@@ -16,7 +17,6 @@ use shape::Vector3;
 use super::Newton;
 use super::direction::{Direction, Factored};
 use super::equations::{Balance, Equations};
-use super::levels::SkewPoints;
 use super::policy::Descent;
 use super::state::State;
 use crate::nonlinear::energy::Hessian;
@@ -24,6 +24,7 @@ use crate::nonlinear::error::StaticError;
 use crate::nonlinear::lanes::GroupHessian;
 use crate::nonlinear::problem::LinearSystems;
 use crate::nonlinear::solid::SolidDilation;
+use crate::nonlinear::system::Skew;
 use crate::pressure::{KEPT, rest};
 
 /// Largest relative residual to which a system is solved. Further iterations cost less than the Newton step
@@ -37,11 +38,11 @@ impl Equations<'_> {
         state: &State,
         balance: &Balance,
         prescribed_move: Option<&[Vector3]>,
-    ) -> Result<(SkewPoints, Vec<PressureGroup>, Vec<Vector3>), StaticError> {
+    ) -> Result<(Skew, Vec<PressureGroup>, Vec<Vector3>), StaticError> {
         let mut hessian = self.hessian(state)?;
         let groups = self.take_pressures(&mut hessian);
-        let blocks = self.surface_blocks(balance);
-        self.system.assemble(&hessian, &blocks);
+        let surface = self.surface_stiffness(state, balance);
+        self.system.assemble(&hessian, &surface);
         let mut right = self.right(balance, prescribed_move);
         if let Some(moves) = prescribed_move {
             for group in &groups {
@@ -50,7 +51,7 @@ impl Equations<'_> {
                 group.row.iter().for_each(|(node, b)| right[*node as usize] -= b * pressure);
             }
         }
-        Ok((self.system.skew_points(&blocks), groups, right))
+        Ok((self.system.skew(&surface), groups, right))
     }
 
     /// Takes the bulk stiffness above the kept part out of the groups' second derivatives and returns the

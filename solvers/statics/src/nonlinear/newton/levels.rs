@@ -1,9 +1,9 @@
 //! Multigrid levels of a tangent, which precondition the iterations of the following tangents too.
 
 use algebra::{SolverPath, TangentLevels};
-use shape::{Matrix3, Vector3};
+use shape::Vector3;
 
-use crate::nonlinear::system::System;
+use crate::nonlinear::system::{Skew, System};
 
 /// Largest number of iterations, after which the tangent is factored.
 const MOST: usize = 80;
@@ -17,9 +17,6 @@ const FAILURES: usize = 2;
 const PRICE: usize = 4;
 /// Unpaid price from which on all tangents of the path are factored.
 const DEBT: usize = 3 * PRICE;
-
-/// Skew part of a tangent: (surface, point, block) for every sliding point.
-pub(super) type SkewPoints = Vec<(usize, usize, Matrix3)>;
 
 /// Memory of the iterations: the levels of an earlier tangent, and how well they serve.
 #[derive(Default)]
@@ -87,7 +84,7 @@ impl Levels {
     pub fn iterate(
         &mut self,
         system: &System,
-        skew: &SkewPoints,
+        skew: &Skew,
         x: &mut [Vector3],
         (goal, fresh): (f64, bool),
     ) -> (usize, bool) {
@@ -110,7 +107,7 @@ impl Levels {
 
     /// Solves a chord in place, to a residual of `goal` or as far as the iterations lead: a chord reduces the
     /// residual of Newton's method in both cases. Returns the number of iterations.
-    pub fn chord(&mut self, system: &System, skew: &SkewPoints, b: &mut [f64], goal: f64) -> usize {
+    pub fn chord(&mut self, system: &System, skew: &Skew, b: &mut [f64], goal: f64) -> usize {
         let mut x = vec![Vector3::zeros(); system.place.len() / 3];
         system.scatter_add(b, 1.0, &mut x, &mut []);
         let (count, _) = self.iterate(system, skew, &mut x, (goal, false));

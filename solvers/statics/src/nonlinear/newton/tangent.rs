@@ -6,18 +6,18 @@ use shape::{Matrix3, Vector3};
 use super::Newton;
 use super::direction::Direction;
 use super::equations::{Balance, Equations};
-use super::factors::Skew;
+use super::factors::Entries;
 use super::policy::Descent;
 use super::state::State;
 use crate::error::SolveError;
 use crate::nonlinear::energy::Hessian;
 use crate::nonlinear::error::StaticError;
+use crate::nonlinear::system::SurfaceStiffness;
 
 impl Equations<'_> {
-    /// Returns the stiffness of every surface point, N/m, by surface: `-w dt/dx` with the weight `w`, the
-    /// traction `t` and the position `x`. Surfaces constrained by penalty come first, then the contact
+    /// Returns the stiffness of the surfaces: those constrained by penalty come first, then the contact
     /// surface, then the points of the mass table with the tangent of the inertia.
-    pub(super) fn surface_blocks(&self, balance: &Balance) -> Vec<Vec<Matrix3>> {
+    pub(super) fn surface_stiffness(&self, state: &State, balance: &Balance) -> SurfaceStiffness {
         let mut blocks: Vec<Vec<Matrix3>> = (self.problem.penalties.iter())
             .map(|h| {
                 let constrained = Vector3::from_fn(|a, _| if h.axes[a] { h.beta } else { 0.0 });
@@ -38,7 +38,9 @@ impl Equations<'_> {
             let mass = &self.system.surfaces[blocks.len()];
             blocks.push(inertia.blocks(mass));
         }
-        blocks
+        let part = self.scales(state.time).loads;
+        let following = self.problem.following.iter();
+        SurfaceStiffness { blocks, pressed: following.map(|load| load.pressed(&state.u, part)).collect() }
     }
 
     /// Returns the tangent in a state, its unsymmetric part, and the right-hand side for the unknowns.
@@ -48,12 +50,12 @@ impl Equations<'_> {
         state: &State,
         balance: &Balance,
         prescribed_move: Option<&[Vector3]>,
-    ) -> Result<(Symmetric, Skew, Vec<f64>), StaticError> {
+    ) -> Result<(Symmetric, Entries, Vec<f64>), StaticError> {
         let hessian = self.hessian(state)?;
-        let blocks = self.surface_blocks(balance);
-        self.system.assemble(&hessian, &blocks);
+        let surface = self.surface_stiffness(state, balance);
+        self.system.assemble(&hessian, &surface);
         let matrix = self.system.reduced(&hessian);
-        let skew = self.system.skew(&blocks);
+        let skew = self.system.entries(&self.system.skew(&surface));
         let mut right_pressure = balance.pressure.clone();
         if let Some(moves) = prescribed_move {
             self.system.subtract_held_pressure(&hessian, moves, &mut right_pressure);
@@ -64,7 +66,7 @@ impl Equations<'_> {
 
     /// Returns the second derivatives of the energy in a state.
     pub(super) fn hessian(&self, state: &State) -> Result<Hessian, StaticError> {
-        let (solid, pairs) = (&self.problem.solid, self.system.pairs.as_ref());
+        let (solid, pairs) = (&self.solid(state.time), self.system.pairs.as_ref());
         let mut hessian = solid.hessian(pairs, &state.u, &state.pressure)?;
         if let Some(relaxing) = self.terms.as_ref().and_then(|t| t.relaxing.as_ref()) {
             relaxing.relax_tangent(solid, pairs, &state.u, &state.pressure, &mut hessian)?;

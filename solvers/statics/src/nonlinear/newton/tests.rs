@@ -44,8 +44,17 @@ fn column(systems: LinearSystems) {
     let laws = [Law::SaintVenantKirchhoff(SaintVenantKirchhoff::new(20e3, 0.0).unwrap())];
     let problem = StaticProblem {
         nodes: mesh.points(),
-        solid: Solid { volume: &volume, laws: &laws, region: &[], dilation: SolidDilation::Standard },
+        solid: Solid {
+            volume: &volume,
+            laws: &laws,
+            region: &[],
+            axes: &[],
+            active: &[],
+            activation: 1.0,
+            dilation: SolidDilation::Standard,
+        },
         loads: &[],
+        following: &[],
         fixed: &fixed,
         penalties: &[],
         contact: None,
