@@ -66,7 +66,7 @@ pub struct Skin {
     pub points: String,
     /// Four corners of each quadrilateral, packed.
     pub quads: String,
-    /// Unit vector of the tool's travel.
+    /// Unit vector of the tool's travel at the start.
     pub along: [f64; 3],
 }
 
@@ -77,8 +77,8 @@ pub struct BodyState {
     pub time: f64,
     /// Displacement of each point, metres, packed.
     pub u: String,
-    /// Travel of each tool from its start, m.
-    pub closures: Vec<f64>,
+    /// Displacement of each tool, m.
+    pub tools: Vec<[f64; 3]>,
     /// Contact points inside a tool: three coordinates and the penetration depth of each (m), packed.
     #[serde(default)]
     pub touching: String,

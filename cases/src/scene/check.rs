@@ -65,6 +65,19 @@ pub enum Bound {
     },
 }
 
+impl Check {
+    /// Whether the bound holds only if a run ends before the whole load. Such an end is a result, not a
+    /// failure.
+    pub fn foresees_early_end(&self) -> bool {
+        let most = match self.bound {
+            Bound::Within { at_most, .. } => at_most,
+            Bound::KnownBand { high, .. } => Some(high),
+        };
+        let of_load = [&metric::LOAD_CARRIED, &metric::LIMIT_LOAD].map(|metric| metric.whole());
+        of_load.contains(&self.address) && most.is_some_and(|most| most < 1.0)
+    }
+}
+
 impl CheckKeys {
     pub fn read(self, report: &Report) -> Option<Check> {
         let address = metric::named(&self.metric).map_err(|bad| report.add("metric", bad)).ok()?;

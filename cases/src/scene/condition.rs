@@ -10,7 +10,7 @@ use super::procedure::{Procedure, ProcedureKind};
 use super::region::Region;
 use super::report::Report;
 use super::selection::{Names, Place};
-use super::units::{BodyForce, Length, Pressure};
+use super::units::{BodyForce, Force, Length, Pressure, Q};
 
 /// Prescribed displacement along one axis
 #[derive(Deserialize, JsonSchema)]
@@ -52,7 +52,7 @@ pub(crate) struct SupportKeys {
     motion: Option<MoveKeys>,
 }
 
-/// A load: exactly one of traction, pressure (along the inner normal) and body force
+/// A load: exactly one of traction, pressure (along the inner normal), force and body force
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct LoadKeys {
@@ -66,6 +66,10 @@ pub(crate) struct LoadKeys {
     pressure: Option<FieldKeys<Pressure>>,
     /// Whether a pressure acts along the normals and on the areas of the undeformed surface; false unless given
     dead: Option<bool>,
+    /// Force as a vector: at each point of 'at', or in total, evenly on the faces of 'on' or 'where'
+    force: Option<[Q<Force>; 3]>,
+    /// Points of the body at which a force acts: [["5 mm", "0 mm", "0 mm"]]
+    at: Option<Vec<[Q<Length>; 3]>>,
     /// Force per volume, everywhere
     body: Option<VectorKeys<BodyForce>>,
 }
@@ -116,6 +120,15 @@ pub enum LoadKind {
     Pressure(ScalarField),
     /// Force per volume, in newtons per cubic metre.
     Body(VectorField),
+    /// Force on the loaded part of the surface in total, evenly per undeformed area, in newtons.
+    Force([f64; 3]),
+    /// Force at each of some points of the body.
+    Points {
+        /// Points of the undeformed body, in metres.
+        at: Vec<[f64; 3]>,
+        /// Force at each point, in newtons.
+        force: [f64; 3],
+    },
 }
 
 impl LoadKind {
@@ -124,6 +137,7 @@ impl LoadKind {
         match self {
             LoadKind::Traction(field) | LoadKind::Body(field) => field.varies(),
             LoadKind::Pressure(field) => field.varies(),
+            LoadKind::Force(_) | LoadKind::Points { .. } => false,
         }
     }
 
@@ -189,32 +203,56 @@ fn moved(
 impl LoadKeys {
     /// Reads a load; checks its names of surfaces if the body is known.
     pub fn read(self, body: Option<&Body>, report: &Report) -> Option<Load> {
-        let kind = match (self.traction, self.pressure, self.body) {
-            (Some(traction), None, None) => LoadKind::Traction(traction.into()),
-            (None, Some(pressure), None) => LoadKind::Pressure(pressure.into()),
-            (None, None, Some(force)) => LoadKind::Body(force.into()),
-            (None, None, None) => {
-                report.missing("", "give one of traction, pressure and body");
+        let points = self.at.map(|at| at.into_iter().map(|x| x.map(|q| q.0)).collect::<Vec<_>>());
+        let force = self.force.map(|force| force.map(|q| q.0));
+        let (has_force, at) = (force.is_some(), points.is_some());
+        let kind = match (self.traction, self.pressure, self.body, force) {
+            (Some(traction), None, None, None) => LoadKind::Traction(traction.into()),
+            (None, Some(pressure), None, None) => LoadKind::Pressure(pressure.into()),
+            (None, None, Some(force), None) => LoadKind::Body(force.into()),
+            (None, None, None, Some(force)) => match points {
+                Some(at) => {
+                    report.require(!at.is_empty(), "at", "names no point", "give one or more points");
+                    LoadKind::Points { at, force }
+                }
+                None => LoadKind::Force(force),
+            },
+            (None, None, None, None) => {
+                report.missing("", "give one of traction, pressure, force and body");
                 return None;
             }
             _ => {
-                let help = "give one of traction, pressure and body";
+                let help = "give one of traction, pressure, force and body";
                 report.add("", Problem::new("has several kinds of load").help(help));
                 return None;
             }
         };
-        let (problem, help) = ("belongs to a pressure", "a traction and a body force are always dead loads");
+        let (problem, help) = ("belongs to a pressure", "all other loads are always dead loads");
         report.require(self.dead.is_none() || matches!(kind, LoadKind::Pressure(_)), "dead", problem, help);
+        report.require(
+            has_force || !at,
+            "at",
+            "belongs to a force",
+            "give on or where for a load on a surface",
+        );
         let dead = self.dead.unwrap_or(false);
-        if !matches!(kind, LoadKind::Body(_)) {
-            let place = Place::required(self.on, self.place, report);
-            body.inspect(|body| body.find(&place, report));
-            return Some(Load { place, kind, dead });
-        }
-        let place = Place::read(self.on, self.place, report);
-        let (problem, help) = ("limits a body force to a region", "a body force acts everywhere");
-        report.require(!matches!(place, Place::On(_)), "on", problem, help);
-        report.require(!matches!(place, Place::Where(_)), "where", problem, help);
+        let everywhere = match kind {
+            LoadKind::Body(_) => Some(("limits a body force to a region", "a body force acts everywhere")),
+            LoadKind::Points { .. } => Some((
+                "gives a place beside the points of 'at'",
+                "give one: points, or faces that carry the force in total",
+            )),
+            _ => None,
+        };
+        let place = match everywhere {
+            None => Place::required(self.on, self.place, report),
+            Some((problem, help)) => {
+                let place = Place::read(self.on, self.place, report);
+                report.require(!matches!(place, Place::On(_)), "on", problem, help);
+                report.require(!matches!(place, Place::Where(_)), "where", problem, help);
+                place
+            }
+        };
         body.inspect(|body| body.find(&place, report));
         Some(Load { place, kind, dead })
     }

@@ -200,7 +200,7 @@ fn numbered(needs: Needs, scene: &Scene) -> (usize, &'static str) {
     match needs {
         Needs::Support | Needs::SupportMoment => (scene.supports.len(), "support"),
         Needs::Mean => (scene.output.means.len(), "face in output.means"),
-        Needs::Point => (scene.output.probes.len(), "point in output.probes"),
+        Needs::Point | Needs::Motion => (scene.output.probes.len(), "point in output.probes"),
         Needs::Stretch => (scene.output.stretches.len(), "entry of output.stretches"),
         Needs::Enclosed => (scene.output.volumes.len(), "surface in output.volumes"),
         _ => (scene.tools.len(), "tool"),

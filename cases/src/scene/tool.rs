@@ -27,8 +27,8 @@ pub(crate) struct ToolKeys {
 struct BesideShape {
     name: String,
     at: [Q<Length>; 3],
-    /// Direction of motion
-    along: [f64; 3],
+    /// Direction of motion; not with a path
+    along: Option<[f64; 3]>,
     drive: DriveKeys,
     /// Normal pressure per penetration
     penalty: Q<ContactSlope>,
@@ -48,12 +48,15 @@ impl JsonSchema for ToolKeys {
     }
 }
 
-/// Drive of a tool: one of closure, force along its direction of motion, and mean pressure on its face
+/// Drive of a tool: one of closure, path, force along its direction of motion, and mean pressure on its face
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-#[schemars(extend("x-one-of" = ["closure", "force", "pressure"]))]
+#[schemars(extend("x-one-of" = ["closure", "path", "force", "pressure"]))]
 struct DriveKeys {
     closure: Option<Q<Length>>,
+    /// Displacements of the tool, one after another, at constant speed: [["0 mm", "0 mm", "-3 mm"], ["5 mm", "0
+    /// mm", "0 mm"]] presses and then drags
+    path: Option<Vec<[Q<Length>; 3]>>,
     force: Option<Q<Force>>,
     pressure: Option<Q<Pressure>>,
     /// Time of the ramp (dynamics)
@@ -69,8 +72,10 @@ pub struct Tool {
     pub shape: ToolShape,
     /// Initial position of the centre, in metres.
     pub at: [f64; 3],
-    /// Unit direction of motion.
+    /// Unit direction of motion, at the start of a path.
     pub along: [f64; 3],
+    /// Displacements of the legs of a path, in metres; empty for a straight motion.
+    pub path: Vec<[f64; 3]>,
     /// Direction of the z axis of the shape's frame, as a unit vector: the axis of a cylinder or capsule, the
     /// outward normal of a plate's face. `None` for a shape aligned with the axes of the scene.
     pub axis: Option<[f64; 3]>,
@@ -109,17 +114,43 @@ impl ToolKeys {
         let keys = self.beside;
         let values = settings(&self.shape, self.settings, report);
         let shape = values.as_ref().and_then(|values| build(self.shape.0, values, "shape", report));
-        let drive = match (keys.drive.closure, keys.drive.force, keys.drive.pressure) {
-            (Some(q), None, None) => Drive::Closure(q.0),
-            (None, Some(q), None) => Drive::Force(report.positive("drive.force", q.0)),
-            (None, None, Some(q)) => Drive::Pressure(report.positive("drive.pressure", q.0)),
+        let DriveKeys { closure, path, force, pressure, over } = keys.drive;
+        let path: Option<Vec<[f64; 3]>> =
+            path.map(|legs| legs.into_iter().map(|leg| leg.map(|q| q.0)).collect());
+        let length = |leg: &[f64; 3]| leg.iter().map(|x| x * x).sum::<f64>().sqrt();
+        let drive = match (closure, &path, force, pressure) {
+            (Some(q), None, None, None) => Drive::Closure(q.0),
+            (None, Some(path), None, None) => Drive::Closure(path.iter().map(length).sum()),
+            (None, None, Some(q), None) => Drive::Force(report.positive("drive.force", q.0)),
+            (None, None, None, Some(q)) => Drive::Pressure(report.positive("drive.pressure", q.0)),
             _ => {
-                let help = "give one of closure, force and pressure";
+                let help = "give one of closure, path, force and pressure";
                 report.add("drive", Problem::new("is not one drive").help(help));
                 return None;
             }
         };
-        let along = unit(keys.along, "along", report)?;
+        if path.as_ref().is_some_and(Vec::is_empty) {
+            report.add("drive.path", Problem::new("is empty").help("give one or more displacements"));
+            return None;
+        }
+        let path = path.unwrap_or_default();
+        for (index, leg) in path.iter().enumerate() {
+            let key = format!("drive.path[{index}]");
+            report.require(length(leg) > 0.0, &key, "has no length", "leave it out, or give a displacement");
+        }
+        let along = match (keys.along, path.first()) {
+            (Some(along), None) => unit(along, "along", report)?,
+            (None, Some(&leg)) => unit(leg, "drive.path[0]", report)?,
+            (Some(_), Some(_)) => {
+                let help = "leave it out: a path has directions of its own";
+                report.add("along", Problem::new("can't be combined with drive.path").help(help));
+                return None;
+            }
+            (None, None) => {
+                report.missing("along", "give the direction of motion, such as along = [0, 0, -1]");
+                return None;
+            }
+        };
         let (shape, values) = (shape?, values?);
         let axis = match values.list("axis") {
             Some(&[x, y, z]) => Some(unit([x, y, z], "axis", report)?),
@@ -130,9 +161,10 @@ impl ToolKeys {
             shape,
             at: keys.at.map(|q| q.0),
             along,
+            path,
             axis,
             drive,
-            over: keys.drive.over.map(|q| q.0),
+            over: over.map(|q| q.0),
             penalty: report.positive("penalty", keys.penalty.0),
             friction: friction(keys.friction.unwrap_or(0.0), keys.stick, report),
         })
@@ -181,10 +213,41 @@ pub(crate) fn demands(tools: &[Tool], procedure: &Procedure, report: &Report) {
             let help = format!("a {} procedure has no time axis: leave it out", kind.name());
             report.add("drive.over", Problem::new("is the time of a ramp").help(help));
         }
+        if let Procedure::Static(asked) = procedure {
+            steps_meet_bends(tool, asked.steps, &report);
+        }
         if matches!(tool.drive, Drive::Pressure(_)) && tool.shape.face_area(&tool.along.into()).is_none() {
             let help =
                 "only a rounded-box that closes along x, y or z has a face of a known area; give force";
             report.add("drive.pressure", Problem::new("has no face to act on").help(help));
         }
     }
+}
+
+/// Most load steps that are proposed for a path.
+const MOST_STEPS: usize = 10_000;
+
+/// Requires that load steps end at the bends of a path: a step across a bend would cut it, and friction would
+/// act along the cut.
+fn steps_meet_bends(tool: &Tool, steps: usize, report: &Report) {
+    let lengths: Vec<f64> =
+        tool.path.iter().map(|leg| leg.iter().map(|x| x * x).sum::<f64>().sqrt()).collect();
+    let whole: f64 = lengths.iter().sum();
+    let bends: Vec<f64> = (lengths.iter())
+        .scan(0.0, |sum, length| {
+            *sum += length;
+            Some(*sum / whole)
+        })
+        .collect();
+    let meets = |steps: usize| {
+        let near = |part: f64| (part - part.round()).abs() < 1e-6;
+        move |bend: &f64| near(bend * steps as f64)
+    };
+    let Some(missed) = bends.iter().find(|bend| !meets(steps)(bend)) else { return };
+    let problem = format!("bends at {missed:.4} of its length, between the ends of {steps} load steps");
+    let help = match (1..=MOST_STEPS).find(|steps| bends.iter().all(meets(*steps))) {
+        Some(least) => format!("take procedure.steps = {least} or a multiple of it"),
+        None => "give legs whose lengths have simple ratios".into(),
+    };
+    report.add("drive.path", Problem::new(problem).help(help));
 }

@@ -4,7 +4,7 @@ use std::io::IsTerminal;
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
-use cases::scene::{self, Scene};
+use cases::scene::{self, Check, Scene};
 use records::{Machine, RunSet, Status};
 use reports::Seconds;
 
@@ -174,13 +174,12 @@ impl Made {
             print_json(&RunObject::finished(&outcome));
         }
         let records = outcome.records();
-        for check in &self.scene.checks {
-            let own = check.methods.is_empty() || check.methods.contains(&method.id);
-            if own && !check::is_of_many(check) {
-                let of = check.address;
-                let (value, band) = (check::value(of, &records), check::band(of, &records));
-                self.set.checks.push(check::judge(check, &self.case, &method.id, value, band));
-            }
+        let own = |check: &&Check| check.methods.is_empty() || check.methods.contains(&method.id);
+        let foreseen = check::foreseen_end(self.scene.checks.iter().filter(own), &records);
+        for check in self.scene.checks.iter().filter(own).filter(|check| !check::is_of_many(check)) {
+            let of = check.address;
+            let (value, band) = (check::value(of, &records), check::band(of, &records));
+            self.set.checks.push(check::judge(check, &self.case, &method.id, value, band));
         }
         self.set.records.extend(records);
         self.set.plans.extend(outcome.plan_entries());
@@ -198,7 +197,9 @@ impl Made {
         if let Some(failure) = &outcome.stalled {
             eprintln!("{}: {failure} (method '{}')", outcome.status, method.id);
             self.set.failures.push(stalled(&outcome, failure));
-            self.code = self.code.max(failure.exit_code());
+            if !foreseen {
+                self.code = self.code.max(failure.exit_code());
+            }
         }
         self.outcomes.push(outcome);
     }

@@ -182,17 +182,31 @@ pub fn places(outcomes: &[Outcome]) -> String {
         })
     });
     section(&mut text, &["displacement of a point [mm]", "point", "at", "x", "y", "z"], probes.collect());
-    for (of, head, scale) in [
-        (&metric::STRETCH, ["stretch", "point", "[1]"], 1.0),
-        (&metric::ENCLOSED_VOLUME, ["enclosed volume", "surface", "[mL]"], 1e6),
+    for (numbers, head, scale) in [
+        (
+            metric::REACTION_MOMENT.components().to_vec(),
+            &["moment of a support [N mm]", "support", "x", "y", "z"][..],
+            1e3,
+        ),
+        (metric::TOOL_MOMENT.components().to_vec(), &["moment on a tool [N mm]", "tool", "x", "y", "z"], 1e3),
+        (
+            vec![metric::PROBE_PEAK.whole(), metric::PROBE_PEAK_TIME.whole()],
+            &["largest displacement of a point", "point", "[mm]", "at [ms]"],
+            1e3,
+        ),
+        (vec![metric::STRETCH.whole()], &["stretch", "point", "[1]"], 1.0),
+        (vec![metric::ENCLOSED_VOLUME.whole()], &["enclosed volume", "surface", "[mL]"], 1e6),
     ] {
         let rows = outcomes.iter().flat_map(|outcome| {
-            let known = (0..).map_while(|index| Some((index + 1, outcome.value(of.at(index))?)));
-            known.map(|(number, value): (usize, f64)| {
-                row(&outcome.identity.method, vec![number.to_string(), digits(scale * value)])
+            let at = |place: usize| {
+                numbers.iter().map(|of| outcome.value(of.at(place))).collect::<Option<Vec<f64>>>()
+            };
+            (1..).zip((0..).map_while(at)).map(|(place, values): (usize, _)| {
+                let values = values.iter().map(|value| digits(scale * value));
+                row(&outcome.identity.method, std::iter::once(place.to_string()).chain(values).collect())
             })
         });
-        section(&mut text, &head, rows.collect());
+        section(&mut text, head, rows.collect());
     }
     let modes = outcomes.iter().flat_map(|outcome| {
         (1..).zip(&outcome.modes).map(|(number, mode): (usize, _)| {

@@ -38,6 +38,8 @@ pub(super) struct Misfit {
 /// Part of the surface covered by a support or a load: whole facets, and whether other facets are cut.
 struct Covered {
     whole: HashSet<Facet>,
+    /// Area of the whole facets, m^2.
+    area: f64,
     cuts: bool,
 }
 
@@ -79,7 +81,8 @@ pub(super) fn worst(run: &Solved) -> Result<Option<Misfit>, Failure> {
     let mesh = method.mesh();
     let covered = |key: &str, at: &Place| -> Result<Covered, Failure> {
         let Patch { whole, cut } = place::patch(key, at, mesh)?;
-        Ok(Covered { whole: whole.into_iter().collect(), cuts: !cut.is_empty() })
+        let area = fem::surface_rows(mesh, &whole, &SurfaceRule::STANDARD)?.weights().iter().sum();
+        Ok(Covered { whole: whole.into_iter().collect(), area, cuts: !cut.is_empty() })
     };
     let held: Vec<Covered> =
         setup.supports.iter().map(|s| covered(&s.key, &s.place)).collect::<Result<_, _>>()?;
@@ -215,11 +218,13 @@ fn applied(
     n: &Vector3,
 ) -> Result<Vector3, String> {
     let mut sum = Vector3::zeros();
-    for (load, _) in setup.loads.iter().zip(loaded).filter(|(_, covered)| covered.whole.contains(facet)) {
+    for (load, covered) in setup.loads.iter().zip(loaded).filter(|(_, covered)| covered.whole.contains(facet))
+    {
         sum += match &load.applied {
             Applied::Surface(SurfaceLoad::Traction(field)) => field(x, n)?,
             Applied::Surface(SurfaceLoad::Pressure(field)) => -n * field(x)?,
-            Applied::Body(_) => Vector3::zeros(),
+            Applied::Surface(SurfaceLoad::Force(force)) => force / covered.area,
+            Applied::Body(_) | Applied::Points { .. } => Vector3::zeros(),
         };
     }
     Ok(sum)

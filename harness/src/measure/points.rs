@@ -14,11 +14,17 @@ use super::states::recorded;
 use super::stress::Recovered;
 use crate::discretise::place::{self, Patch};
 use crate::error::{Failure, Key};
-use crate::outcome::{Metric, Outcome, Probe, ToolStep, push};
+use crate::outcome::{LoadStep, Metric, Outcome, Probe, ToolStep, push};
 use crate::prepare::surfaces::flux;
+use crate::scenario::setup::{Applied, Setup};
 
 /// Refuses points outside the mesh, and surfaces that enclose no volume, before anything is solved.
-pub(crate) fn check(mesh: &Mesh, output: &Output) -> Result<(), Failure> {
+pub(crate) fn check(mesh: &Mesh, Setup { output, loads, .. }: &Setup) -> Result<(), Failure> {
+    for load in loads {
+        if let Applied::Points { at, .. } = &load.applied {
+            check_points(mesh, at, |index| format!("{}.at[{index}]", load.key))?;
+        }
+    }
     let points: Vec<Point3> = output.stretches.iter().map(|stretch| stretch.at.into()).collect();
     check_points(mesh, &points, |index| format!("output.stretches[{index}].at"))?;
     for (index, volume) in output.volumes.iter().enumerate() {
@@ -103,7 +109,30 @@ pub(crate) fn points(outcome: &mut Outcome, run: &Solved, probes: &[Point3]) -> 
             }
         }
     }
+    if let Some(duration) = run.setup.procedure.duration() {
+        let peaks = peaks(&outcome.steps, outcome.probes.len(), duration);
+        outcome.metrics.extend(peaks);
+    }
     Ok(())
+}
+
+/// Largest displacement of each probe in all recorded states, and the time of the first such state.
+fn peaks(steps: &[LoadStep], probes: usize, duration: f64) -> Vec<Metric> {
+    let mut metrics = Vec::new();
+    for index in 0..probes {
+        let distance = |step: &LoadStep| {
+            step.points.iter().find(|of| of.of == metric::PROBE.at(index)).map_or(0.0, |of| of.value)
+        };
+        let (mut largest, mut time) = (0.0, 0.0);
+        for step in steps {
+            if distance(step) > largest {
+                (largest, time) = (distance(step), step.load * duration);
+            }
+        }
+        push(&mut metrics, metric::PROBE_PEAK.at(index), largest);
+        push(&mut metrics, metric::PROBE_PEAK_TIME.at(index), time);
+    }
+    metrics
 }
 
 /// Moments on the tools and of the supports about a point.

@@ -95,7 +95,7 @@ pub(crate) fn states(run: &Solved, most: usize) -> Result<States, Failure> {
                 .flat_map(|(tool, closure)| deformed().map(|x| tool.gap(*closure, &x)))
                 .fold(f64::INFINITY, f64::min),
             displacement,
-            closures,
+            tools: tools().map(|(tool, closure)| tool.displacement(*closure)).collect(),
         }
     };
     let states: Vec<State> = recorded(run, most).into_iter().map(state).collect();

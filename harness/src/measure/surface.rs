@@ -205,7 +205,7 @@ fn body_state(state: &State, values: Option<&Values>, points: &Points) -> BodySt
     BodyState {
         time: state.time,
         u: vectors(points.skin().map(|n| state.displacement[n])),
-        closures: state.closures.clone(),
+        tools: state.tools.iter().map(|by| <[f64; 3]>::from(*by)).collect(),
         touching: pack(state.touching.iter().flat_map(|(x, gap)| [x.x, x.y, x.z, -gap].map(|v| v as f32))),
         deepest_node: (-state.gap).max(0.0),
         values: values.map(|values| packed(&values[..points.skin])),

@@ -40,7 +40,7 @@ impl ToolStep {
             force: state.force,
             moment: state.moment + tool.place(state.closure).coords.cross(&state.force),
             // The subtraction yields 0 for a tool without contact; a sign would yield -0.
-            pushed: 0.0 - state.force.dot(&tool.along()),
+            pushed: 0.0 - state.force.dot(&tool.along_at(state.closure)),
             active: state.active as u64,
             carriers: state.carriers,
             area: state.area,

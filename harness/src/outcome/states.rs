@@ -27,8 +27,8 @@ pub(crate) struct State {
     pub(crate) displacement: Vec<Vector3>,
     /// Stress and volume ratio of the cells; `None` for vibration modes and viscoelastic tissue.
     pub(crate) tensors: Option<Tensors>,
-    /// Travel of each tool from its start, m.
-    pub(crate) closures: Vec<f64>,
+    /// Displacement of each tool, m.
+    pub(crate) tools: Vec<Vector3>,
     /// Contact points inside a tool (position, m), each with its signed distance (m, negative inside).
     pub(crate) touching: Vec<(Point3, f64)>,
     /// Smallest signed distance of a mesh point to a tool, m; infinite without tools.
@@ -50,7 +50,7 @@ pub(crate) struct ToolSkin {
     /// Vertices, m.
     pub(crate) points: Vec<Point3>,
     pub(crate) quads: Vec<[u32; 4]>,
-    /// Unit direction of travel.
+    /// Unit direction of travel at the start.
     pub(crate) along: Vector3,
 }
 
@@ -118,12 +118,12 @@ impl States {
 
     fn tools_at(&self, state: &State) -> Vec<u8> {
         let (mut points, mut quads, mut bodies, mut moved) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
-        for (number, (tool, closure)) in self.tools.iter().zip(&state.closures).enumerate() {
+        for (number, (tool, by)) in self.tools.iter().zip(&state.tools).enumerate() {
             let first = points.len() as u32;
             points.extend_from_slice(&tool.points);
             quads.extend(tool.quads.iter().map(|quad| quad.map(|k| first + k)));
             bodies.resize(quads.len(), number as u32);
-            moved.resize(points.len(), tool.along * *closure);
+            moved.resize(points.len(), *by);
         }
         surface_vtu(&points, &quads, &bodies, state.time, &[vectors("displacement", &moved)])
     }

@@ -148,9 +148,11 @@ fn passes(mesh: &Mesh, facet: Facet, tool: &Tool) -> bool {
     let middle = Point3::from(nodes().map(|x| x.coords).sum::<Vector3>() / nodes().len() as f64);
     let radius = nodes().map(|x| (x - middle).norm()).fold(0.0, f64::max);
     let (low, high) = tool.bounds(0.0);
-    let off = middle - tool.place(0.0);
-    let across = off - tool.along() * off.dot(&tool.along());
-    across.norm() <= radius + (high - low).norm()
+    tool.legs().any(|(start, along)| {
+        let off = middle - start;
+        let across = off - along * off.dot(&along);
+        across.norm() <= radius + (high - low).norm()
+    })
 }
 
 /// Returns the largest distance (m) from a sampled location on a facet to its nearest contact point; 0 if

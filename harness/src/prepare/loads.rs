@@ -2,7 +2,7 @@
 
 use fem::SurfaceRule;
 use geometry::{Facet, Vector3};
-use shape::{FixedDof, SurfaceRows};
+use shape::{FixedDof, RowSource, SurfaceRows};
 use statics::{FollowingPressure, Load};
 
 use super::Prepared;
@@ -36,6 +36,13 @@ impl Prepared {
     pub(super) fn load(&mut self, method: &Discretisation, load: &setup::Load) -> Result<(), Failure> {
         match &load.applied {
             Applied::Surface(field) => self.load_on_surface(method, load, field),
+            Applied::Points { at, force } => {
+                let (rows, _) = self.source.at_points(at)?;
+                let added = rows.rows().apply_transposed(&vec![*force; at.len()]);
+                let forces = self.nodal.get_or_insert_with(|| vec![Vector3::zeros(); added.len()]);
+                forces.iter_mut().zip(added).for_each(|(force, added)| *force += added);
+                Ok(())
+            }
             Applied::Body(field) => {
                 let values = self.volume.rows.points().iter().map(field).collect::<Result<_, _>>();
                 self.body_force.push(values.map_err(not_finite(&load.key, "body"))?);
@@ -54,7 +61,8 @@ impl Prepared {
         if let (SurfaceLoad::Pressure(field), true) = (field, load.follows) {
             return self.follow(load, field, &patch);
         }
-        let at_points = |surface| at_points(&load.key, field, surface);
+        let area = area(&*self.source, field, &patch)?;
+        let at_points = |surface| at_points(&load.key, field, area, surface);
         if !patch.whole.is_empty() {
             let table = match (load.varies, self.is_smoothed_by_centres()?) {
                 (false, _) => at_points(self.source.surface(&patch.whole)?)?,
@@ -114,8 +122,23 @@ impl Prepared {
     }
 }
 
-/// Evaluates the load of a key at every point of a surface.
-fn at_points(key: &str, field: &SurfaceLoad, surface: SurfaceRows) -> Result<(SurfaceRows, Values), Failure> {
+/// Area of a patch, m^2, over which a total force is spread; 0 for a load given by its field.
+fn area(source: &dyn RowSource, field: &SurfaceLoad, patch: &Patch) -> Result<f64, Failure> {
+    if !matches!(field, SurfaceLoad::Force(_)) {
+        return Ok(0.0);
+    }
+    let cut: f64 = patch.cut.iter().map(|triangle| triangle.area_vector().norm()).sum();
+    let whole: f64 = source.surface(&patch.whole)?.weights().iter().sum();
+    Ok(whole + cut)
+}
+
+/// Evaluates the load of a key at every point of a surface, part of a place of this area, m^2.
+fn at_points(
+    key: &str,
+    field: &SurfaceLoad,
+    area: f64,
+    surface: SurfaceRows,
+) -> Result<(SurfaceRows, Values), Failure> {
     let at = surface.points().iter().zip(surface.normals());
     let values = match field {
         SurfaceLoad::Traction(field) => {
@@ -126,6 +149,7 @@ fn at_points(key: &str, field: &SurfaceLoad, surface: SurfaceRows) -> Result<(Su
             let values = at.map(|(x, _)| field(x)).collect::<Result<_, _>>();
             Values::Pressure(values.map_err(not_finite(key, "pressure"))?)
         }
+        SurfaceLoad::Force(force) => Values::Traction(vec![force / area; surface.weights().len()]),
     };
     Ok((surface, values))
 }

@@ -14,8 +14,10 @@ use crate::scenario::setup::{Applied, Load, Setup, Support};
 /// does not have. A plan calls only this check: filling the tables costs a thousand times as much.
 pub fn check(method: &Discretisation, setup: &Setup) -> Result<(), Failure> {
     let mesh = method.mesh();
-    for load in setup.loads.iter().filter(|load| !matches!(load.applied, Applied::Body(_))) {
-        loaded(load, mesh)?;
+    for load in &setup.loads {
+        if let Applied::Surface(_) = load.applied {
+            loaded(load, mesh)?;
+        }
     }
     for support in &setup.supports {
         let held_somewhere = match method.essential {

@@ -61,7 +61,7 @@ pub(crate) fn run(
 ) -> Result<FinishedRun, Failure> {
     check_probes(method.mesh(), request.probes)?;
     check_means(method.mesh(), &setup.output.means)?;
-    check_points(method.mesh(), &setup.output)?;
+    check_points(method.mesh(), setup)?;
     rayon::scope(|_| on_pool(identity, plan, method, setup, request))
 }
 

@@ -82,7 +82,7 @@ impl Plane {
             image[self.axis] = 2.0 * self.at - x[self.axis];
             (tool.gap(0.0, x) - tool.gap(0.0, &image)).abs() <= ROUNDING * size
         };
-        tool.along()[self.axis].abs() <= ROUNDING && points.iter().all(is_same)
+        tool.legs().all(|(_, along)| along[self.axis].abs() <= ROUNDING) && points.iter().all(is_same)
     }
 
     fn is_of_symmetry(&self, scene: &Scene, mesh: &Mesh) -> bool {
@@ -104,7 +104,9 @@ impl Plane {
                 !matches!(force[self.axis], ScalarField::Constant(0.0))
             }
             LoadKind::Body(VectorField::Exact) => true,
-            LoadKind::Traction(_) | LoadKind::Pressure(_) => false,
+            // A force at a point of the plane itself acts on both halves.
+            LoadKind::Points { .. } => true,
+            LoadKind::Traction(_) | LoadKind::Pressure(_) | LoadKind::Force(_) => false,
         });
         !face.is_empty() && normal_alone && !is_forced && !holding.iter().any(|support| support.moves())
     }

@@ -70,6 +70,10 @@ impl Scenario<'_> {
                 help,
             ));
         }
+        if let Some(key) = self.bent() {
+            let help = "problem files support tools that move along a straight line";
+            return Err(Failure::input(Key::Scene(key), "is not supported in problem files yet", help));
+        }
         match self.scene.procedure.kind() {
             ProcedureKind::Linear | ProcedureKind::Static => Ok(()),
             _ => Err(Failure::input(
@@ -85,6 +89,12 @@ impl Scenario<'_> {
         let (laws, _) = self.laws().ok()?;
         let index = self.scene.loads.iter().position(|load| self.follows(load, &laws))?;
         Some(format!("load[{index}].pressure"))
+    }
+
+    /// Key of the first path of a tool.
+    fn bent(&self) -> Option<String> {
+        let index = self.scene.tools.iter().position(|tool| !tool.path.is_empty())?;
+        Some(format!("tool[{index}].drive.path"))
     }
 
     /// Lists the features a solver needs for the scene: the word that an adapter lists in `can`, and a phrase
@@ -104,6 +114,9 @@ impl Scenario<'_> {
         if let Some(key) = self.following() {
             let what = "a pressure on the deformed surface, which problem files do not support yet";
             asked.push(("", format!("{what} ({key}; dead = true keeps the undeformed surface)")));
+        }
+        if let Some(key) = self.bent() {
+            asked.push(("", format!("a path of a tool, which problem files do not support yet ({key})")));
         }
         asked
     }

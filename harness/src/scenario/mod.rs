@@ -148,6 +148,11 @@ impl Scenario<'_> {
                     LoadKind::Pressure(field) => {
                         on(SurfaceLoad::Pressure(Box::new(move |x| value(&field, x))))
                     }
+                    LoadKind::Force(force) => on(SurfaceLoad::Force(force.into())),
+                    LoadKind::Points { at, force } => Applied::Points {
+                        at: at.into_iter().map(Point3::from).collect(),
+                        force: force.into(),
+                    },
                     LoadKind::Body(VectorField::Exact) => {
                         let exact = self.exact(e)?.ok_or_else(no_exact)?;
                         Applied::Body(Box::new(move |x| Ok(exact.body_force(x))))

@@ -43,6 +43,13 @@ pub enum Applied {
     Surface(SurfaceLoad),
     /// Force per reference volume, N/m^3, everywhere.
     Body(VectorField),
+    /// The same force at each of some points.
+    Points {
+        /// The points in the undeformed body, m.
+        at: Vec<Point3>,
+        /// The force at each, N.
+        force: Vector3,
+    },
 }
 
 /// The kind of a load on a surface, with its field.
@@ -51,13 +58,15 @@ pub enum SurfaceLoad {
     Traction(TractionField),
     /// Pressure against the outward normal, Pa.
     Pressure(ScalarField),
+    /// Force on the whole place, evenly per reference area, N.
+    Force(Vector3),
 }
 
 /// A load and the part of the body it acts on.
 pub struct Load {
     /// The load's key in the scene, such as `load[0]`.
     pub key: String,
-    /// The loaded part of the surface; ignored by a body force.
+    /// The loaded part of the surface; ignored by a body force and by forces at points.
     pub place: Place,
     /// The load's kind and field.
     pub applied: Applied,

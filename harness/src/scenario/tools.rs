@@ -55,6 +55,13 @@ fn placed(tool: &scene::Tool, index: usize) -> Result<PlacedTool, Failure> {
     let turned = tool.axis.map_or_else(Matrix3::identity, |axis| Tool::turned_to(&Vector3::from(axis)));
     let along = Vector3::from(tool.along);
     let law = law.map_err(wrong)?;
-    let solver = Tool::new(tool.shape, Point3::from(tool.at), turned, along, law).map_err(wrong)?;
+    let straight = Tool::new(tool.shape, Point3::from(tool.at), turned, along, law);
+    // Each bend needs the length of the leg before it.
+    let bends = tool.path.iter().zip(tool.path.iter().skip(1));
+    let solver = bends.fold(straight, |path, (before, after)| {
+        let (before, after) = (Vector3::from(*before), Vector3::from(*after));
+        path?.then(before.norm(), after.normalize())
+    });
+    let solver = solver.map_err(wrong)?;
     Ok(PlacedTool { name: tool.name.clone(), tool: solver, turned, drive, over: tool.over })
 }

@@ -56,6 +56,13 @@ pub fn is_of_many(check: &Check) -> bool {
     matches!(check.address.metric.needs, Needs::Levels | Needs::Seeds)
 }
 
+/// Whether one of the checks foresees an early end, and the records of the run keep its bound.
+pub fn foreseen_end<'a>(checks: impl IntoIterator<Item = &'a Check>, records: &[Record]) -> bool {
+    let kept =
+        |check: &Check| judge(check, "", "", value(check.address, records), None).status != Status::Fail;
+    checks.into_iter().any(|check| check.foresees_early_end() && kept(check))
+}
+
 /// Verdict on one value. A missing value fails, because the guarded quantity no longer exists. `band` is the
 /// own error of the reference that the value is compared with: a bound below it proves nothing.
 pub fn judge(check: &Check, case: &str, method: &str, value: Option<f64>, band: Option<f64>) -> Verdict {
@@ -160,6 +167,22 @@ mod tests {
         let of = metric::RELATIVE_RMS.whole();
         let found = (value(of, &records), band(of, &records), band(metric::PEAK_ERROR.whole(), &records));
         assert_eq!(found, (Some(0.01), Some(0.05), None));
+    }
+
+    #[test]
+    fn a_bound_below_the_whole_load_foresees_an_early_end() {
+        let of = |address, at_most| {
+            let bound = Bound::Within { at_least: Some(0.7), at_most: Some(at_most) };
+            Check { address, methods: vec![], bound, at: String::new() }
+        };
+        let record =
+            Record { statistic: "value".into(), value: 0.75, ..Record::default() }.with(&metric::LIMIT_LOAD);
+        let ends = |check: Check| foreseen_end([&check], std::slice::from_ref(&record));
+        assert!(ends(of(metric::LIMIT_LOAD.whole(), 0.76)));
+        // A limit beyond its bound, a bound that the whole load keeps, and another metric foresee nothing.
+        assert!(!ends(of(metric::LIMIT_LOAD.whole(), 0.74)));
+        assert!(!ends(of(metric::LIMIT_LOAD.whole(), 1.0)));
+        assert!(!ends(of(metric::LOAD_CARRIED.whole(), 0.76)));
     }
 
     #[test]

@@ -5,7 +5,6 @@ use std::sync::Mutex;
 use std::sync::atomic::AtomicUsize;
 
 use cases::scene::{self, Check, Scene};
-use catalogue::metric;
 use records::{Axis, Check as Verdict, Machine, Record, Reference, RunSet, SurfaceField};
 
 use super::args::VerifyArgs;
@@ -95,13 +94,10 @@ impl StudyPlan {
                 set.failures.push(failure.clone());
                 // A feature that a solver does not offer is a result, not a failure.
                 let offered = failure.status != ForeignStatus::NotOffered.name();
-                // Stalls among many clouds are results if there are metrics. So is a known early end.
+                // Stalls among many clouds are results if there are metrics. So is a foreseen early end.
                 let counted = self.is_one_of_many(task) && !result.records.is_empty();
-                let load = metric::LOAD_CARRIED.whole();
-                let known = |v: &Verdict| {
-                    metric::find(&v.metric) == Some(load) && v.status == records::Status::KnownFailure
-                };
-                if offered && !counted && !verdicts.iter().any(known) {
+                let foreseen = check::foreseen_end(self.checks(task), &result.records);
+                if offered && !counted && !foreseen {
                     failed.push(*code);
                     run.failure = Some(failure.reason.clone());
                     if !failure.at.is_empty() {

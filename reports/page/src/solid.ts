@@ -16,7 +16,7 @@ import { digits } from "./text";
 export interface Body {
   method: string; title: string; points: string; faces: { nodes: number; indices: string }[];
   tools: { points: string; quads: string; along: [number, number, number] }[];
-  states: { time: number; u: string; closures: number[]; touching: string; deepest_node: number; values: [string, string, string] | null }[];
+  states: { time: number; u: string; tools: [number, number, number][]; touching: string; deepest_node: number; values: [string, string, string] | null }[];
   left_out: number;
   /** Distance of each point from its position in the reference or exact solution at the end; empty if neither
    * is known. */
@@ -247,7 +247,7 @@ class Solid {
     this.points.instanceMatrix.needsUpdate = true;
     if (this.points.instanceColor) this.points.instanceColor.needsUpdate = true;
     this.tools.children.forEach((tool, k) => {
-      const [x, y, z] = this.body.tools[k].along.map((a) => a * (this.body.states[state].closures[k] ?? 0));
+      const [x, y, z] = this.body.states[state].tools[k] ?? [0, 0, 0];
       tool.position.set(x, y, z);
     });
   }

@@ -6,7 +6,7 @@ use records::Purpose;
 use crate::history::curve;
 use crate::select::{Run, Series, by_material, labels, series};
 use crate::table::Column::{Number, Words};
-use crate::table::{Cell, Table};
+use crate::table::{Cell, Column, Table};
 
 /// The finest run of every method, with the label of its series, for each case that is not only a test of
 /// exactness.
@@ -96,6 +96,50 @@ pub(super) fn probes(runs: &[Run]) -> Table {
                    numbered as in the scene";
     let table = Table::new("probes", "Displacement of points", caption, &header);
     of_places(table, runs, metric::PROBE.components(), 1e3)
+}
+
+/// Table of the moment of every support.
+pub(super) fn support_moments(runs: &[Run]) -> Table {
+    let caption = "Moment of the supports on the body about the point in output.moments_about at the end, for the finest \
+                   run of each method; supports are numbered as in the scene";
+    let table = Table::new("support-moments", "Moments of supports", caption, &moment_header("support"));
+    of_places(table, runs, metric::REACTION_MOMENT.components(), 1e3)
+}
+
+/// Table of the moment on every tool.
+pub(super) fn tool_moments(runs: &[Run]) -> Table {
+    let caption = "Moment of the tissue on the tools about the point in output.moments_about at the end, for the finest \
+                   run of each method; tools are numbered as in the scene";
+    let table = Table::new("tool-moments", "Moments on tools", caption, &moment_header("tool"));
+    of_places(table, runs, metric::TOOL_MOMENT.components(), 1e3)
+}
+
+fn moment_header(place: &'static str) -> [(&'static str, Column); 7] {
+    [
+        ("case", Words),
+        ("method", Words),
+        ("nodes", Number),
+        (place, Number),
+        ("x [N mm]", Number),
+        ("y [N mm]", Number),
+        ("z [N mm]", Number),
+    ]
+}
+
+/// Table of the largest displacement of every probe in dynamics.
+pub(super) fn peaks(runs: &[Run]) -> Table {
+    let header = [
+        ("case", Words),
+        ("method", Words),
+        ("nodes", Number),
+        ("point", Number),
+        ("largest [mm]", Number),
+        ("at [ms]", Number),
+    ];
+    let caption = "Largest displacement of the points in output.probes in all recorded states, and the time of the \
+                   first such state, for the finest run of each method; points are numbered as in the scene";
+    let table = Table::new("peaks", "Largest displacement of points", caption, &header);
+    of_places(table, runs, [metric::PROBE_PEAK.whole(), metric::PROBE_PEAK_TIME.whole()], 1e3)
 }
 
 /// Table of the stress of every probe.

@@ -41,6 +41,12 @@ pub enum ContactError {
         /// Length of the direction vector.
         length: f64,
     },
+    /// A leg of the path of a tool has no length.
+    #[error("a leg of the tool's path has length {length} m; it must be positive")]
+    Leg {
+        /// Length of the leg, m.
+        length: f64,
+    },
     /// A position or a closure is not finite.
     #[error("{what} of the tool is not finite")]
     Place {

@@ -7,17 +7,33 @@ use crate::ToolShape;
 use crate::error::ContactError;
 use crate::law::{ContactLaw, Slip};
 
-/// Rigid tool that moves by `closure * along` (m) without rotating. The `closure` (m) is its displacement
-/// along the unit vector `along`.
+/// Rigid tool that moves along a path of straight legs without rotating. The `closure` (m) is the distance
+/// that it has travelled along the path.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tool {
     shape: ToolShape,
     at: Point3,
     rotation: Matrix3,
-    along: Vector3,
+    first: Leg,
+    /// Legs after the first, by ascending closure.
+    later: Vec<Leg>,
     law: ContactLaw,
     deepest: f64,
 }
+
+/// Straight part of a tool's path.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Leg {
+    /// Closure at its start, m.
+    from: f64,
+    /// Displacement of the tool at its start, m.
+    start: Vector3,
+    /// Unit direction of motion.
+    along: Vector3,
+}
+
+/// Relative rounding error of a closure: a tool that has just reached the end of a leg is still on this leg.
+const ROUNDING: f64 = 1e-12;
 
 /// Contact of one point with one tool.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -64,7 +80,27 @@ impl Tool {
         if !((length - 1.0).abs() <= 1e-9) {
             return Err(ContactError::Direction { length });
         }
-        Ok(Tool { shape, at, rotation, along, law, deepest: 0.5 * shape.inradius() })
+        let first = Leg { from: 0.0, start: Vector3::zeros(), along };
+        Ok(Tool { shape, at, rotation, first, later: Vec::new(), law, deepest: 0.5 * shape.inradius() })
+    }
+
+    /// Bends the path: after the distance `length` (m) from the start of the last leg the tool moves along the
+    /// unit vector `along`.
+    ///
+    /// # Errors
+    ///
+    /// The length is not positive, or the direction is not valid.
+    pub fn then(mut self, length: f64, along: Vector3) -> Result<Tool, ContactError> {
+        let norm = along.norm();
+        if !((norm - 1.0).abs() <= 1e-9) {
+            return Err(ContactError::Direction { length: norm });
+        }
+        if !(length > 0.0 && length.is_finite()) {
+            return Err(ContactError::Leg { length });
+        }
+        let last = *self.later.last().unwrap_or(&self.first);
+        self.later.push(Leg { from: last.from + length, start: last.start + last.along * length, along });
+        Ok(self)
     }
 
     /// Returns a rotation that maps the z axis to the unit vector `axis`, the normal of a plate's face or the
@@ -86,14 +122,40 @@ impl Tool {
         &self.law
     }
 
-    /// Unit direction of motion.
+    /// Unit direction of the first leg: of the whole motion, if the path is straight.
     pub fn along(&self) -> Vector3 {
-        self.along
+        self.first.along
+    }
+
+    /// Unit direction of the leg on which the tool is at a closure (m); at a bend that of the leg before it.
+    pub fn along_at(&self, closure: f64) -> Vector3 {
+        self.leg(closure).along
+    }
+
+    /// Whether the tool moves along one straight line.
+    pub fn is_straight(&self) -> bool {
+        self.later.is_empty()
+    }
+
+    /// Position of the shape's origin (m) at the start of each leg of the path, and the leg's unit direction.
+    pub fn legs(&self) -> impl Iterator<Item = (Point3, Vector3)> {
+        std::iter::once(&self.first).chain(&self.later).map(|leg| (self.at + leg.start, leg.along))
+    }
+
+    /// Displacement of the tool at a closure (m), m.
+    pub fn displacement(&self, closure: f64) -> Vector3 {
+        let leg = self.leg(closure);
+        leg.start + leg.along * (closure - leg.from)
     }
 
     /// Position of the shape's origin at a closure (m), m.
     pub fn place(&self, closure: f64) -> Point3 {
-        self.at + self.along * closure
+        self.at + self.displacement(closure)
+    }
+
+    fn leg(&self, closure: f64) -> &Leg {
+        let passed = self.later.iter().take_while(|leg| leg.from * (1.0 + ROUNDING) < closure);
+        passed.last().unwrap_or(&self.first)
     }
 
     /// Depth beyond which a point is an error, m: half the inradius. At the inradius the nearest face
@@ -115,19 +177,23 @@ impl Tool {
         (place - half, place + half)
     }
 
-    /// Half of the smallest breadth across the direction of motion, m; infinite for a plate. The tool can
-    /// slip between contact points whose spacing exceeds the whole breadth.
+    /// Half of the smallest breadth across a direction of motion, m; infinite for a plate. The tool can slip
+    /// between contact points whose spacing exceeds the whole breadth.
     pub fn half_breadth(&self) -> f64 {
         if self.shape.is_endless() {
             return f64::INFINITY;
         }
         let outline = self.shape.outline(0.0);
-        let turned = Tool::turned_to(&self.along);
-        let breadth = |turn: f64| {
-            let across = self.rotation.tr_mul(&(turned * Vector3::new(turn.cos(), turn.sin(), 0.0)));
+        let breadth = |across: &Vector3| {
+            let across = self.rotation.tr_mul(across);
             outline.iter().map(|p| across.dot(p)).fold(0.0, f64::max)
         };
-        (0..24).map(|k| breadth((7.5 * f64::from(k)).to_radians())).fold(f64::INFINITY, f64::min)
+        let of_leg = |(_, along): (Point3, Vector3)| {
+            let turned = Tool::turned_to(&along);
+            let across = |turn: f64| turned * Vector3::new(turn.cos(), turn.sin(), 0.0);
+            (0..24).map(|k| breadth(&across((7.5 * f64::from(k)).to_radians()))).fold(f64::INFINITY, f64::min)
+        };
+        self.legs().map(of_leg).fold(f64::INFINITY, f64::min)
     }
 
     /// Evaluates contact at the current position `x` (m), from the last committed history. `augmented` is the

@@ -89,7 +89,7 @@ impl ContactSurface<'_> {
         for cluster in &self.clusters {
             let ends = [from, to].map(|stand| {
                 let boxed = cluster.current_box(&self.nodes, stand.u);
-                boxed.map(|(middle, half)| (middle - tool.along() * stand.closure, half))
+                boxed.map(|(middle, half)| (middle - tool.displacement(stand.closure), half))
             });
             let [(a, half_a), (b, half_b)] = [ends[0].clone()?, ends[1].clone()?];
             let (low, high) = ((a - half_a).inf(&(b - half_b)), (a + half_a).sup(&(b + half_b)));

@@ -114,7 +114,8 @@ impl<'a> Pressing<'a> {
                 contacts.add_force(self.surface.rows(), force);
             }
             self.states[k] = ToolState::new(tool.closure, contacts.as_ref());
-            self.pushed[k] = [-self.states[k].force.dot(&tool.tool.along()), self.pushed[k][0]];
+            self.pushed[k] =
+                [-self.states[k].force.dot(&tool.tool.along_at(tool.closure)), self.pushed[k][0]];
         }
         Ok(())
     }

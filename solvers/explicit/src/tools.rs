@@ -326,7 +326,7 @@ impl<'a> Moving<'a> {
     }
 
     fn advance(&mut self, first: bool, time: f64, [before_dt, after_dt]: [f64; 2]) {
-        let pushed = -self.motion.state.force.dot(&self.of.tool.along());
+        let pushed = -self.motion.state.force.dot(&self.of.tool.along_at(self.closure));
         match self.of.drive {
             Drive::Closure(_) => {
                 if !first {

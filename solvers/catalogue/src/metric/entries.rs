@@ -148,6 +148,10 @@ metrics! {
         "deformed position of a point of output.probes, at the end";
     PROBE_STRESS: "probe-stress", "stress of a point", Pressure, Place, Point, Tensor,
         "recovered Cauchy stress of a point of output.probes, at the end; none for viscoelastic tissue";
+    PROBE_PEAK: "probe-peak", "largest displacement of a point", Length, Place, Motion,
+        "largest displacement of a point of output.probes in all recorded states";
+    PROBE_PEAK_TIME: "probe-peak-time", "time of the largest displacement of a point", Time, Place, Motion,
+        "time of the first recorded state with the largest displacement of a point of output.probes";
     STRETCH: "stretch", "stretch of a point", None, Place, Stretch,
         "ratio of deformed to undeformed length along the direction and at the point of an entry of \
          output.stretches, at the end";
