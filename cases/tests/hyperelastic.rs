@@ -7,15 +7,18 @@ use tissuebench_cases::exact::{
 
 const YOUNG: f64 = 20e3;
 
-fn laws(poisson: f64) -> [Hyperelastic; 5] {
+fn laws(poisson: f64) -> [Hyperelastic; 7] {
     let elastic = Elastic::new(YOUNG, poisson).unwrap();
     let (mu, bulk) = (elastic.mu(), elastic.bulk());
+    let rest = Box::new(Hyperelastic::MooneyRivlin { c10: 0.3 * mu, c01: 0.2 * mu, bulk: 0.0 });
     [
         Hyperelastic::SaintVenantKirchhoff(elastic),
         Hyperelastic::NeoHookean(elastic),
         Hyperelastic::Hencky(elastic),
         Hyperelastic::MooneyRivlin { c10: 0.3 * mu, c01: 0.2 * mu, bulk },
         Hyperelastic::Ogden { terms: vec![(0.4 * mu, 3.0), (-0.4 * mu, -2.0)], bulk },
+        Hyperelastic::LogarithmicVolume { rest: rest.clone(), bulk },
+        Hyperelastic::SimoTaylorVolume { rest, bulk },
     ]
 }
 

@@ -231,6 +231,15 @@ fn what_an_adapter_does_not_offer_is_named_and_no_failure_of_a_study() {
     let scene = write(&dir, "pressed.toml", &tools);
     let done = tissuebench(&dir, &["run", &scene, "--method", "own"]);
     assert_fails(&done, 3, "not-offered: dummy does not support rigid tools ([[tool]])");
+    // Nor is another volumetric energy than that in the formula of the law.
+    let logarithmic = "law = \"neo-hookean-isochoric\", volumetric = \"logarithmic\"";
+    let block = BLOCK
+        .replace("law = \"linear\"", logarithmic)
+        .replace("reference", "procedure = { kind = \"static\" }\nreference")
+        .replace("OTHERS", &other("itself", "tissuebench", ""));
+    let scene = write(&dir, "logarithmic.toml", &block);
+    let done = tissuebench(&dir, &["run", &scene, "--method", "itself"]);
+    assert_fails(&done, 3, "not-offered: tissuebench does not support another volumetric energy");
 }
 
 /// A study that solves a scene's elements with other solvers too; BESIDE stands for more keys.

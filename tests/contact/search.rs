@@ -47,7 +47,7 @@ proptest! {
         let surface = ContactSurface::new(&rows);
         let tools = [0, 1].map(|k: usize| {
             let at = Point3::new(0.02, 0.015, [0.032, -0.012][k]) + at[k];
-            Tool::new(SHAPES[shapes[k]], at, turn, Vector3::z() * [-1.0, 1.0][k], law()).unwrap()
+            Tool::new(SHAPES[shapes[k]].clone(), at, turn, Vector3::z() * [-1.0, 1.0][k], law()).unwrap()
         });
         let mut histories = [0, 1].map(|k: usize| ContactHistory::new(&tools[k], rows.points().len()));
         let mut search = ContactSearch::new(&surface, 2);
@@ -123,7 +123,7 @@ fn small_steps_look_at_few_points_and_at_no_other() {
     let rows = block.surface(&SIDES);
     let surface = ContactSurface::new(&rows);
     let at = Point3::new(0.02, 0.015, 0.0199 + SHAPES[1].bounds().1.z);
-    let jaw = Tool::new(SHAPES[1], at, Matrix3::identity(), -Vector3::z(), law()).unwrap();
+    let jaw = Tool::new(SHAPES[1].clone(), at, Matrix3::identity(), -Vector3::z(), law()).unwrap();
     let history = ContactHistory::new(&jaw, rows.points().len());
     let mut search = ContactSearch::new(&surface, 1);
     let [mut counts, mut all] = [ContactCounts::default(); 2];

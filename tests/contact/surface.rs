@@ -24,9 +24,9 @@ fn wave(block: &Block, size: f64) -> Vec<Vector3> {
 }
 
 /// A tool of any shape at the block's top (z = 20 mm), with its face 0.5 mm inside, moving along x.
-fn on_top(shape: ToolShape, turn: Matrix3) -> Tool {
+fn on_top(shape: &ToolShape, turn: Matrix3) -> Tool {
     let lift = shape.bounds().1.z;
-    Tool::new(shape, Point3::new(0.02, 0.015, 0.0195 + lift), turn, Vector3::x(), coulomb()).unwrap()
+    Tool::new(shape.clone(), Point3::new(0.02, 0.015, 0.0195 + lift), turn, Vector3::x(), coulomb()).unwrap()
 }
 
 /// Evaluates every point by [`Tool::contact`], without a broad phase.
@@ -69,9 +69,9 @@ fn the_same_as_point_by_point_and_in_balance() {
         let rows = block.surface(&SIDES);
         let surface = ContactSurface::new(&rows);
         let u = wave(&block, 1e-4);
-        for shape in SHAPES {
+        for shape in SHAPES.iter() {
             // The plate faces down; the z axes of the others point up.
-            let turn = if shape == ToolShape::Plate(Plate) {
+            let turn = if *shape == ToolShape::Plate(Plate) {
                 Tool::turned_to(&-Vector3::z())
             } else {
                 Matrix3::identity()
@@ -142,8 +142,8 @@ proptest! {
         let rows = SurfaceRows::new(at_points, plain.weights().to_vec(), plain.normals().to_vec()).unwrap();
         let surface = ContactSurface::new(&rows);
         let u = wave(&block, amplitude);
-        for shape in SHAPES {
-            let tool = Tool::new(shape, Point3::new(0.02, 0.015, 0.01) + at, turn, Vector3::x(), coulomb()).unwrap();
+        for shape in SHAPES.iter() {
+            let tool = Tool::new(shape.clone(), Point3::new(0.02, 0.015, 0.01) + at, turn, Vector3::x(), coulomb()).unwrap();
             let history = ContactHistory::new(&tool, rows.points().len());
             let all = one_by_one(&tool, 0.0, &rows, &u, &history);
             match surface.evaluate(&tool, 0.0, &u, &history, &mut ContactCounts::default()) {
@@ -165,9 +165,14 @@ fn a_far_tool_is_skipped_and_a_near_one_looks_at_few_points() {
     let surface = ContactSurface::new(&rows);
     let u = wave(&block, 1e-4);
     let points = rows.points().len();
-    let jaw =
-        Tool::new(SHAPES[1], Point3::new(0.02, 0.015, 0.05), Matrix3::identity(), -Vector3::z(), coulomb())
-            .unwrap();
+    let jaw = Tool::new(
+        SHAPES[1].clone(),
+        Point3::new(0.02, 0.015, 0.05),
+        Matrix3::identity(),
+        -Vector3::z(),
+        coulomb(),
+    )
+    .unwrap();
     let mut history = ContactHistory::new(&jaw, points);
     let mut counts = ContactCounts::default();
     assert_eq!(surface.evaluate(&jaw, 0.0, &u, &history, &mut counts).unwrap(), None);
@@ -189,7 +194,7 @@ fn the_same_bits_at_any_number_of_threads() {
     let rows = block.surface(&SIDES);
     let surface = ContactSurface::new(&rows);
     let u = wave(&block, 1e-4);
-    let tool = on_top(ToolShape::Plate(Plate), Tool::turned_to(&-Vector3::z()));
+    let tool = on_top(&ToolShape::Plate(Plate), Tool::turned_to(&-Vector3::z()));
     let run = |threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| {
@@ -264,9 +269,14 @@ fn states_without_meaning_are_refused() {
     let rows = block.surface(&["z-max"]);
     let surface = ContactSurface::new(&rows);
     let mut u = vec![Vector3::zeros(); block.mesh.points().len()];
-    let jaw =
-        Tool::new(SHAPES[1], Point3::new(0.02, 0.015, 0.024), Matrix3::identity(), -Vector3::z(), coulomb())
-            .unwrap();
+    let jaw = Tool::new(
+        SHAPES[1].clone(),
+        Point3::new(0.02, 0.015, 0.024),
+        Matrix3::identity(),
+        -Vector3::z(),
+        coulomb(),
+    )
+    .unwrap();
     let history = ContactHistory::new(&jaw, rows.points().len());
     let mut counts = ContactCounts::default();
     let mut evaluate = |closure, u: &[Vector3], history: &ContactHistory| {
@@ -326,7 +336,7 @@ fn a_surface_without_points_is_skipped() {
     let rows = Rows::new(1, vec![0], vec![], vec![], shape::Unity::NotPromised).unwrap();
     let rows = SurfaceRows::new(PointRows::new(vec![], rows).unwrap(), vec![], vec![]).unwrap();
     let surface = ContactSurface::new(&rows);
-    let tool = on_top(SHAPES[3], Matrix3::identity());
+    let tool = on_top(&SHAPES[3], Matrix3::identity());
     let mut counts = ContactCounts::default();
     let history = ContactHistory::new(&tool, 0);
     assert_eq!(surface.evaluate(&tool, 0.0, &[Vector3::zeros()], &history, &mut counts), Ok(None));

@@ -8,10 +8,10 @@ use shape::{Matrix3, Point3, Vector3};
 
 /// A tool whose foremost point is `above` the middle of the block's top (z = 20 mm), shifted by `aside` along
 /// x, which moves downwards.
-fn over(shape: ToolShape, above: f64, aside: f64) -> Tool {
+fn over(shape: &ToolShape, above: f64, aside: f64) -> Tool {
     let law = ContactLaw::frictionless(5e8).unwrap();
     let at = Point3::new(0.02 + aside, 0.015, 0.02 + shape.bounds().1.z + above);
-    Tool::new(shape, at, Matrix3::identity(), -Vector3::z(), law).unwrap()
+    Tool::new(shape.clone(), at, Matrix3::identity(), -Vector3::z(), law).unwrap()
 }
 
 fn jumps(surface: &ContactSurface, tool: &Tool, closures: [f64; 2], u: &[Vector3]) -> bool {
@@ -34,7 +34,7 @@ fn no_tool_gets_through_a_surface_unseen() {
     let rows = block.surface(&SIDES);
     let surface = ContactSurface::new(&rows);
     let u = vec![Vector3::zeros(); block.mesh.points().len()];
-    for shape in SHAPES.into_iter().filter(|shape| !shape.is_endless()) {
+    for shape in SHAPES.iter().filter(|shape| !shape.is_endless()) {
         let tool = over(shape, 1e-3, 0.0);
         let height = 2.0 * shape.bounds().1.z;
         // Away from the body, at rest, and back again: no surface is crossed.
@@ -72,7 +72,7 @@ fn sliding_and_penetrating_is_no_jump() {
     let surface = ContactSurface::new(&rows);
     let u = vec![Vector3::zeros(); block.mesh.points().len()];
     let radius = 5e-3;
-    let ball = over(ToolShape::Sphere(Sphere { radius }), 0.0, 0.0);
+    let ball = over(&ToolShape::Sphere(Sphere { radius }), 0.0, 0.0);
     // Sideways by 0.8 of the radius at a depth of a tenth of the radius.
     let moved: Vec<Vector3> = u.iter().map(|u| u + Vector3::x() * 0.8 * radius).collect();
     let [from, to] = [&u, &moved].map(|u| Stand { closure: 0.1 * radius, u });
@@ -113,7 +113,7 @@ fn a_tool_between_the_points_is_found() {
         let u = vec![Vector3::zeros(); block.mesh.points().len()];
         let ball = ToolShape::Sphere(Sphere { radius: 0.01 });
         for aside in [0.0, 5e-3, 2e-3] {
-            let tool = over(ball, 0.0, aside);
+            let tool = over(&ball, 0.0, aside);
             let closure = surface.gap(&tool, 0.0, &u).min(4e-4) * 0.9;
             assert!(closure > 1e-5, "{kind:?} {aside}: a point stands right there");
             let end = |closure| surface.check_end(&tool, Stand { closure, u: &u });
@@ -130,7 +130,7 @@ fn a_tool_between_the_points_is_found() {
             assert_eq!(surface.check_overlap(&tool, Stand { closure, u: &u }), Ok(()), "{kind:?} {aside}");
         }
         // A needle at a vertex, much deeper than the points can detect.
-        let needle = over(ToolShape::Sphere(Sphere { radius: 1e-3 }), 0.0, 0.0);
+        let needle = over(&ToolShape::Sphere(Sphere { radius: 1e-3 }), 0.0, 0.0);
         let vertex = block.nodes_of(&["z-max"]).into_iter().map(|node| block.mesh.points()[node as usize]);
         let off = |x: &Point3| (x - Point3::new(0.02, 0.015, 0.02)).norm();
         let vertex = vertex.min_by(|a, b| off(a).total_cmp(&off(b))).unwrap();
@@ -150,17 +150,17 @@ fn a_tool_between_the_points_is_found() {
 #[test]
 fn a_breadth_is_that_across_the_way() {
     let law = ContactLaw::frictionless(5e8).unwrap();
-    let breadth = |shape, along: Vector3| {
-        Tool::new(shape, Point3::origin(), Matrix3::identity(), along, law).unwrap().half_breadth()
+    let breadth = |shape: &ToolShape, along: Vector3| {
+        Tool::new(shape.clone(), Point3::origin(), Matrix3::identity(), along, law).unwrap().half_breadth()
     };
     // Plate, rounded box, sharp box, ball, cylinder, capsule: downwards, then along x.
     for (shape, down, sideways) in [
-        (SHAPES[0], f64::INFINITY, f64::INFINITY),
-        (SHAPES[1], 5e-3, 4e-3),
-        (SHAPES[2], 2e-3, 2e-3),
-        (SHAPES[3], 5e-3, 5e-3),
-        (SHAPES[4], 4e-3, 4e-3),
-        (SHAPES[5], 3e-3, 3e-3),
+        (&SHAPES[0], f64::INFINITY, f64::INFINITY),
+        (&SHAPES[1], 5e-3, 4e-3),
+        (&SHAPES[2], 2e-3, 2e-3),
+        (&SHAPES[3], 5e-3, 5e-3),
+        (&SHAPES[4], 4e-3, 4e-3),
+        (&SHAPES[5], 3e-3, 3e-3),
     ] {
         for (along, exact) in [(-Vector3::z(), down), (Vector3::x(), sideways)] {
             let found = breadth(shape, along);

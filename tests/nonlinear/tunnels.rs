@@ -38,7 +38,7 @@ struct Pressed {
 }
 
 impl Pressed {
-    fn new(shape: ToolShape, at: Point3, cells: [usize; 3], parts: usize) -> Pressed {
+    fn new(shape: &ToolShape, at: Point3, cells: [usize; 3], parts: usize) -> Pressed {
         let model = Model::block(METHOD, cells);
         let fixed = model.hold(&["z-min"], &[0, 1, 2], |_| Vector3::zeros());
         let boundary = model.mesh.boundary();
@@ -46,12 +46,12 @@ impl Pressed {
         let rows = fem::divided_surface_rows(&model.mesh, &boundary, &SurfaceRule::STANDARD, &parts).unwrap();
         let law = Law::NeoHookean(NeoHookean::new(YOUNG, 0.3).unwrap());
         let touch = ContactLaw::frictionless(5e9).unwrap();
-        let tool = Tool::new(shape, at, Matrix3::identity(), -Vector3::z(), touch).unwrap();
+        let tool = Tool::new(shape.clone(), at, Matrix3::identity(), -Vector3::z(), touch).unwrap();
         Pressed { model, law, fixed, rows, tool }
     }
 
     /// Builds the case with a tool over the top, its face at a distance of `off` from the top.
-    fn over(shape: ToolShape, off: f64) -> Pressed {
+    fn over(shape: &ToolShape, off: f64) -> Pressed {
         let at = Point3::new(0.021, 0.014, SIZE.z + off + shape.bounds().1.z);
         Pressed::new(shape, at, [6, 5, 3], 1)
     }
@@ -93,7 +93,7 @@ fn agree(found: f64, exact: f64, what: &str) {
 
 #[test]
 fn one_step_comes_to_where_many_do() {
-    for (shape, off) in [(JAW, 5e-4), (SHEET, 5e-3)] {
+    for (shape, off) in [(&JAW, 5e-4), (&SHEET, 5e-3)] {
         let pressed = Pressed::over(shape, off);
         let closure = off + 4e-3;
         let many = pressed.force(closure, 20);
@@ -106,14 +106,14 @@ fn one_step_comes_to_where_many_do() {
 /// A travel of 12 mm in one step moves the jaw beyond the surface, with nothing near it.
 #[test]
 fn deep_is_as_deep_in_one_step() {
-    let pressed = Pressed::over(JAW, 5e-4);
+    let pressed = Pressed::over(&JAW, 5e-4);
     let many = pressed.force(9e-3, 10);
     agree(pressed.force(9e-3, 1), many, "in one");
 }
 
 #[test]
 fn frames_and_time_steps_are_cut_as_well() {
-    let pressed = Pressed::over(SHEET, 5e-3);
+    let pressed = Pressed::over(&SHEET, 5e-3);
     let many = pressed.force(9e-3, 20);
     pressed.with(9e-3, |problem| {
         let step = Frames::new(problem, &cut(1)).unwrap().to(1.0).unwrap();
@@ -141,7 +141,7 @@ fn frames_and_time_steps_are_cut_as_well() {
 fn a_ball_needs_points_closer_than_itself() {
     let ball = ToolShape::Sphere(Sphere { radius: 3e-3 });
     let at = Point3::new(0.02, 0.015, SIZE.z + 3e-3);
-    let force = |parts, count| Pressed::new(ball, at, [2, 2, 1], parts).force(3e-3, count);
+    let force = |parts, count| Pressed::new(&ball, at, [2, 2, 1], parts).force(3e-3, count);
     assert_eq!(force(1, 1), 0.0);
     let many = force(8, 10);
     agree(force(8, 1), many, "in one");
@@ -158,7 +158,7 @@ fn tools_that_pass_by_meet_nothing() {
         (Point3::new(0.02, 0.0335, 0.03), 0.06),
         (Point3::new(0.02, 0.015, SIZE.z + 5e-3), 1.99e-3),
     ] {
-        let pressed = Pressed::new(ball, at, [6, 5, 3], 4);
+        let pressed = Pressed::new(&ball, at, [6, 5, 3], 4);
         for count in [1, 7] {
             let path = pressed.path(closure, count);
             assert!(path.failure.is_none() && path.cut_back == 0, "{at}: {:?}", path.failure);
@@ -172,7 +172,7 @@ fn tools_that_pass_by_meet_nothing() {
 #[test]
 fn a_grazing_tool_touches() {
     let ball = ToolShape::Sphere(Sphere { radius: 3e-3 });
-    let pressed = Pressed::new(ball, Point3::new(0.02, 0.03 + 2.4e-3, 0.03), [6, 5, 3], 4);
+    let pressed = Pressed::new(&ball, Point3::new(0.02, 0.03 + 2.4e-3, 0.03), [6, 5, 3], 4);
     let closure = 0.018;
     let [one, ten] = [1, 10].map(|count| pressed.path(closure, count));
     for path in [&one, &ten] {
@@ -187,7 +187,7 @@ fn a_grazing_tool_touches() {
 /// reported.
 #[test]
 fn a_step_that_no_cutting_saves_is_an_error() {
-    let mut pressed = Pressed::over(SHEET, 5e-3);
+    let mut pressed = Pressed::over(&SHEET, 5e-3);
     let touch = ContactLaw::frictionless(1e6).unwrap();
     pressed.tool =
         Tool::new(SHEET, pressed.tool.place(0.0), Matrix3::identity(), -Vector3::z(), touch).unwrap();
@@ -206,7 +206,7 @@ fn a_step_that_no_cutting_saves_is_an_error() {
 #[test]
 fn an_overlap_without_a_force_is_an_error() {
     let ball = ToolShape::Sphere(Sphere { radius: 20e-3 });
-    let pressed = Pressed::new(ball, Point3::new(0.0198, 0.0151, SIZE.z + 20e-3), [2, 2, 1], 1);
+    let pressed = Pressed::new(&ball, Point3::new(0.0198, 0.0151, SIZE.z + 20e-3), [2, 2, 1], 1);
     let top = pressed.model.facets(&["z-max"]);
     let outline = fem::outline_rows(&pressed.model.mesh, &top).unwrap();
     let nodes = pressed.model.mesh.facet_group_nodes(&top);

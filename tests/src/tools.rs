@@ -1,18 +1,45 @@
 //! Tools of every shape, and the distance to the kinks of their distance functions.
 
-use contact::{Capsule, Cylinder, Plate, RoundedBox, Sphere, ToolShape};
+use std::sync::{Arc, LazyLock};
+
+use contact::{Capsule, Cylinder, Plate, RoundedBox, RoundedSurface, Sphere, ToolShape};
+use geometry::surface::Soup;
+use geometry::{Point3, Surface};
 use proptest::prelude::*;
 use shape::{Matrix3, Vector3};
 
-/// One tool of each shape, and a box without rounding, with sizes of a few millimetres.
-pub const SHAPES: [ToolShape; 6] = [
-    ToolShape::Plate(Plate),
-    ToolShape::RoundedBox(RoundedBox { half: [5e-3, 10e-3, 4e-3], radius: 1.5e-3 }),
-    ToolShape::RoundedBox(RoundedBox { half: [3e-3, 2e-3, 4e-3], radius: 0.0 }),
-    ToolShape::Sphere(Sphere { radius: 5e-3 }),
-    ToolShape::Cylinder(Cylinder { radius: 4e-3, half_length: 6e-3 }),
-    ToolShape::Capsule(Capsule { radius: 3e-3, half_length: 5e-3 }),
-];
+/// Half extents of the surface below without its rounding, m.
+const CORE: [f64; 3] = [3e-3, 4e-3, 2e-3];
+const ROUNDING: f64 = 1e-3;
+
+/// The box that the surface below is.
+pub const BOXED: ToolShape = ToolShape::RoundedBox(RoundedBox { half: [4e-3, 5e-3, 3e-3], radius: ROUNDING });
+
+/// One tool of each shape, and a box without rounding, with sizes of a few millimetres. The surface is that of a
+/// box, so that its distances are known.
+pub static SHAPES: LazyLock<[ToolShape; 7]> = LazyLock::new(|| {
+    [
+        ToolShape::Plate(Plate),
+        ToolShape::RoundedBox(RoundedBox { half: [5e-3, 10e-3, 4e-3], radius: 1.5e-3 }),
+        ToolShape::RoundedBox(RoundedBox { half: [3e-3, 2e-3, 4e-3], radius: 0.0 }),
+        ToolShape::Sphere(Sphere { radius: 5e-3 }),
+        ToolShape::Cylinder(Cylinder { radius: 4e-3, half_length: 6e-3 }),
+        ToolShape::Capsule(Capsule { radius: 3e-3, half_length: 5e-3 }),
+        ToolShape::RoundedSurface(RoundedSurface::new(boxed(CORE), ROUNDING).unwrap()),
+    ]
+});
+
+/// Surface of a box about the origin.
+fn boxed(half: [f64; 3]) -> Arc<Surface> {
+    let mut soup = Soup::default();
+    let side = |k: usize, a: usize| if (k >> a) & 1 == 1 { half[a] } else { -half[a] };
+    soup.points.extend((0..8).map(|k| Point3::new(side(k, 0), side(k, 1), side(k, 2))));
+    let quads = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+    for (number, quad) in quads.iter().enumerate() {
+        soup.face(number, quad).expect("a quadrangle");
+    }
+    Arc::new(Surface::new(soup, 1.0).expect("a closed surface"))
+}
 
 /// Returns the distance (m), or a lower bound of it, from `p` to the nearest jump of the gradient or the
 /// Hessian.
@@ -21,6 +48,7 @@ pub fn kink(shape: &ToolShape, p: &Vector3) -> f64 {
     let rho = p.x.hypot(p.y);
     match *shape {
         ToolShape::Plate(Plate) => f64::INFINITY,
+        ToolShape::RoundedSurface(_) => kink(&BOXED, p),
         ToolShape::RoundedBox(RoundedBox { half, radius }) => {
             // The deepest axis comes last: inside the core the nearest face changes at a tie; outside, the
             // other axes contribute from q = 0.

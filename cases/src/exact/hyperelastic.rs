@@ -72,6 +72,20 @@ pub enum Hyperelastic {
     },
     /// `mu sum (l_a - 1)^2 + lambda/2 (sum l_a - 3)^2`.
     Corotational(Elastic),
+    /// A law of bulk modulus 0 and `kappa/2 (ln J)^2`.
+    LogarithmicVolume {
+        /// The law without its volumetric energy.
+        rest: Box<Hyperelastic>,
+        /// Bulk modulus `kappa`, Pa.
+        bulk: f64,
+    },
+    /// A law of bulk modulus 0 and `kappa/4 (J^2 - 1 - 2 ln J)`.
+    SimoTaylorVolume {
+        /// The law without its volumetric energy.
+        rest: Box<Hyperelastic>,
+        /// Bulk modulus `kappa`, Pa.
+        bulk: f64,
+    },
 }
 
 /// Principal nominal stresses (Pa) of an energy of the isochoric invariants `a = J^(-2/3) I1 - 3` and
@@ -135,6 +149,16 @@ impl Hyperelastic {
             Hyperelastic::Corotational(e) => {
                 let sum: f64 = stretch.iter().sum();
                 stretch.map(|l| 2.0 * e.mu() * (l - 1.0) + e.lambda() * (sum - 3.0))
+            }
+            Hyperelastic::LogarithmicVolume { rest, bulk } => {
+                let tau = bulk * jacobian.ln();
+                let of_rest = rest.principal_stress(stretch);
+                std::array::from_fn(|a| of_rest[a] + tau / stretch[a])
+            }
+            Hyperelastic::SimoTaylorVolume { rest, bulk } => {
+                let tau = 0.5 * bulk * (jacobian * jacobian - 1.0);
+                let of_rest = rest.principal_stress(stretch);
+                std::array::from_fn(|a| of_rest[a] + tau / stretch[a])
             }
             Hyperelastic::Ogden { terms, bulk } => {
                 let volume = bulk * (jacobian - 1.0) * jacobian;

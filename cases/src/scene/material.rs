@@ -4,7 +4,7 @@
 use std::borrow::Cow;
 
 use catalogue::{Problem, Value, Values};
-use material::{Law, LawEntry, Material as _};
+use material::{Law, LawEntry, Material as _, VolumetricForm};
 use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::Deserialize;
 
@@ -42,8 +42,33 @@ struct BesideLaw {
     /// Piola-Kirchhoff stress T f x f beside the passive law; none unless given
     active: Option<Q<Pressure>>,
     /// Direction within a sheet across the fibres; its part along the fibre is taken off. Any direction across the
-    /// fibre unless given
+    /// fibre unless given, for a law that is the same all around the fibre
     sheets: Option<DirectionKeys>,
+    /// Form of the volumetric energy, with the bulk modulus of the law; that of the law's formula unless given. Only for
+    /// laws whose formula has a term of J alone
+    volumetric: Option<VolumetricKeys>,
+}
+
+/// Volumetric energy with the bulk modulus kappa
+#[derive(Clone, Copy, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+enum VolumetricKeys {
+    /// kappa/2 (J - 1)^2, as in Abaqus and CalculiX
+    Quadratic,
+    /// kappa/2 (ln J)^2, as in the uncoupled laws of FEBio
+    Logarithmic,
+    /// kappa/4 (J^2 - 1 - 2 ln J)
+    SimoTaylor,
+}
+
+impl From<VolumetricKeys> for VolumetricForm {
+    fn from(keys: VolumetricKeys) -> VolumetricForm {
+        match keys {
+            VolumetricKeys::Quadratic => VolumetricForm::Quadratic,
+            VolumetricKeys::Logarithmic => VolumetricForm::Logarithmic,
+            VolumetricKeys::SimoTaylor => VolumetricForm::SimoTaylor,
+        }
+    }
 }
 
 /// Three numbers, or three expressions in x, y and z (metres)
@@ -109,6 +134,8 @@ pub(crate) struct RegionKeys {
 pub struct Material {
     entry: &'static LawEntry,
     values: Values,
+    /// Form of the volumetric energy, if it is not that of the law's formula.
+    volumetric: Option<VolumetricForm>,
     law: Law,
     /// Density in kilograms per cubic metre, if given.
     pub density: Option<f64>,
@@ -174,13 +201,25 @@ impl MaterialKeys {
         let entry = self.law.0;
         let values = settings(&self.law, self.settings, report)?;
         let law = build(entry, &values, "law", report)?;
+        let volumetric = self.beside.volumetric.map(VolumetricForm::from);
+        let law = with_volumetric(law, volumetric).map_err(|bad| report.add("volumetric", bad)).ok()?;
         let given = (self.beside.fibers.map(Into::into), self.beside.sheets.map(Into::into));
         let directions = directions(&law, given, report);
         let active = self.beside.active.map_or(0.0, |active| active.0);
         let help = "take a law with fibres, such as law = \"guccione\"";
         report.require(active == 0.0 || directions.is_some(), "active", "has no fibre to act along", help);
-        Some(Material { entry, values, law, density, prony, directions, active })
+        Some(Material { entry, values, volumetric, law, density, prony, directions, active })
     }
+}
+
+/// Returns the law with another form of its volumetric energy.
+fn with_volumetric(law: Law, form: Option<VolumetricForm>) -> Result<Law, Problem> {
+    let Some(form) = form else { return Ok(law) };
+    let name = law.name();
+    law.with_volumetric(form).ok_or_else(|| {
+        let help = "leave it out, or take a law with such a term, such as law = \"mooney-rivlin\"";
+        Problem::new(format!("has no effect: the energy of the law {name} has no term of J alone")).help(help)
+    })
 }
 
 /// Checks that directions are given for a law that depends on them, and for no other.
@@ -203,6 +242,12 @@ fn directions(
     for (key, direction) in [("fibers", Some(&fibers)), ("sheets", sheets.as_ref())] {
         let sound = direction.is_none_or(|direction| !direction.is_zero());
         report.require(sound, key, "has no direction", "give a vector such as [1, 0, 0]");
+    }
+    if law.has_sheets() && sheets.is_none() {
+        report.missing(
+            "sheets",
+            "this law depends on them: give a direction across the fibres, such as sheets = [0, 1, 0]",
+        );
     }
     Some(Directions { fibers, sheets })
 }
@@ -241,6 +286,11 @@ impl Material {
         &self.law
     }
 
+    /// Whether the volumetric energy has another form than in the law's formula.
+    pub fn has_other_volumetric(&self) -> bool {
+        matches!(self.law, Law::WithVolumetric(_))
+    }
+
     /// The name of the law in files and tables.
     pub fn name(&self) -> &'static str {
         self.entry.name
@@ -257,8 +307,9 @@ impl Material {
         if values.has("poisson") {
             values.give("poisson", Value::Number(poisson))?;
         }
-        (self.entry.build)(&values)
+        with_volumetric((self.entry.build)(&values)?, self.volumetric)
     }
+
     /// Reports contradictions with the body and the procedure.
     pub(crate) fn demands(&self, body: &Body, procedure: &Procedure, report: &Report) {
         let kind = procedure.kind();
@@ -300,7 +351,12 @@ impl Material {
 /// have solutions at small strain only.
 pub fn medium(law: &Law, young: f64, poisson: f64) -> Result<Medium, ExactError> {
     let elastic = Elastic::new(young, poisson)?;
-    let law = match law {
+    Ok(Medium { elastic, law: hyperelastic(law, elastic) })
+}
+
+/// The energy of a law for exact solutions; `elastic` has the moduli of the whole law.
+fn hyperelastic(law: &Law, elastic: Elastic) -> Option<Hyperelastic> {
+    match law {
         Law::SaintVenantKirchhoff(_) => Some(Hyperelastic::SaintVenantKirchhoff(elastic)),
         Law::NeoHookean(_) => Some(Hyperelastic::NeoHookean(elastic)),
         Law::Hencky(_) => Some(Hyperelastic::Hencky(elastic)),
@@ -325,7 +381,39 @@ pub fn medium(law: &Law, young: f64, poisson: f64) -> Result<Medium, ExactError>
         Law::BlatzKo(_) => Some(Hyperelastic::BlatzKo(elastic)),
         Law::Hyperfoam(law) => Some(Hyperelastic::Hyperfoam { terms: law.terms().to_vec() }),
         Law::Corotational(_) => Some(Hyperelastic::Corotational(elastic)),
+        // Hencky's law takes its moduli from those of the whole law, so the volumetric part can't be taken off.
+        Law::WithVolumetric(law) if !matches!(law.rest(), Law::Hencky(_)) => {
+            let rest = Box::new(hyperelastic(law.rest(), elastic)?);
+            let bulk = law.volume().bulk;
+            Some(match law.volume().form {
+                VolumetricForm::Logarithmic => Hyperelastic::LogarithmicVolume { rest, bulk },
+                VolumetricForm::SimoTaylor => Hyperelastic::SimoTaylorVolume { rest, bulk },
+                VolumetricForm::Quadratic => return None,
+            })
+        }
         _ => None,
-    };
-    Ok(Medium { elastic, law })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn another_poissons_ratio_keeps_the_volumetric_energy() {
+        let entry = catalogue::find(material::LAWS, "neo-hookean-isochoric").unwrap();
+        let mut values = Values::new(entry.parameters);
+        values.give("young", Value::Number(15e3)).unwrap();
+        values.give("poisson", Value::Number(0.3)).unwrap();
+        let volumetric = Some(VolumetricForm::SimoTaylor);
+        let law = with_volumetric((entry.build)(&values).unwrap(), volumetric).unwrap();
+        let (density, prony, directions, active) = (None, Vec::new(), None, 0.0);
+        let material = Material { entry, values, volumetric, law, density, prony, directions, active };
+        // kappa = E / (3 (1 - 2 nu)).
+        for (law, bulk) in [(material.law().clone(), 12.5e3), (material.at_poisson(0.45).unwrap(), 50e3)] {
+            let Law::WithVolumetric(law) = law else { panic!("{law:?}") };
+            assert_eq!(law.volume().form, VolumetricForm::SimoTaylor);
+            assert!((law.volume().bulk - bulk).abs() < 1e-9 * bulk, "{:?}", law.volume());
+        }
+    }
 }

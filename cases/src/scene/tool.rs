@@ -1,25 +1,67 @@
 //! Rigid tools: shape, drive and contact parameters.
 
 use std::borrow::Cow;
+use std::path::PathBuf;
+use std::sync::Arc;
 
-use catalogue::Problem;
-use contact::ToolShape;
+use catalogue::{Problem, find};
+use contact::{ContactError, RoundedSurface, ToolShape};
+use nalgebra::Matrix3;
 use schemars::{JsonSchema, Schema, SchemaGenerator};
-use serde::Deserialize;
+use serde::de::Error;
+use serde::{Deserialize, Deserializer};
+use serde_json::json;
 
+use super::mesh_file::MeshFile;
 use super::procedure::{Procedure, ProcedureKind};
 use super::report::Report;
-use super::units::{ContactSlope, Force, Length, Pressure, Q, Time};
-use super::vocabulary::{Given, ToolShapes, Word, build, settings, tagged};
+use super::units::{ContactSlope, Force, Length, Pressure, Q, Time, Unit};
+use super::vocabulary::{Given, ToolShapes, Vocabulary, Word, build, settings, tagged};
 
 /// A rigid tool
 #[derive(Deserialize)]
 pub(crate) struct ToolKeys {
-    shape: Word<ToolShapes>,
+    shape: ShapeWord,
     #[serde(flatten)]
     beside: BesideShape,
     #[serde(flatten)]
     settings: Given<ToolShapes>,
+    // The last, because it takes its keys from those that follow: `axis` is a setting of named shapes too.
+    #[serde(flatten)]
+    surface: Option<SurfaceKeys>,
+}
+
+/// The word of a tool's shape
+enum ShapeWord {
+    Named(Word<ToolShapes>),
+    File,
+}
+
+const FILE: &str = "file";
+
+/// The closed surface of a file (STL, OBJ or PLY), with rounded edges and corners
+#[derive(Deserialize, JsonSchema)]
+struct SurfaceKeys {
+    /// The file, relative to the folder of the scene
+    path: String,
+    /// Unit of the numbers in the file
+    unit: Unit<Length>,
+    /// Radius of the rounding, which is added to the surface all round; larger than the penetration of the points
+    /// in contact
+    rounding: Q<Length>,
+    /// Direction of the file's z axis; z unless given
+    axis: Option<[f64; 3]>,
+}
+
+impl<'de> Deserialize<'de> for ShapeWord {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<ShapeWord, D::Error> {
+        match String::deserialize(deserializer)?.as_str() {
+            FILE => Ok(ShapeWord::File),
+            name => find(ToolShapes::ENTRIES, name)
+                .map(|entry| ShapeWord::Named(Word(entry)))
+                .map_err(D::Error::custom),
+        }
+    }
 }
 
 /// Keys that every tool has, whatever its shape
@@ -44,7 +86,21 @@ impl JsonSchema for ToolKeys {
     }
 
     fn json_schema(generator: &mut SchemaGenerator) -> Schema {
-        tagged::<ToolShapes, BesideShape>("shape", "A rigid tool", generator)
+        let mut schema = tagged::<ToolShapes, BesideShape>("shape", "A rigid tool", generator);
+        let surface = SurfaceKeys::json_schema(generator).to_value();
+        let mut form = BesideShape::json_schema(generator).to_value();
+        for (key, of_key) in surface["properties"].as_object().into_iter().flatten() {
+            form["properties"][key] = of_key.clone();
+        }
+        form["properties"]["shape"] = json!({ "type": "string", "const": FILE });
+        let required = form["required"].as_array_mut().expect("required keys");
+        required.push("shape".into());
+        required.extend(surface["required"].as_array().into_iter().flatten().cloned());
+        form["description"] = surface["description"].clone();
+        form["additionalProperties"] = json!(false);
+        let forms = schema.get_mut("oneOf").and_then(serde_json::Value::as_array_mut);
+        forms.expect("a form for each shape").push(form);
+        schema
     }
 }
 
@@ -70,7 +126,9 @@ pub struct Tool {
     pub name: String,
     /// Shape of the tool.
     pub shape: ToolShape,
-    /// Initial position of the centre, in metres.
+    /// File of the shape, if it is a surface.
+    pub file: Option<PathBuf>,
+    /// Initial position of the centre, in metres: of a surface, the middle of its bounding box.
     pub at: [f64; 3],
     /// Unit direction of motion, at the start of a path.
     pub along: [f64; 3],
@@ -112,8 +170,10 @@ pub enum Drive {
 impl ToolKeys {
     pub fn read(self, report: &Report) -> Option<Tool> {
         let keys = self.beside;
-        let values = settings(&self.shape, self.settings, report);
-        let shape = values.as_ref().and_then(|values| build(self.shape.0, values, "shape", report));
+        let placed = match self.shape {
+            ShapeWord::Named(word) => named(&word, self.settings, report),
+            ShapeWord::File => self.surface.and_then(|keys| surface(keys, report)),
+        };
         let DriveKeys { closure, path, force, pressure, over } = keys.drive;
         let path: Option<Vec<[f64; 3]>> =
             path.map(|legs| legs.into_iter().map(|leg| leg.map(|q| q.0)).collect());
@@ -151,15 +211,16 @@ impl ToolKeys {
                 return None;
             }
         };
-        let (shape, values) = (shape?, values?);
-        let axis = match values.list("axis") {
-            Some(&[x, y, z]) => Some(unit([x, y, z], "axis", report)?),
-            _ => shape.axis(along.into()).map(Into::into),
+        let Placed { shape, file, middle, axis } = placed?;
+        let axis = match axis {
+            Some(axis) => Some(unit(axis, "axis", report)?),
+            None => shape.axis(along.into()).map(Into::into),
         };
         Some(Tool {
             name: keys.name,
             shape,
-            at: keys.at.map(|q| q.0),
+            file,
+            at: std::array::from_fn(|a| keys.at[a].0 + middle[a]),
             along,
             path,
             axis,
@@ -169,6 +230,44 @@ impl ToolKeys {
             friction: friction(keys.friction.unwrap_or(0.0), keys.stick, report),
         })
     }
+}
+
+/// A shape as the solver takes it.
+struct Placed {
+    shape: ToolShape,
+    file: Option<PathBuf>,
+    /// Position of the origin of the shape's frame relative to that of its file, m.
+    middle: [f64; 3],
+    /// Direction of its z axis, of any length, if the scene gives one.
+    axis: Option<[f64; 3]>,
+}
+
+fn named(word: &Word<ToolShapes>, given: Given<ToolShapes>, report: &Report) -> Option<Placed> {
+    let values = settings(word, given, report)?;
+    let shape = build(word.0, &values, "shape", report)?;
+    let axis = values.list("axis").and_then(|axis| axis.try_into().ok());
+    Some(Placed { shape, file: None, middle: [0.0; 3], axis })
+}
+
+fn surface(keys: SurfaceKeys, report: &Report) -> Option<Placed> {
+    let file = MeshFile::read(&keys.path, Some(keys.unit), "path", report);
+    let rounding = report.positive("rounding", keys.rounding.0);
+    if !file.path.is_file() || !(rounding > 0.0) {
+        return None;
+    }
+    let unreadable = |bad| {
+        report.add("path", Problem::new(format!("can't be read: {bad}")).help(mesh_files::SURFACES));
+    };
+    let surface = mesh_files::read_surface(&file.path, file.unit).map_err(unreadable).ok()?;
+    let invalid = |bad: ContactError| report.add("rounding", Problem::new(bad.to_string()));
+    let shape = RoundedSurface::new(Arc::new(surface), rounding).map_err(invalid).ok()?;
+    let axis = match keys.axis {
+        Some(axis) => Some(unit(axis, "axis", report)?),
+        None => None,
+    };
+    let turned = axis.map_or_else(Matrix3::identity, |axis| contact::Tool::turned_to(&axis.into()));
+    let middle = (turned * shape.middle()).into();
+    Some(Placed { shape: shape.into(), file: Some(file.path), middle, axis })
 }
 
 fn friction(coefficient: f64, stick: Option<Q<ContactSlope>>, report: &Report) -> Option<Friction> {

@@ -70,8 +70,8 @@ impl Scenario<'_> {
                 help,
             ));
         }
-        if let Some(key) = self.bent() {
-            let help = "problem files support tools that move along a straight line";
+        if let Some((key, _)) = self.new_tool() {
+            let help = "problem files support tools of named shapes that move along a straight line";
             return Err(Failure::input(Key::Scene(key), "is not supported in problem files yet", help));
         }
         match self.scene.procedure.kind() {
@@ -91,10 +91,13 @@ impl Scenario<'_> {
         Some(format!("load[{index}].pressure"))
     }
 
-    /// Key of the first path of a tool.
-    fn bent(&self) -> Option<String> {
-        let index = self.scene.tools.iter().position(|tool| !tool.path.is_empty())?;
-        Some(format!("tool[{index}].drive.path"))
+    /// Key of the first path or surface of a tool, and what it is.
+    fn new_tool(&self) -> Option<(String, &'static str)> {
+        self.scene.tools.iter().enumerate().find_map(|(index, tool)| match (&tool.path[..], &tool.file) {
+            ([], None) => None,
+            ([], Some(_)) => Some((format!("tool[{index}].shape"), "a surface as a tool")),
+            _ => Some((format!("tool[{index}].drive.path"), "a path of a tool")),
+        })
     }
 
     /// Lists the features a solver needs for the scene: the word that an adapter lists in `can`, and a phrase
@@ -108,6 +111,11 @@ impl Scenario<'_> {
             other => ("", format!("kind = \"{}\", which problem files do not support yet", other.name())),
         }];
         asked.extend(self.scene.materials().map(|(_, m)| (m.name(), format!("the law \"{}\"", m.name()))));
+        if let Some((key, _)) = self.scene.materials().find(|(_, m)| m.has_other_volumetric()) {
+            let what =
+                "another volumetric energy than that of the law, which problem files do not support yet";
+            asked.push(("", format!("{what} ({key}.volumetric)")));
+        }
         if !self.scene.tools.is_empty() {
             asked.push(("tools", "rigid tools ([[tool]])".into()));
         }
@@ -115,8 +123,8 @@ impl Scenario<'_> {
             let what = "a pressure on the deformed surface, which problem files do not support yet";
             asked.push(("", format!("{what} ({key}; dead = true keeps the undeformed surface)")));
         }
-        if let Some(key) = self.bent() {
-            asked.push(("", format!("a path of a tool, which problem files do not support yet ({key})")));
+        if let Some((key, what)) = self.new_tool() {
+            asked.push(("", format!("{what}, which problem files do not support yet ({key})")));
         }
         asked
     }

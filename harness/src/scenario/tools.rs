@@ -55,7 +55,7 @@ fn placed(tool: &scene::Tool, index: usize) -> Result<PlacedTool, Failure> {
     let turned = tool.axis.map_or_else(Matrix3::identity, |axis| Tool::turned_to(&Vector3::from(axis)));
     let along = Vector3::from(tool.along);
     let law = law.map_err(wrong)?;
-    let straight = Tool::new(tool.shape, Point3::from(tool.at), turned, along, law);
+    let straight = Tool::new(tool.shape.clone(), Point3::from(tool.at), turned, along, law);
     // Each bend needs the length of the leg before it.
     let bends = tool.path.iter().zip(tool.path.iter().skip(1));
     let solver = bends.fold(straight, |path, (before, after)| {

@@ -81,7 +81,8 @@ impl Tool {
             return Err(ContactError::Direction { length });
         }
         let first = Leg { from: 0.0, start: Vector3::zeros(), along };
-        Ok(Tool { shape, at, rotation, first, later: Vec::new(), law, deepest: 0.5 * shape.inradius() })
+        let deepest = 0.5 * shape.inradius();
+        Ok(Tool { shape, at, rotation, first, later: Vec::new(), law, deepest })
     }
 
     /// Bends the path: after the distance `length` (m) from the start of the last leg the tool moves along the
@@ -186,7 +187,9 @@ impl Tool {
         let outline = self.shape.outline(0.0);
         let breadth = |across: &Vector3| {
             let across = self.rotation.tr_mul(across);
-            outline.iter().map(|p| across.dot(p)).fold(0.0, f64::max)
+            let (low, high) = (outline.iter().map(|p| across.dot(p)))
+                .fold((0.0f64, 0.0f64), |(low, high), x| (low.min(x), high.max(x)));
+            0.5 * (high - low)
         };
         let of_leg = |(_, along): (Point3, Vector3)| {
             let turned = Tool::turned_to(&along);

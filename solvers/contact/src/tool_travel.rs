@@ -3,7 +3,8 @@
 //! Contact depends on a state, not on how the state was reached. A tool that travels farther in a step than
 //! its own thickness ends beyond the surface, and nothing touches it there. Relative to the tool every point
 //! moves on a straight line during a step, and the distance to a convex shape is convex along that line. Its
-//! minimum is found by bisection on the sign of the slope.
+//! minimum is found by bisection on the sign of the slope. Of other shapes, parts of the line are halved until
+//! the distance, which changes at most as fast as the position, can't be smaller in them.
 
 use shape::{Point3, Vector3};
 
@@ -13,6 +14,9 @@ use crate::tool::Tool;
 
 /// Number of bisections of a path: to a millionth of its length.
 const HALVINGS: usize = 20;
+
+/// Smallest part of a path that is searched, if the shape is not convex.
+const FINEST: f64 = 1.0 / 256.0;
 
 /// Largest depth along its path, as part of the deepest penetration, of a point if nothing touches at the
 /// end.
@@ -126,16 +130,38 @@ impl Passage {
         if 0.5 * (before + after - travel) >= -self.depth {
             return;
         }
-        let (mut low, mut high) = (0.0, 1.0);
-        let mut least = before.min(after);
-        for _ in 0..HALVINGS {
-            let middle = 0.5 * (low + high);
-            let (gap, normal) = foot(middle);
-            least = least.min(gap);
-            *(if normal.dot(&way) < 0.0 { &mut low } else { &mut high }) = middle;
-        }
+        let least = if tool.shape().is_convex() {
+            let (mut low, mut high) = (0.0, 1.0);
+            let mut least = before.min(after);
+            for _ in 0..HALVINGS {
+                let middle = 0.5 * (low + high);
+                let (gap, normal) = foot(middle);
+                least = least.min(gap);
+                *(if normal.dot(&way) < 0.0 { &mut low } else { &mut high }) = middle;
+            }
+            least
+        } else {
+            self.least(before, after, travel, |part| foot(part).0)
+        };
         if -least > self.depth && least < before.min(after) {
             *self = Passage { depth: -least, at: ends[1], travel };
         }
+    }
+    /// Smallest distance (m) along a path of the length `travel` (m), to the accuracy that decides whether it is
+    /// a deeper passage.
+    fn least(&self, before: f64, after: f64, travel: f64, gap: impl Fn(f64) -> f64) -> f64 {
+        let mut least = before.min(after);
+        let mut open = vec![([0.0, 1.0], [before, after])];
+        while let Some(([from, to], [first, last])) = open.pop() {
+            let reach = 0.5 * (first + last - (to - from) * travel);
+            if reach >= least || reach >= -self.depth || to - from <= FINEST {
+                continue;
+            }
+            let middle = 0.5 * (from + to);
+            let between = gap(middle);
+            least = least.min(between);
+            open.extend([([from, middle], [first, between]), ([middle, to], [between, last])]);
+        }
+        least
     }
 }

@@ -10,12 +10,12 @@
 //! Every loop over lanes is in a function of its own. Arrays passed by reference are known not to overlap;
 //! without that knowledge a loop of eight stays scalar, at three times the time.
 
-use super::moduli::{LaneLaw, Moduli, close_group, stress};
+use super::moduli::{LaneLaw, Moduli, VolumeModuli, close_group, stress};
 use super::scalar::{Scalar, Slot, within};
 use lanes::{LanePath, fetch, on_path};
+use material::Law;
 use material::lane::LaneStrain;
 use material::lane::invariants::{Coefficients, add_cofactor, piola, pressed};
-use material::{Law, Volumetric};
 use shape::{Matrix3, VolumeRows};
 
 /// Kind of cell: derivatives of the displacement at its `Q` points from the displacements of its `N` nodes,
@@ -451,7 +451,7 @@ fn other<const FMA: bool, const BITS: usize, const N: usize, const Q: usize, T: 
     cell: &C,
     blocks: &[Block<T, N, Q>],
     law: &Law,
-    volume: Option<&Volumetric>,
+    volume: Option<&VolumeModuli>,
     u: &[Slot<T>],
     f: &mut [Slot<T>],
 ) -> bool {

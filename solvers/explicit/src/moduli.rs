@@ -4,7 +4,7 @@ use super::body::ExplicitBody;
 use super::scalar::Scalar;
 use lanes::on_path;
 use material::lane::{LaneStrain, Real};
-use material::{Law, Material, Volumetric};
+use material::{Law, Material, Volumetric, VolumetricForm};
 
 /// Lame moduli of a neo-Hookean law, Pa.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,18 +20,38 @@ impl Moduli {
     }
 }
 
+/// Moduli of the volumetric energy `logarithmic / 2 (ln J)^2 + quadratic / 2 (J - 1)^2`, Pa.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct VolumeModuli {
+    pub logarithmic: f64,
+    pub quadratic: f64,
+}
+
+impl VolumeModuli {
+    /// Returns the moduli of an energy; `None` if it is not of this form.
+    fn of(volume: &Volumetric) -> Option<VolumeModuli> {
+        let none = VolumeModuli::default();
+        match volume.form {
+            VolumetricForm::Quadratic => Some(VolumeModuli { quadratic: volume.bulk, ..none }),
+            VolumetricForm::Logarithmic => Some(VolumeModuli { logarithmic: volume.bulk, ..none }),
+            VolumetricForm::SimoTaylor => None,
+        }
+    }
+}
+
 /// Law of a region as the kernels run it: the neo-Hookean law inside their own loops, every other law by its
 /// own lane code.
 pub(super) enum LaneLaw {
     NeoHookean(Moduli),
     /// Any other law. With groups of points, the first part does not change with `J`, and the second is
     /// volumetric.
-    Other(Law, Volumetric),
+    Other(Law, VolumeModuli),
 }
 
 impl LaneLaw {
     /// Returns the laws of all regions of a body. Returns `None` if a law depends on directions, or if points
-    /// share a dilation and a law does not split into a part for shape change and a part for volume change.
+    /// share a dilation and a law does not split into a part for shape change and a volumetric energy of
+    /// [`VolumeModuli`].
     pub fn of_regions(body: &ExplicitBody) -> Option<Vec<LaneLaw>> {
         if body.laws.iter().any(Law::has_axes) {
             return None;
@@ -40,8 +60,11 @@ impl LaneLaw {
             (Law::NeoHookean(law), _) => {
                 Some(LaneLaw::NeoHookean(Moduli { mu: law.mu(), lambda: law.lambda() }))
             }
-            (law, None) => Some(LaneLaw::Other(law.clone(), Volumetric { quadratic: 0.0, logarithmic: 0.0 })),
-            (law, Some(_)) => law.split().map(|(shape, volume)| LaneLaw::Other(shape, volume)),
+            (law, None) => Some(LaneLaw::Other(law.clone(), VolumeModuli::default())),
+            (law, Some(_)) => {
+                let (shape, volume) = law.split()?;
+                Some(LaneLaw::Other(shape, VolumeModuli::of(&volume)?))
+            }
         };
         body.laws.iter().map(law).collect()
     }

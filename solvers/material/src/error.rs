@@ -53,6 +53,16 @@ pub enum MaterialError {
         /// The value given.
         value: f64,
     },
+    /// A constant outside its range.
+    #[error("{name} is {value}; it must be {allowed}")]
+    Range {
+        /// Name of the constant.
+        name: &'static str,
+        /// The value given.
+        value: f64,
+        /// Range in words.
+        allowed: &'static str,
+    },
     /// A Prony term that is not positive and finite.
     #[error("Prony term {} is g = {g}, tau = {tau} s; both must be positive and finite", term + 1)]
     PronyTerm {
@@ -93,6 +103,21 @@ impl MaterialError {
     pub(crate) fn check_positive(name: &'static str, value: f64) -> Result<(), MaterialError> {
         if value > 0.0 && value.is_finite() { Ok(()) } else { Err(MaterialError::Constant { name, value }) }
     }
+
+    /// Checks that a constant is finite and zero or more.
+    pub(crate) fn check_not_negative(name: &'static str, value: f64) -> Result<(), MaterialError> {
+        MaterialError::check_range(name, value, value >= 0.0, "zero or more, and finite")
+    }
+
+    /// Checks that a constant is finite and `sound`; `allowed` says which values are.
+    pub(crate) fn check_range(
+        name: &'static str,
+        value: f64,
+        sound: bool,
+        allowed: &'static str,
+    ) -> Result<(), MaterialError> {
+        if sound && value.is_finite() { Ok(()) } else { Err(MaterialError::Range { name, value, allowed }) }
+    }
 }
 
 /// Converts the error to a problem at the scene's parameter, if there is one.
@@ -104,7 +129,7 @@ impl From<MaterialError> for Problem {
             MaterialError::Bulk { .. } => Some("bulk"),
             MaterialError::Share { .. } => Some("share"),
             MaterialError::OgdenTerm { .. } => Some("alpha"),
-            MaterialError::Constant { name, .. } => Some(name),
+            MaterialError::Constant { name, .. } | MaterialError::Range { name, .. } => Some(name),
             MaterialError::Shear { .. }
             | MaterialError::PronyTerm { .. }
             | MaterialError::PronySum { .. }

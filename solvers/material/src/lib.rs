@@ -23,6 +23,7 @@
 #![allow(non_snake_case)]
 
 mod at_point;
+mod differences;
 mod error;
 mod kinematics;
 pub mod lane;
@@ -36,12 +37,15 @@ pub mod split;
 #[cfg(test)]
 mod tests;
 mod viscoelastic;
+mod volumetric;
 
 pub use at_point::AtPoint;
+pub use differences::less_ln_1p;
 pub use error::MaterialError;
-pub use kinematics::{less_ln_1p, volume_change};
+pub use kinematics::volume_change;
 pub use law::*;
-pub use material::{Material, Tangent, Volumetric};
+pub use material::{Material, Tangent};
 pub use prony::{Prony, PronyStep};
 pub use separated::Separated;
 pub use viscoelastic::{deviator, relaxed_stress_and_tangent};
+pub use volumetric::{Volumetric, VolumetricForm};

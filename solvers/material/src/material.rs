@@ -5,6 +5,7 @@ use shape::Matrix3;
 
 use crate::lane::{LaneStrain, Lanes};
 use crate::separated::Separated;
+use crate::volumetric::Volumetric;
 
 /// Tangent `A = dP/dF`, (9, 9), Pa: entry `(i + 3 j, k + 3 l)` is `dP_ij / dF_kl`, with the column-major
 /// index of a `Matrix3`.
@@ -23,6 +24,11 @@ pub trait Material {
 
     /// Whether the law depends on directions of the material.
     fn has_axes(&self) -> bool {
+        false
+    }
+
+    /// Whether the law distinguishes the sheet from the normal, so that the fibre alone does not define its axes.
+    fn has_sheets(&self) -> bool {
         false
     }
 
@@ -83,19 +89,20 @@ pub trait Material {
         None
     }
 
+    /// Returns the law without its volumetric energy, and that energy. In contrast to [`Material::split`], the rest
+    /// may still depend on `J`. `None` if no term of the energy is a function of `J` alone.
+    fn without_volume(&self) -> Option<(Self, Volumetric)>
+    where
+        Self: Sized,
+    {
+        self.split()
+    }
+
     /// Returns the dependence of the energy on a volume change `theta` in place of `J`, at `theta - 1`, for a
     /// law separable into shape and volume. `None` marks a law that is not separable, which only costs time.
     fn separated(&self, _theta_minus_1: f64) -> Option<Separated> {
         None
     }
-}
-
-/// Volumetric energy `quadratic / 2 (J - 1)^2 + logarithmic / 2 (ln J)^2`; moduli in Pa.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[allow(missing_docs)]
-pub struct Volumetric {
-    pub quadratic: f64,
-    pub logarithmic: f64,
 }
 
 /// Evaluates the scalar law lane by lane, for a law without vectorised code and beyond the range of its

@@ -6,6 +6,7 @@ use catalogue::{Entry, Kind, Parameter, Range, short};
 const WIDTH: usize = 110;
 
 /// A word with its value type and meaning. Its settings are items too.
+#[derive(Clone)]
 pub struct Item {
     pub name: String,
     /// Dimension or type of the value; empty if the item has none.

@@ -30,7 +30,7 @@ const fn part(name: &'static str, key: &'static str, items: fn() -> Vec<Item>) -
 const PARTS: [Part; 22] = [
     part("bodies", "body.shape; their surfaces: on", || forms("body")),
     part("laws", "material.law", || Item::of_entries(LAWS)),
-    part("tools", "tool.shape", || Item::of_entries(TOOL_SHAPES)),
+    part("tools", "tool.shape", tools),
     part("families", "method.family", || forms("method")),
     part("elements", "method.element, family = \"fem\"", || forms("method.fem.element")),
     part("clouds", "method.cloud, family = \"efg\"", || forms("method.efg.cloud")),
@@ -51,6 +51,20 @@ const PARTS: [Part; 22] = [
     part("warnings", "of a run, counted by the metric \"warnings\"", warnings),
     part("files", "scenes and studies below this folder", || files(Path::new("cases"))),
 ];
+
+/// Shapes of the catalogue, and the surface of a file without the keys that every tool has.
+fn tools() -> Vec<Item> {
+    let mut tools = Item::of_entries(TOOL_SHAPES);
+    let forms = forms("tool");
+    let is_of_all =
+        |key: &Item| forms.iter().all(|form| form.settings.iter().any(|one| one.name == key.name));
+    let named: Vec<&str> = TOOL_SHAPES.iter().map(|entry| entry.name).collect();
+    for form in forms.iter().filter(|form| !named.contains(&form.name.as_str())) {
+        let settings = form.settings.iter().filter(|key| !is_of_all(key)).cloned().collect();
+        tools.push(Item { settings, ..form.clone() });
+    }
+    tools
+}
 
 /// Prints all parts, or the part of this name, and returns the exit code.
 pub fn list(what: Option<&str>) -> u8 {

@@ -237,6 +237,6 @@ fn shape(shape: &ToolShape) -> Value {
             json!({ "name": name, "radius": of.radius, "half-length": of.half_length })
         }
         ToolShape::Capsule(of) => json!({ "name": name, "radius": of.radius, "half-length": of.half_length }),
-        ToolShape::Plate(_) => json!({ "name": name }),
+        ToolShape::Plate(_) | ToolShape::RoundedSurface(_) => json!({ "name": name }),
     }
 }

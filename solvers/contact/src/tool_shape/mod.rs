@@ -1,17 +1,20 @@
 //! Rigid tools as signed distances, each in its own frame: negative inside, gradient a unit vector pointing
 //! out.
 //!
-//! Each shape has a file with its distance and its [`Entry`], and a line in the list below. Outside and near
+//! Each shape has a file with its distance and its [`Entry`], and a line in the list below; the surface of a
+//! file has no entry. Outside and near
 //! the surface the distances are exact. On the medial axis the nearest point is not unique. One of the
 //! nearest points is taken there (each file states which), and the infinite part of the Hessian is left out,
 //! so that no value is NaN.
 
 mod outline;
+mod rounded_surface;
 mod signed_distance;
 
 use catalogue::{Build, Entry};
 use shape::{Matrix3, Point3, Vector3};
 
+pub use self::rounded_surface::RoundedSurface;
 use self::signed_distance::Shape;
 use crate::error::ContactError;
 
@@ -33,10 +36,11 @@ macro_rules! tool_shapes {
         )*
 
         /// Rigid tool in its own frame.
-        #[derive(Clone, Copy, Debug, PartialEq)]
+        #[derive(Clone, Debug, PartialEq)]
         #[allow(missing_docs)] // each is its type
         pub enum ToolShape {
             $($shape($shape),)*
+            RoundedSurface(RoundedSurface),
         }
 
         /// Every shape, in the order of tables.
@@ -48,6 +52,7 @@ macro_rules! tool_shapes {
             pub fn name(&self) -> &'static str {
                 match self {
                     $(ToolShape::$shape(_) => $file::ENTRY.name,)*
+                    ToolShape::RoundedSurface(_) => "rounded-surface",
                 }
             }
 
@@ -57,6 +62,7 @@ macro_rules! tool_shapes {
             pub fn foot(&self, p: &Vector3) -> (f64, Vector3) {
                 match self {
                     $(ToolShape::$shape(shape) => shape.foot(p),)*
+                    ToolShape::RoundedSurface(shape) => shape.foot(p),
                 }
             }
 
@@ -65,12 +71,14 @@ macro_rules! tool_shapes {
             pub fn hessian(&self, p: &Vector3) -> Matrix3 {
                 match self {
                     $(ToolShape::$shape(shape) => shape.hessian(p),)*
+                    ToolShape::RoundedSurface(shape) => shape.hessian(p),
                 }
             }
 
             fn shape(&self) -> &dyn Shape {
                 match self {
                     $(ToolShape::$shape(shape) => shape,)*
+                    ToolShape::RoundedSurface(shape) => shape,
                 }
             }
         }
@@ -94,6 +102,12 @@ pub struct Distance {
     pub gradient: Vector3,
     /// Hessian (3, 3), 1/m: the curvature of the level set through the point.
     pub hessian: Matrix3,
+}
+
+impl From<RoundedSurface> for ToolShape {
+    fn from(shape: RoundedSurface) -> ToolShape {
+        ToolShape::RoundedSurface(shape)
+    }
 }
 
 impl ToolShape {
@@ -121,7 +135,12 @@ impl ToolShape {
         self.shape().inradius()
     }
 
-    /// Returns points (m, in the tool's frame) whose convex hull is the tool, for pictures. A plate, which is
+    /// Whether the shape is convex, and with it the distance along a line.
+    pub(super) fn is_convex(&self) -> bool {
+        self.shape().is_convex()
+    }
+
+    /// Returns points (m, in the tool's frame) whose convex hull is that of the tool, for pictures. A plate, which is
     /// unbounded, is drawn as a slab as wide as the body, `body` (m).
     pub fn outline(&self, body: f64) -> Vec<Vector3> {
         self.shape().outline(body)
@@ -129,8 +148,13 @@ impl ToolShape {
 
     /// Returns the surface as points (m, in the tool's frame) and quadrangles, for pictures. A plate, which
     /// is unbounded, is drawn as a slab as wide as the body, `body` (m). For other shapes, a grid on the
-    /// bounding box of the tool is projected towards the middle of the box. Edges of boxes stay edges.
+    /// bounding box of the tool is projected towards the middle of the box. Edges of boxes stay edges. The
+    /// triangles of a surface are quadrangles whose last two corners are the same.
     pub fn skin(&self, body: f64) -> (Vec<Vector3>, Vec<[u32; 4]>) {
+        if let ToolShape::RoundedSurface(surface) = self {
+            let (points, triangles) = surface.skin();
+            return (points, triangles.into_iter().map(|[a, b, c]| [a, b, c, c]).collect());
+        }
         let outline = self.outline(body);
         let low = outline.iter().fold(Vector3::repeat(f64::INFINITY), |low, p| low.inf(p));
         let high = outline.iter().fold(Vector3::repeat(f64::NEG_INFINITY), |high, p| high.sup(p));

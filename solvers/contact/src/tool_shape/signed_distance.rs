@@ -46,6 +46,11 @@ pub(super) trait Shape {
         None
     }
 
+    /// Whether the shape is convex, and with it the distance along a line.
+    fn is_convex(&self) -> bool {
+        true
+    }
+
     /// Checks the lengths.
     fn check(&self) -> Result<(), ContactError>;
 }

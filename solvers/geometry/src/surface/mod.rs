@@ -8,6 +8,7 @@ mod closed;
 mod crossing;
 mod error;
 mod faults;
+mod foot;
 mod groups;
 mod needles;
 mod nested;
@@ -19,10 +20,12 @@ mod soup;
 mod tree;
 
 pub use error::SurfaceProblem;
+pub use foot::Foot;
 pub use groups::{Groups, Set};
 pub use of_mesh::{BoundaryFaces, triangles_of};
 pub use polygon::PolygonFault;
 pub use soup::Soup;
+use tree::Closest;
 pub(crate) use tree::Tree;
 
 use crate::triangle::Feature;
@@ -133,24 +136,33 @@ impl Surface {
 
     /// Signed distance as [`Surface::signed_distance`], or `None` if the surface is not closer than `within`.
     fn distance_within(&self, p: &Point3, within: f64) -> Option<f64> {
-        let closest = self.tree.closest(p, within)?;
+        Some(self.signed(p, &self.tree.closest(p, within)?))
+    }
+
+    /// Distance of a position from its closest point, with the sign.
+    fn signed(&self, p: &Point3, closest: &Closest) -> f64 {
         if closest.square == 0.0 {
-            return Some(0.0);
+            return 0.0;
         }
-        let triangle = closest.triangle as usize;
-        let normal = match closest.feature {
-            Feature::Face => self.normals.faces[triangle],
-            Feature::Edge(edge) => self.normals.edges[triangle][edge],
-            Feature::Corner(corner) => self.normals.corners[self.triangles[triangle][corner] as usize],
-        };
+        let normal = self.normal(closest);
         let distance = closest.square.sqrt();
-        let away = (p - closest.at).dot(&normal);
+        let away = (p - closest.at).dot(normal);
         // The offset from the closest point is along the normal, unless the surface has triangles without
         // area.
         let doubtful = away.abs() <= 1e-6 * distance * normal.norm();
         let inside =
             if doubtful { nested::winding(&self.points, &self.triangles, p) > 0.5 } else { away < 0.0 };
-        Some(if inside { -distance } else { distance })
+        if inside { -distance } else { distance }
+    }
+
+    /// Pseudo-normal at a closest point, of arbitrary length.
+    fn normal(&self, closest: &Closest) -> &Vector3 {
+        let triangle = closest.triangle as usize;
+        match closest.feature {
+            Feature::Face => &self.normals.faces[triangle],
+            Feature::Edge(edge) => &self.normals.edges[triangle][edge],
+            Feature::Corner(corner) => &self.normals.corners[self.triangles[triangle][corner] as usize],
+        }
     }
 
     /// Fraction of the line from a point inside to a point outside at which it meets the surface: the zero of

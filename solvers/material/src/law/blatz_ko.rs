@@ -6,7 +6,8 @@ use shape::Matrix3;
 use super::linear::LinearElastic;
 use super::moduli::{MODULI, moduli};
 use crate::error::MaterialError;
-use crate::kinematics::{Kinematics, cofactor, exp_m1_less, green_lagrange, tangent_of};
+use crate::differences::exp_m1_less;
+use crate::kinematics::{Kinematics, cofactor, green_lagrange, tangent_of};
 use crate::material::{Material, Tangent};
 
 /// Blatz-Ko law `W = mu/2 (tr C^-1 - 3 + (J^(2 beta) - 1) / beta)` with `beta = nu / (1 - 2 nu)`; moduli in Pa.

@@ -4,12 +4,13 @@ use catalogue::{Build, Dimension, Entry, Parameter, Range};
 use shape::Matrix3;
 
 use super::moduli::BULK;
-use super::of_strain::{self, Anisotropic, OfStrain, material_of_strain};
+use super::of_strain::{self, Anisotropic, OfStrain, StrainEnergy, material_of_strain};
 use crate::error::MaterialError;
-use crate::kinematics::exp_m1_less;
-use crate::material::{Material, Tangent, Volumetric};
+use crate::differences::exp_m1_less;
+use crate::material::{Material, Tangent};
 use crate::separated::Separated;
 use crate::split::flat;
+use crate::volumetric::Volumetric;
 
 /// Guccione's law `W = c/2 (exp(Q) - 1) + kappa/2 (J - 1)^2` with
 /// `Q = bf Eff^2 + bt (Ess^2 + Enn^2 + 2 Esn^2) + 2 bfs (Efs^2 + Efn^2)`; `c` in Pa.
@@ -73,7 +74,9 @@ impl Anisotropic for Guccione {
     fn of_shape(&self) -> Guccione {
         Guccione { bulk: 0.0, ..*self }
     }
+}
 
+impl StrainEnergy for Guccione {
     fn shear(&self) -> f64 {
         0.5 * self.c * self.b.into_iter().fold(0.0, f64::max)
     }

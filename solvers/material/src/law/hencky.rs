@@ -13,9 +13,10 @@ use crate::lane::math::ln_1p;
 use crate::lane::series::{self, unrolled};
 use crate::lane::stretch::{Stretch, pair_of, pairs};
 use crate::lane::{LaneStrain, Lanes, of_lane};
-use crate::material::{Material, Tangent, Volumetric, one_by_one};
+use crate::material::{Material, Tangent, one_by_one};
 use crate::principal::{Principal, Slopes};
 use crate::separated::Separated;
+use crate::volumetric::Volumetric;
 
 /// Hencky's law `W = mu e : e + lambda/2 (tr e)^2` with `e = ln V` (`V^2 = F F^T`) and
 /// `tau = 2 mu e + lambda tr(e) I`; moduli in Pa.
@@ -110,12 +111,12 @@ impl Material for Hencky {
     }
 
     fn split(&self) -> Option<(Hencky, Volumetric)> {
-        let volume = Volumetric { quadratic: 0.0, logarithmic: self.bulk() };
+        let volume = Volumetric::logarithmic(self.bulk());
         Some((Hencky { lambda: -2.0 / 3.0 * self.mu, ..*self }, volume))
     }
 
     fn separated(&self, theta_minus_1: f64) -> Option<Separated> {
-        Some(Separated::logarithmic(self.bulk(), theta_minus_1))
+        Some(Separated::of_volume(Volumetric::logarithmic(self.bulk()), theta_minus_1))
     }
 
     fn mu(&self) -> f64 {

@@ -4,7 +4,7 @@ use catalogue::{Build, Dimension, Entry, Kind, Parameter, Problem, Range, Values
 use shape::Matrix3;
 
 use crate::error::MaterialError;
-use crate::kinematics::exp_m1_less;
+use crate::differences::exp_m1_less;
 use crate::material::{Material, Tangent};
 use crate::principal::{Principal, Slopes, sinh_over};
 

@@ -8,8 +8,9 @@ use shape::Matrix3;
 
 use super::mooney_rivlin::MooneyRivlin;
 use crate::kinematics::Kinematics;
-use crate::material::{Material, Tangent, Volumetric};
+use crate::material::{Material, Tangent};
 use crate::separated::Separated;
+use crate::volumetric::Volumetric;
 
 /// Derivatives of `f(a, b)`, Pa.
 pub(super) struct Slopes {
@@ -71,11 +72,11 @@ impl<T: Isochoric> Material for T {
     }
 
     fn split(&self) -> Option<(T, Volumetric)> {
-        Some((self.of_shape(), Volumetric { quadratic: self.kappa(), logarithmic: 0.0 }))
+        Some((self.of_shape(), Volumetric::quadratic(self.kappa())))
     }
 
     fn separated(&self, theta_minus_1: f64) -> Option<Separated> {
-        Some(Separated::quadratic(self.kappa(), theta_minus_1))
+        Some(Separated::of_volume(Volumetric::quadratic(self.kappa()), theta_minus_1))
     }
 
     fn mu(&self) -> f64 {

@@ -10,6 +10,7 @@ use crate::kinematics::tangent_of;
 use crate::lane::{LaneStrain, Lanes};
 use crate::material::{Material, Tangent};
 use crate::separated::Separated;
+use crate::volumetric::Volumetric;
 
 /// Hooke's law `sigma = lambda tr(eps) I + 2 mu eps`, `eps = sym grad u`; moduli in Pa.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -121,7 +122,7 @@ impl Material for LinearElastic {
     }
 
     fn separated(&self, theta_minus_1: f64) -> Option<Separated> {
-        Some(Separated::quadratic(Material::bulk(self), theta_minus_1))
+        Some(Separated::of_volume(Volumetric::quadratic(Material::bulk(self)), theta_minus_1))
     }
 
     fn mu(&self) -> f64 {

@@ -7,13 +7,18 @@
 mod isochoric;
 mod moduli;
 mod of_strain;
+mod reinforced;
+mod with_volumetric;
 
 use catalogue::{Build, Entry, Problem, Value, Values};
 use shape::Matrix3;
 
 use crate::lane::{LaneStrain, Lanes};
-use crate::material::{Material, Tangent, Volumetric};
+use crate::material::{Material, Tangent};
 use crate::separated::Separated;
+use crate::volumetric::{Volumetric, VolumetricForm};
+
+pub use with_volumetric::WithVolumetric;
 
 /// A law that scene files can name.
 pub type LawEntry = Entry<Build<Law>>;
@@ -37,6 +42,7 @@ macro_rules! laws {
         #[allow(missing_docs)] // each is its type
         pub enum Law {
             $($law($law),)*
+            WithVolumetric(WithVolumetric<Law>),
         }
 
         /// Entries of all laws, in the order of tables.
@@ -44,10 +50,11 @@ macro_rules! laws {
             &[$($file::ENTRY.built_by(|values| Ok(($file::ENTRY.build)(values)?.into()))),*];
 
         impl Law {
-            /// Returns the name in scene files and tables.
+            /// Returns the name in scene files and tables, whatever the form of the volumetric energy.
             pub fn name(&self) -> &'static str {
                 match self {
                     $(Law::$law(_) => $file::ENTRY.name,)*
+                    Law::WithVolumetric(law) => law.rest().name(),
                 }
             }
         }
@@ -56,30 +63,35 @@ macro_rules! laws {
             fn is_small_strain(&self) -> bool {
                 match self {
                     $(Law::$law(law) => law.is_small_strain(),)*
+                    Law::WithVolumetric(law) => law.is_small_strain(),
                 }
             }
 
             fn energy(&self, H: &Matrix3) -> f64 {
                 match self {
                     $(Law::$law(law) => law.energy(H),)*
+                    Law::WithVolumetric(law) => law.energy(H),
                 }
             }
 
             fn stress(&self, H: &Matrix3) -> Matrix3 {
                 match self {
                     $(Law::$law(law) => law.stress(H),)*
+                    Law::WithVolumetric(law) => law.stress(H),
                 }
             }
 
             fn tangent(&self, H: &Matrix3) -> Tangent {
                 match self {
                     $(Law::$law(law) => law.tangent(H),)*
+                    Law::WithVolumetric(law) => law.tangent(H),
                 }
             }
 
             fn stress_and_tangent(&self, H: &Matrix3) -> (Matrix3, Tangent) {
                 match self {
                     $(Law::$law(law) => law.stress_and_tangent(H),)*
+                    Law::WithVolumetric(law) => law.stress_and_tangent(H),
                 }
             }
 
@@ -87,6 +99,7 @@ macro_rules! laws {
             fn stress_lanes<const FMA: bool>(&self, strain: &LaneStrain, p: &mut [Lanes; 9]) {
                 match self {
                     $(Law::$law(law) => law.stress_lanes::<FMA>(strain, p),)*
+                    Law::WithVolumetric(law) => law.stress_lanes::<FMA>(strain, p),
                 }
             }
 
@@ -94,36 +107,58 @@ macro_rules! laws {
             fn stress_batch<const FMA: bool>(&self, strains: &[LaneStrain], p: &mut [[Lanes; 9]]) {
                 match self {
                     $(Law::$law(law) => law.stress_batch::<FMA>(strains, p),)*
+                    Law::WithVolumetric(law) => law.stress_batch::<FMA>(strains, p),
                 }
             }
 
             fn split(&self) -> Option<(Law, Volumetric)> {
                 match self {
                     $(Law::$law(law) => law.split().map(|(shape, volume)| (shape.into(), volume)),)*
+                    Law::WithVolumetric(law) => {
+                        law.rest().split().map(|(shape, _)| (shape, law.volume()))
+                    }
+                }
+            }
+
+            fn without_volume(&self) -> Option<(Law, Volumetric)> {
+                match self {
+                    $(Law::$law(law) => law.without_volume().map(|(rest, volume)| (rest.into(), volume)),)*
+                    Law::WithVolumetric(law) => Some((law.rest().clone(), law.volume())),
                 }
             }
 
             fn separated(&self, theta_minus_1: f64) -> Option<Separated> {
                 match self {
                     $(Law::$law(law) => law.separated(theta_minus_1),)*
+                    Law::WithVolumetric(law) => law.separated(theta_minus_1),
                 }
             }
 
             fn has_axes(&self) -> bool {
                 match self {
                     $(Law::$law(law) => law.has_axes(),)*
+                    Law::WithVolumetric(law) => law.has_axes(),
+                }
+            }
+
+            fn has_sheets(&self) -> bool {
+                match self {
+                    $(Law::$law(law) => law.has_sheets(),)*
+                    Law::WithVolumetric(law) => law.has_sheets(),
                 }
             }
 
             fn mu(&self) -> f64 {
                 match self {
                     $(Law::$law(law) => Material::mu(law),)*
+                    Law::WithVolumetric(law) => Material::mu(law),
                 }
             }
 
             fn lambda(&self) -> f64 {
                 match self {
                     $(Law::$law(law) => Material::lambda(law),)*
+                    Law::WithVolumetric(law) => Material::lambda(law),
                 }
             }
         }
@@ -146,6 +181,9 @@ laws! {
     hyperfoam::Hyperfoam,
     corotational::Corotational,
     guccione::Guccione,
+    holzapfel_ogden::HolzapfelOgden,
+    holzapfel_gasser_ogden::HolzapfelGasserOgden,
+    trans_iso_mooney_rivlin::TransIsoMooneyRivlin,
 }
 
 /// Shares of the shear modulus and exponents of a rubber in Ogden's law, for [`Law::all`].
@@ -157,9 +195,26 @@ const STIFFENING: f64 = 0.2;
 const LONGEST: f64 = 60.0;
 /// Laws that [`Law::all`] leaves out: those of foams, whose volumetric terms have the power `nu / (1 - 2 nu)`
 /// of `J` and explode as the material becomes incompressible, and those that depend on directions.
-const OTHER_MODULI: [&str; 3] = ["blatz-ko", "hyperfoam", "guccione"];
+const OTHER_MODULI: [&str; 6] = [
+    "blatz-ko",
+    "hyperfoam",
+    "guccione",
+    "holzapfel-ogden",
+    "holzapfel-gasser-ogden",
+    "trans-iso-mooney-rivlin",
+];
 
 impl Law {
+    /// Returns the law with a volumetric energy of this form and its own bulk modulus. `None` if no term of its
+    /// energy is a function of `J` alone.
+    pub fn with_volumetric(self, form: VolumetricForm) -> Option<Law> {
+        let (rest, Volumetric { form: own, bulk }) = self.without_volume()?;
+        if own == form {
+            return Some(self);
+        }
+        Some(Law::WithVolumetric(WithVolumetric::new(rest, Volumetric { form, bulk })))
+    }
+
     /// Returns the isotropic laws, without those of foams, with the same moduli at small strain, in the order of tables, for tests of common
     /// properties. Parameters other than Young's modulus (Pa) and Poisson's ratio have their defaults, or
     /// values of a rubber.

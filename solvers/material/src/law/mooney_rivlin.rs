@@ -11,8 +11,9 @@ use crate::kinematics::{Kinematics, add_left, add_right, cofactor, green_lagrang
 use crate::lane::invariants::piola;
 use crate::lane::math::inverse_cbrt_less_1;
 use crate::lane::{LaneStrain, Lanes};
-use crate::material::{Material, Tangent, Volumetric};
+use crate::material::{Material, Tangent};
 use crate::separated::Separated;
+use crate::volumetric::Volumetric;
 
 /// Mooney-Rivlin law `W = C10 (J^(-2/3) I1 - 3) + C01 (J^(-4/3) I2 - 3) + (J - 1)^2 / D1` with
 /// `2 (C10 + C01) = mu` and `D1 = 2 / kappa`; constants in Pa.
@@ -230,12 +231,12 @@ impl Material for MooneyRivlin {
     }
 
     fn split(&self) -> Option<(MooneyRivlin, Volumetric)> {
-        let volume = Volumetric { quadratic: self.bulk, logarithmic: 0.0 };
+        let volume = Volumetric::quadratic(self.bulk);
         Some((MooneyRivlin { bulk: 0.0, ..*self }, volume))
     }
 
     fn separated(&self, theta_minus_1: f64) -> Option<Separated> {
-        Some(Separated::quadratic(Material::bulk(self), theta_minus_1))
+        Some(Separated::of_volume(Volumetric::quadratic(Material::bulk(self)), theta_minus_1))
     }
 
     fn mu(&self) -> f64 {

@@ -10,8 +10,9 @@ use crate::error::MaterialError;
 use crate::kinematics::{Kinematics, tangent_of};
 use crate::lane::invariants::{piola, pressed};
 use crate::lane::{LaneStrain, Lanes};
-use crate::material::{Material, Tangent, Volumetric};
+use crate::material::{Material, Tangent};
 use crate::separated::Separated;
+use crate::volumetric::Volumetric;
 
 /// Isochoric neo-Hookean law `W = C10 (J^(-2/3) I1 - 3) + (J - 1)^2 / D1` with `C10 = mu / 2` and
 /// `D1 = 2 / kappa`; moduli in Pa.
@@ -123,12 +124,12 @@ impl Material for NeoHookeanIsochoric {
     }
 
     fn split(&self) -> Option<(NeoHookeanIsochoric, Volumetric)> {
-        let volume = Volumetric { quadratic: self.bulk, logarithmic: 0.0 };
+        let volume = Volumetric::quadratic(self.bulk);
         Some((NeoHookeanIsochoric { bulk: 0.0, ..*self }, volume))
     }
 
     fn separated(&self, theta_minus_1: f64) -> Option<Separated> {
-        Some(Separated::quadratic(Material::bulk(self), theta_minus_1))
+        Some(Separated::of_volume(Volumetric::quadratic(Material::bulk(self)), theta_minus_1))
     }
 
     fn mu(&self) -> f64 {

@@ -19,14 +19,8 @@ pub(super) struct OfStrain {
     pub stiffness: Tangent,
 }
 
-/// A law of the isochoric strain.
-pub(super) trait Anisotropic: Clone {
-    /// Bulk modulus `kappa`, Pa.
-    fn kappa(&self) -> f64;
-
-    /// Returns the law without its volumetric energy.
-    fn of_shape(&self) -> Self;
-
+/// An energy `f(E)`.
+pub(super) trait StrainEnergy {
     /// Largest shear modulus at small strain, Pa.
     fn shear(&self) -> f64;
 
@@ -34,10 +28,19 @@ pub(super) trait Anisotropic: Clone {
     fn of_strain(&self, E: &Matrix3, stiff: bool) -> OfStrain;
 }
 
-/// The function `f(E(F))` of a law without its volume, as a law of its own.
-struct Shape<'a, T>(&'a T);
+/// A law of the isochoric strain.
+pub(super) trait Anisotropic: StrainEnergy + Clone {
+    /// Bulk modulus `kappa`, Pa.
+    fn kappa(&self) -> f64;
 
-impl<T: Anisotropic> Material for Shape<'_, T> {
+    /// Returns the law without its volumetric energy.
+    fn of_shape(&self) -> Self;
+}
+
+/// The function `f(E(F))` of an energy of the strain, as a law of its own.
+pub(super) struct Shape<'a, T>(pub &'a T);
+
+impl<T: StrainEnergy> Material for Shape<'_, T> {
     fn energy(&self, H: &Matrix3) -> f64 {
         self.0.of_strain(&green_lagrange(H), false).energy
     }
@@ -131,11 +134,11 @@ macro_rules! material_of_strain {
             }
 
             fn split(&self) -> Option<($law, Volumetric)> {
-                Some((self.of_shape(), Volumetric { quadratic: self.kappa(), logarithmic: 0.0 }))
+                Some((self.of_shape(), Volumetric::quadratic(self.kappa())))
             }
 
             fn separated(&self, theta_minus_1: f64) -> Option<Separated> {
-                Some(Separated::quadratic(self.kappa(), theta_minus_1))
+                Some(Separated::of_volume(Volumetric::quadratic(self.kappa()), theta_minus_1))
             }
 
             fn has_axes(&self) -> bool {

@@ -8,13 +8,14 @@ use shape::Matrix3;
 
 use super::moduli::BULK;
 use crate::error::MaterialError;
-use crate::kinematics::exp_m1_less;
+use crate::differences::exp_m1_less;
 use crate::lane::series::{self, BOUNDS, Power, unrolled};
 use crate::lane::stretch::{Stretch, pair_of, pairs, squared};
 use crate::lane::{LaneStrain, Lanes};
-use crate::material::{Material, Tangent, Volumetric, one_by_one};
+use crate::material::{Material, Tangent, one_by_one};
 use crate::principal::{Principal, Slopes, sinh_over};
 use crate::separated::Separated;
+use crate::volumetric::Volumetric;
 
 /// Ogden's law `W = sum_p mu_p / alpha_p (l_1^alpha_p + l_2^alpha_p + l_3^alpha_p - 3) + (J - 1)^2 / D1` with
 /// isochoric stretches `l_a = J^(-1/3) lambda_a` and `D1 = 2 / kappa`; moduli in Pa.
@@ -210,12 +211,12 @@ impl Material for Ogden {
     }
 
     fn split(&self) -> Option<(Ogden, Volumetric)> {
-        let volume = Volumetric { quadratic: self.bulk, logarithmic: 0.0 };
+        let volume = Volumetric::quadratic(self.bulk);
         Some((Ogden { bulk: 0.0, ..self.clone() }, volume))
     }
 
     fn separated(&self, theta_minus_1: f64) -> Option<Separated> {
-        Some(Separated::quadratic(Material::bulk(self), theta_minus_1))
+        Some(Separated::of_volume(Volumetric::quadratic(Material::bulk(self)), theta_minus_1))
     }
 
     fn mu(&self) -> f64 {

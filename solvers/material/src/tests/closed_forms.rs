@@ -34,6 +34,11 @@ fn equal_stretch_in_all_directions() {
                     Law::NeoHookeanIsochoric(_) | Law::MooneyRivlin(_) | Law::Ogden(_) => {
                         bulk * (s.powi(3) - 1.0) * s * s
                     }
+                    Law::WithVolumetric(ref law) => match law.volume().form {
+                        VolumetricForm::Quadratic => bulk * (s.powi(3) - 1.0) * s * s,
+                        VolumetricForm::Logarithmic => 3.0 * bulk * s.ln() / s,
+                        VolumetricForm::SimoTaylor => 0.5 * bulk * (s.powi(5) - 1.0 / s),
+                    },
                     #[allow(unreachable_patterns)]
                     // Laws without a closed form here are covered by the properties.
                     _ => continue,

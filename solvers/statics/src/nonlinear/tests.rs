@@ -5,7 +5,7 @@ use fem::VolumeRule;
 use geometry::CellKind;
 use geometry::generate::{Jitter, box_mesh};
 use material::split::{Split, dilation, flat};
-use material::{Law, Material};
+use material::{HolzapfelOgden, Law, Material, TransIsoMooneyRivlin, VolumetricForm};
 use shape::{DilationGroups, Matrix3, Point3, Rows, Vector3, VolumeRows};
 
 use super::lanes::GroupRow;
@@ -16,8 +16,17 @@ use super::system::{SurfaceStiffness, System};
 const YOUNG: f64 = 20e3;
 const POISSON: f64 = 0.45;
 
+/// Every law, with other volumetric energies and with fibres of both kinds of strain.
 fn laws() -> Vec<Law> {
-    Law::all(YOUNG, POISSON).unwrap()
+    let mut laws = Law::all(YOUNG, POISSON).unwrap();
+    let mooney = laws.iter().find(|law| law.name() == "mooney-rivlin").unwrap().clone();
+    for form in [VolumetricForm::Logarithmic, VolumetricForm::SimoTaylor] {
+        laws.push(mooney.clone().with_volumetric(form).unwrap());
+    }
+    let bulk = mooney.bulk();
+    laws.push(HolzapfelOgden::new([5e3, 0.5], [4e3, 0.7], [3e3, 0.4], [1e3, 0.6], bulk).unwrap().into());
+    laws.push(TransIsoMooneyRivlin::new([2e3, 8e2], [2e3, 3.0, 9e3], 1.1, bulk).unwrap().into());
+    laws
 }
 
 /// An asymmetric displacement gradient of about 0.3.
@@ -86,7 +95,7 @@ fn laws_part_into_shape_and_volume() {
         for theta_minus_1 in [-0.4, 1e-9, 0.27] {
             let at = |theta_minus_1: f64| law.separated(theta_minus_1);
             let Some(parts) = at(theta_minus_1) else {
-                let whole = ["saint-venant-kirchhoff", "corotational"];
+                let whole = ["saint-venant-kirchhoff", "corotational", "holzapfel-ogden"];
                 assert!(whole.contains(&law.name()), "{}", law.name());
                 continue;
             };
