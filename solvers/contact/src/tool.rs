@@ -145,6 +145,10 @@ impl Tool {
 
     /// Displacement of the tool at a closure (m), m.
     pub fn displacement(&self, closure: f64) -> Vector3 {
+        // Contact asks for it at every point, and most paths are straight.
+        if self.is_straight() {
+            return self.first.along * closure;
+        }
         let leg = self.leg(closure);
         leg.start + leg.along * (closure - leg.from)
     }

@@ -63,6 +63,8 @@ impl RoundedSurface {
         (self.surface.points().iter().map(grown).collect(), self.surface.triangles().to_vec())
     }
 
+    /// Kept out of the loops of the other shapes, which take a hundredth of its time.
+    #[inline(never)]
     fn distance(&self, p: &Vector3) -> Foot {
         let x = Point3::from(p + self.middle);
         let foot = self.surface.foot(&x);
