@@ -442,6 +442,20 @@ fn a_problem_is_written_for_others() {
     );
     let done = tissuebench(&dir, &["export", &swings, "--method", "ours", "--out", "swings"]);
     assert_fails(&done, 2, "'modes' is not supported in problem files yet");
+    // What the files would leave out is refused with its key.
+    let refused = |from: &str, to: &str, says: &str| {
+        let scene = write(&dir, "unsaid.toml", &PRESSED.replace(from, to));
+        let done = tissuebench(&dir, &["export", &scene, "--method", "hex8", "--out", "unsaid"]);
+        assert_fails(&done, 2, says);
+    };
+    let law = "law = \"neo-hookean\", young = \"20 kPa\", poisson = 0.45";
+    let isochoric = "law = \"neo-hookean-isochoric\", young = \"20 kPa\", poisson = 0.45";
+    let fibres = "law = \"guccione\", c = \"2 kPa\", bf = 8.0, bt = 2.0, bfs = 4.0, bulk = \"50 kPa\", fibers = [1, 0, 0]";
+    refused(law, &format!("{isochoric}, volumetric = \"logarithmic\""), "key 'material.volumetric'");
+    refused(law, fibres, "key 'material.fibers'");
+    let [straight, path] =
+        ["along = [0, 0, -1], drive = { closure", "drive = { path = [[\"0 mm\", \"0 mm\", \"-2 mm\"]] }"];
+    refused(&format!("{straight} = \"2 mm\" }}"), path, "key 'tool[0].drive.path'");
     assert_fails(
         &tissuebench(&dir, &["export", &pressed, "--method", "efg", "--out", "pressed"]),
         2,

@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{assert_fails, objects, tissuebench, write};
+use common::{assert_fails, number, solved, tissuebench, write};
 use serde_json::Value;
 
 fn scene(tool: &str, path: &str, procedure: &str) -> String {
@@ -31,14 +31,7 @@ const STATIC: &str = "procedure = { kind = \"static\", steps = 10 }";
 
 #[track_caller]
 fn run(text: &str) -> Value {
-    let dir = tempfile::tempdir().unwrap();
-    let done = tissuebench(&["run", &write(&dir, "scene.toml", text), "--once", "--format", "json"]);
-    assert_eq!(done.code, 0, "{}", done.stderr);
-    objects(&done.stdout).remove(0)
-}
-
-fn number(of: &Value, name: &str) -> f64 {
-    of["metrics"][name]["value"].as_f64().unwrap_or_else(|| panic!("no {name} in {of}"))
+    solved(&tempfile::tempdir().unwrap(), text)
 }
 
 #[test]

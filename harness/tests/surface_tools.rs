@@ -2,10 +2,11 @@
 
 mod common;
 
-use common::{assert_fails, objects, tissuebench, write};
+use common::{assert_fails, number, solved, tissuebench, write};
 use serde_json::Value;
 
-/// ASCII STL of a box of 12 x 12 x 6 mm whose bottom is the plane z = 0, without its last `left_out` triangles.
+/// ASCII STL of a box of 12 x 12 x 6 mm whose bottom is the plane z = 0, without its last `left_out`
+/// triangles.
 fn stl(left_out: usize) -> String {
     let corner = |k: usize| {
         let side = |a: usize, low: f64, high: f64| if (k >> a) & 1 == 1 { high } else { low };
@@ -45,14 +46,11 @@ const SURFACE: &str = "shape = \"file\", path = \"box.stl\", unit = \"mm\", roun
 fn run(tool: &str) -> Value {
     let dir = tempfile::tempdir().unwrap();
     write(&dir, "box.stl", &stl(0));
-    let done = tissuebench(&["run", &write(&dir, "scene.toml", &scene(tool)), "--once", "--format", "json"]);
-    assert_eq!(done.code, 0, "{}", done.stderr);
-    objects(&done.stdout).remove(0)
+    solved(&dir, &scene(tool))
 }
 
 #[test]
 fn the_surface_of_a_box_presses_as_the_box() {
-    let number = |of: &Value, name: &str| of["metrics"][name]["value"].as_f64().unwrap();
     let named = run(
         "shape = \"rounded-box\", half = [\"7 mm\", \"7 mm\", \"4 mm\"], radius = \"1 mm\", at = [\"10 mm\", \"10 mm\", \"14 mm\"]",
     );

@@ -15,8 +15,8 @@ const ROUNDING: f64 = 1e-3;
 /// The box that the surface below is.
 pub const BOXED: ToolShape = ToolShape::RoundedBox(RoundedBox { half: [4e-3, 5e-3, 3e-3], radius: ROUNDING });
 
-/// One tool of each shape, and a box without rounding, with sizes of a few millimetres. The surface is that of a
-/// box, so that its distances are known.
+/// One tool of each shape, and a box without rounding, with sizes of a few millimetres. The surface is that
+/// of a box, so that its distances are known.
 pub static SHAPES: LazyLock<[ToolShape; 7]> = LazyLock::new(|| {
     [
         ToolShape::Plate(Plate),

@@ -44,8 +44,8 @@ struct BesideLaw {
     /// Direction within a sheet across the fibres; its part along the fibre is taken off. Any direction across the
     /// fibre unless given, for a law that is the same all around the fibre
     sheets: Option<DirectionKeys>,
-    /// Form of the volumetric energy, with the bulk modulus of the law; that of the law's formula unless given. Only for
-    /// laws whose formula has a term of J alone
+    /// Form of the volumetric energy, with the bulk modulus of the law; that of the law's formula unless
+    /// given. Only for laws whose formula has a term of J alone
     volumetric: Option<VolumetricKeys>,
 }
 
@@ -381,7 +381,8 @@ fn hyperelastic(law: &Law, elastic: Elastic) -> Option<Hyperelastic> {
         Law::BlatzKo(_) => Some(Hyperelastic::BlatzKo(elastic)),
         Law::Hyperfoam(law) => Some(Hyperelastic::Hyperfoam { terms: law.terms().to_vec() }),
         Law::Corotational(_) => Some(Hyperelastic::Corotational(elastic)),
-        // Hencky's law takes its moduli from those of the whole law, so the volumetric part can't be taken off.
+        // Hencky's law takes its moduli from those of the whole law, so the volumetric part can't be taken
+        // off.
         Law::WithVolumetric(law) if !matches!(law.rest(), Law::Hencky(_)) => {
             let rest = Box::new(hyperelastic(law.rest(), elastic)?);
             let bulk = law.volume().bulk;

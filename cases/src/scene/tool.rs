@@ -46,8 +46,8 @@ struct SurfaceKeys {
     path: String,
     /// Unit of the numbers in the file
     unit: Unit<Length>,
-    /// Radius of the rounding, which is added to the surface all round; larger than the penetration of the points
-    /// in contact
+    /// Radius of the rounding, which is added to the surface all round; larger than the penetration of the
+    /// points in contact
     rounding: Q<Length>,
     /// Direction of the file's z axis; z unless given
     axis: Option<[f64; 3]>,
@@ -110,8 +110,8 @@ impl JsonSchema for ToolKeys {
 #[schemars(extend("x-one-of" = ["closure", "path", "force", "pressure"]))]
 struct DriveKeys {
     closure: Option<Q<Length>>,
-    /// Displacements of the tool, one after another, at constant speed: [["0 mm", "0 mm", "-3 mm"], ["5 mm", "0
-    /// mm", "0 mm"]] presses and then drags
+    /// Displacements of the tool, one after another, at constant speed: [["0 mm", "0 mm", "-3 mm"], ["5 mm",
+    /// "0 mm", "0 mm"]] presses and then drags
     path: Option<Vec<[Q<Length>; 3]>>,
     force: Option<Q<Force>>,
     pressure: Option<Q<Pressure>>,

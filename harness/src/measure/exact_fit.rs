@@ -17,7 +17,7 @@ use super::solved::Solved;
 use crate::discretise::place;
 use crate::discretise::place::Patch;
 use crate::error::Failure;
-use crate::scenario::setup::{Applied, Setup, SurfaceLoad};
+use crate::scenario::setup::{Applied, Load, Setup, SurfaceLoad};
 
 /// Surface on which a scene and its exact solution differ most.
 pub(super) struct Misfit {
@@ -38,7 +38,7 @@ pub(super) struct Misfit {
 /// Part of the surface covered by a support or a load: whole facets, and whether other facets are cut.
 struct Covered {
     whole: HashSet<Facet>,
-    /// Area of the whole facets, m^2.
+    /// Area over which a total force is spread, m^2; 0 for other loads and supports.
     area: f64,
     cuts: bool,
 }
@@ -79,15 +79,19 @@ pub(super) fn worst(run: &Solved) -> Result<Option<Misfit>, Failure> {
         return Ok(None);
     };
     let mesh = method.mesh();
-    let covered = |key: &str, at: &Place| -> Result<Covered, Failure> {
+    let covered = |key: &str, at: &Place, is_spread: bool| -> Result<Covered, Failure> {
         let Patch { whole, cut } = place::patch(key, at, mesh)?;
-        let area = fem::surface_rows(mesh, &whole, &SurfaceRule::STANDARD)?.weights().iter().sum();
+        let area = match is_spread {
+            true => fem::surface_rows(mesh, &whole, &SurfaceRule::STANDARD)?.weights().iter().sum(),
+            false => 0.0,
+        };
         Ok(Covered { whole: whole.into_iter().collect(), area, cuts: !cut.is_empty() })
     };
     let held: Vec<Covered> =
-        setup.supports.iter().map(|s| covered(&s.key, &s.place)).collect::<Result<_, _>>()?;
+        setup.supports.iter().map(|s| covered(&s.key, &s.place, false)).collect::<Result<_, _>>()?;
+    let is_spread = |load: &Load| matches!(load.applied, Applied::Surface(SurfaceLoad::Force(_)));
     let loaded: Vec<Covered> =
-        setup.loads.iter().map(|l| covered(&l.key, &l.place)).collect::<Result<_, _>>()?;
+        setup.loads.iter().map(|l| covered(&l.key, &l.place, is_spread(l))).collect::<Result<_, _>>()?;
     if held.iter().chain(&loaded).any(|c| c.cuts) {
         return Ok(None);
     }

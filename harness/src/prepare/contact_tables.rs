@@ -96,8 +96,9 @@ fn outside(surface: &SurfaceRows, index: usize, tool: &Tool) -> Result<(), Failu
     let angle: f64 = (surface.points().iter().zip(surface.normals()).zip(surface.weights()))
         .map(|((x, n), w)| w * n.dot(&(x - place)) / (x - place).norm().powi(3))
         .sum();
-    // The place of a plate is any point of its face, and that of a surface may lie outside of it, such as between
-    // the branches of a clamp. The condition is negated so that NaN passes: the place may coincide with a point.
+    // The place of a plate is any point of its face, and that of a surface may lie outside of it, such as
+    // between the branches of a clamp. The condition is negated so that NaN passes: the place may coincide
+    // with a point.
     let is_within_tool = !tool.shape().is_endless() && tool.gap(0.0, &place) < 0.0;
     if !is_within_tool || !(angle > WITHIN * 4.0 * std::f64::consts::PI) {
         return Ok(());

@@ -13,6 +13,14 @@ use crate::discretise::Discretisation;
 use crate::error::{Failure, Foreign, ForeignStatus, Key};
 use crate::process::Limits;
 
+/// Part of a scene that problem files cannot describe yet.
+struct Unsaid {
+    key: String,
+    what: &'static str,
+    /// What they can describe in its place.
+    help: &'static str,
+}
+
 impl Scenario<'_> {
     /// Discretises the body with the solver's elements and attaches the external solver.
     pub(super) fn external(&self, external: &scene::External) -> Result<Discretisation, Failure> {
@@ -60,19 +68,11 @@ impl Scenario<'_> {
         Ok(self.about(fem.element.name(), BTreeMap::new(), limits))
     }
 
-    /// Refuses a procedure or a load that problem files do not support yet.
+    /// Refuses a scene that problem files cannot describe yet.
     pub(crate) fn check_files(&self) -> Result<(), Failure> {
-        if let Some(key) = self.following() {
-            let help = "add dead = true for a pressure on the undeformed surface";
-            return Err(Failure::input(
-                Key::Scene(key),
-                "acts on the deformed surface, which is not supported in problem files yet",
-                help,
-            ));
-        }
-        if let Some((key, _)) = self.new_tool() {
-            let help = "problem files support tools of named shapes that move along a straight line";
-            return Err(Failure::input(Key::Scene(key), "is not supported in problem files yet", help));
+        if let Some(Unsaid { key, what, help }) = self.unsaid().into_iter().next() {
+            let problem = format!("is {what}, which problem files do not support yet");
+            return Err(Failure::input(Key::Scene(key), problem, help));
         }
         match self.scene.procedure.kind() {
             ProcedureKind::Linear | ProcedureKind::Static => Ok(()),
@@ -91,13 +91,35 @@ impl Scenario<'_> {
         Some(format!("load[{index}].pressure"))
     }
 
-    /// Key of the first path or surface of a tool, and what it is.
-    fn new_tool(&self) -> Option<(String, &'static str)> {
-        self.scene.tools.iter().enumerate().find_map(|(index, tool)| match (&tool.path[..], &tool.file) {
-            ([], None) => None,
-            ([], Some(_)) => Some((format!("tool[{index}].shape"), "a surface as a tool")),
-            _ => Some((format!("tool[{index}].drive.path"), "a path of a tool")),
-        })
+    /// Lists the loads, materials and tools of the scene that problem files cannot describe yet.
+    fn unsaid(&self) -> Vec<Unsaid> {
+        let mut unsaid = Vec::new();
+        let mut add = |key, what, help| unsaid.push(Unsaid { key, what, help });
+        if let Some(key) = self.following() {
+            let what = "a pressure on the deformed surface";
+            add(key, what, "add dead = true for a pressure on the undeformed surface");
+        }
+        for (key, material) in self.scene.materials() {
+            if material.has_other_volumetric() {
+                let what = "another volumetric energy than that of the law";
+                add(format!("{key}.volumetric"), what, "leave it out");
+            }
+            if material.directions.is_some() {
+                let what = "a material with directions";
+                add(format!("{key}.fibers"), what, "take a law without fibres");
+            }
+        }
+        for (index, tool) in self.scene.tools.iter().enumerate() {
+            if !tool.path.is_empty() {
+                let key = format!("tool[{index}].drive.path");
+                add(key, "a path of a tool", "give along and drive = { closure = ... }");
+            }
+            if tool.file.is_some() {
+                let key = format!("tool[{index}].shape");
+                add(key, "a surface as a tool", "take a shape of the catalogue");
+            }
+        }
+        unsaid
     }
 
     /// Lists the features a solver needs for the scene: the word that an adapter lists in `can`, and a phrase
@@ -111,21 +133,12 @@ impl Scenario<'_> {
             other => ("", format!("kind = \"{}\", which problem files do not support yet", other.name())),
         }];
         asked.extend(self.scene.materials().map(|(_, m)| (m.name(), format!("the law \"{}\"", m.name()))));
-        if let Some((key, _)) = self.scene.materials().find(|(_, m)| m.has_other_volumetric()) {
-            let what =
-                "another volumetric energy than that of the law, which problem files do not support yet";
-            asked.push(("", format!("{what} ({key}.volumetric)")));
-        }
         if !self.scene.tools.is_empty() {
             asked.push(("tools", "rigid tools ([[tool]])".into()));
         }
-        if let Some(key) = self.following() {
-            let what = "a pressure on the deformed surface, which problem files do not support yet";
-            asked.push(("", format!("{what} ({key}; dead = true keeps the undeformed surface)")));
-        }
-        if let Some((key, what)) = self.new_tool() {
-            asked.push(("", format!("{what}, which problem files do not support yet ({key})")));
-        }
+        asked.extend(self.unsaid().into_iter().map(|Unsaid { key, what, help }| {
+            ("", format!("{what}, which problem files do not support yet ({key}: {help})"))
+        }));
         asked
     }
 }

@@ -87,6 +87,20 @@ pub fn assert_fails(done: &Done, code: i32, says: &str) {
     assert!(done.stderr.contains(says), "no '{says}' in: {}", done.stderr);
 }
 
+/// Runs the one method of a scene once and returns its JSON object.
+#[track_caller]
+pub fn solved(dir: &TempDir, scene: &str) -> Value {
+    let done = tissuebench(&["run", &write(dir, "scene.toml", scene), "--once", "--format", "json"]);
+    assert_eq!(done.code, 0, "{}", done.stderr);
+    objects(&done.stdout).remove(0)
+}
+
+/// Value of a metric of a run's JSON object.
+#[track_caller]
+pub fn number(of: &Value, metric: &str) -> f64 {
+    of["metrics"][metric]["value"].as_f64().unwrap_or_else(|| panic!("no {metric} in {of}"))
+}
+
 /// Parses the JSON objects of a run, one per line.
 pub fn objects(stdout: &str) -> Vec<Value> {
     stdout.lines().map(|line| serde_json::from_str(line).unwrap()).collect()

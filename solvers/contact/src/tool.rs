@@ -85,8 +85,8 @@ impl Tool {
         Ok(Tool { shape, at, rotation, first, later: Vec::new(), law, deepest })
     }
 
-    /// Bends the path: after the distance `length` (m) from the start of the last leg the tool moves along the
-    /// unit vector `along`.
+    /// Bends the path: after the distance `length` (m) from the start of the last leg the tool moves along
+    /// the unit vector `along`.
     ///
     /// # Errors
     ///

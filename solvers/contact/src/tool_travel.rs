@@ -3,8 +3,8 @@
 //! Contact depends on a state, not on how the state was reached. A tool that travels farther in a step than
 //! its own thickness ends beyond the surface, and nothing touches it there. Relative to the tool every point
 //! moves on a straight line during a step, and the distance to a convex shape is convex along that line. Its
-//! minimum is found by bisection on the sign of the slope. Of other shapes, parts of the line are halved until
-//! the distance, which changes at most as fast as the position, can't be smaller in them.
+//! minimum is found by bisection on the sign of the slope. Of other shapes, parts of the line are halved
+//! until the distance, which changes at most as fast as the position, can't be smaller in them.
 
 use shape::{Point3, Vector3};
 
@@ -147,8 +147,8 @@ impl Passage {
             *self = Passage { depth: -least, at: ends[1], travel };
         }
     }
-    /// Smallest distance (m) along a path of the length `travel` (m), to the accuracy that decides whether it is
-    /// a deeper passage.
+    /// Smallest distance (m) along a path of the length `travel` (m), to the accuracy that decides whether it
+    /// is a deeper passage.
     fn least(&self, before: f64, after: f64, travel: f64, gap: impl Fn(f64) -> f64) -> f64 {
         let mut least = before.min(after);
         let mut open = vec![([0.0, 1.0], [before, after])];

@@ -27,7 +27,8 @@ pub trait Material {
         false
     }
 
-    /// Whether the law distinguishes the sheet from the normal, so that the fibre alone does not define its axes.
+    /// Whether the law distinguishes the sheet from the normal, so that the fibre alone does not define its
+    /// axes.
     fn has_sheets(&self) -> bool {
         false
     }
@@ -89,8 +90,8 @@ pub trait Material {
         None
     }
 
-    /// Returns the law without its volumetric energy, and that energy. In contrast to [`Material::split`], the rest
-    /// may still depend on `J`. `None` if no term of the energy is a function of `J` alone.
+    /// Returns the law without its volumetric energy, and that energy. In contrast to [`Material::split`],
+    /// the rest may still depend on `J`. `None` if no term of the energy is a function of `J` alone.
     fn without_volume(&self) -> Option<(Self, Volumetric)>
     where
         Self: Sized,

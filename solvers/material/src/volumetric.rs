@@ -9,8 +9,8 @@ pub enum VolumetricForm {
     Quadratic,
     /// `kappa/2 (ln J)^2`, as in the uncoupled laws of FEBio.
     Logarithmic,
-    /// `kappa/4 (J^2 - 1 - 2 ln J)`, which resists both `J -> 0` and `J -> infinity`. Source: Simo and Taylor,
-    /// Comput. Methods Appl. Mech. Eng. 85 (1991) 273-310.
+    /// `kappa/4 (J^2 - 1 - 2 ln J)`, which resists both `J -> 0` and `J -> infinity`. Source: Simo and
+    /// Taylor, Comput. Methods Appl. Mech. Eng. 85 (1991) 273-310.
     SimoTaylor,
 }
 
@@ -34,7 +34,8 @@ impl Volumetric {
         Volumetric { form: VolumetricForm::Logarithmic, bulk }
     }
 
-    /// Returns `U`, `dU/dJ` and `d2U/dJ2` (Pa) at `J - 1`. They are NaN for `J < 0` in the forms with a logarithm.
+    /// Returns `U`, `dU/dJ` and `d2U/dJ2` (Pa) at `J - 1`. They are NaN for `J < 0` in the forms with a
+    /// logarithm.
     pub fn derivatives(&self, j_minus_1: f64) -> [f64; 3] {
         let (kappa, j) = (self.bulk, j_minus_1);
         let J = 1.0 + j;

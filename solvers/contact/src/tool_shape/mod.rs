@@ -2,10 +2,9 @@
 //! out.
 //!
 //! Each shape has a file with its distance and its [`Entry`], and a line in the list below; the surface of a
-//! file has no entry. Outside and near
-//! the surface the distances are exact. On the medial axis the nearest point is not unique. One of the
-//! nearest points is taken there (each file states which), and the infinite part of the Hessian is left out,
-//! so that no value is NaN.
+//! file has no entry. Outside and near the surface the distances are exact. On the medial axis the nearest
+//! point is not unique. One of the nearest points is taken there (each file states which), and the infinite
+//! part of the Hessian is left out, so that no value is NaN.
 
 mod outline;
 mod rounded_surface;
@@ -15,6 +14,7 @@ use catalogue::{Build, Entry};
 use shape::{Matrix3, Point3, Vector3};
 
 pub use self::rounded_surface::RoundedSurface;
+pub use self::signed_distance::Distance;
 use self::signed_distance::Shape;
 use crate::error::ContactError;
 
@@ -93,17 +93,6 @@ tool_shapes! {
     capsule::Capsule,
 }
 
-/// Signed distance with its derivatives at one point.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Distance {
-    /// Signed distance, m; negative inside.
-    pub value: f64,
-    /// Unit gradient, away from the tool.
-    pub gradient: Vector3,
-    /// Hessian (3, 3), 1/m: the curvature of the level set through the point.
-    pub hessian: Matrix3,
-}
-
 impl From<RoundedSurface> for ToolShape {
     fn from(shape: RoundedSurface) -> ToolShape {
         ToolShape::RoundedSurface(shape)
@@ -140,8 +129,8 @@ impl ToolShape {
         self.shape().is_convex()
     }
 
-    /// Returns points (m, in the tool's frame) whose convex hull is that of the tool, for pictures. A plate, which is
-    /// unbounded, is drawn as a slab as wide as the body, `body` (m).
+    /// Returns points (m, in the tool's frame) whose convex hull is that of the tool, for pictures. A plate,
+    /// which is unbounded, is drawn as a slab as wide as the body, `body` (m).
     pub fn outline(&self, body: f64) -> Vec<Vector3> {
         self.shape().outline(body)
     }

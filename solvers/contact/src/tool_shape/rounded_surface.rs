@@ -1,19 +1,18 @@
-//! Closed surface with rounded edges: a ball of the radius r is added to it all round, and a ball of the radius r
-//! that rolls over the result fills its grooves.
+//! Closed surface with rounded edges: a ball of the radius r is added to it all round, and a ball of the
+//! radius r that rolls over the result fills its grooves.
 //!
-//! Both are needed for a normal without jumps. Over convex edges the distance `D` from the surface is smooth, and
-//! the tool's distance is `D - r`. Over a groove the nearest flank changes at the bisector, where a point would
-//! be pushed to and fro. There the tool's distance is `r - |y - x|` with `y` the position of the ball's centre
-//! nearest to `x`: the nearest of all positions with `D >= 2 r`. It lies at the distance 2 r from two flanks, or
-//! from three.
+//! Both are needed for a normal without jumps. Over convex edges the distance `D` from the surface is smooth,
+//! and the tool's distance is `D - r`. Over a groove the nearest flank changes at the bisector, where a point
+//! would be pushed to and fro. There the tool's distance is `r - |y - x|` with `y` the position of the ball's
+//! centre nearest to `x`: the nearest of all positions with `D >= 2 r`. It lies at the distance 2 r from two
+//! flanks, or from three.
 
 use std::sync::Arc;
 
-use geometry::surface::Foot;
 use geometry::{Point3, Surface, closest_on_triangle};
 use shape::{Matrix3, Vector3};
 
-use super::signed_distance::{Shape, size};
+use super::signed_distance::{Distance, Shape, size};
 use crate::error::ContactError;
 
 /// Closed surface, such as the model of an instrument, about the middle of its bounding box, with all edges
@@ -65,10 +64,11 @@ impl RoundedSurface {
 
     /// Kept out of the loops of the other shapes, which take a hundredth of its time.
     #[inline(never)]
-    fn distance(&self, p: &Vector3) -> Foot {
+    fn distance(&self, p: &Vector3) -> Distance {
         let x = Point3::from(p + self.middle);
         let foot = self.surface.foot(&x);
-        let grown = Foot { distance: foot.distance - self.radius, ..foot };
+        let grown =
+            Distance { value: foot.distance - self.radius, gradient: foot.gradient, hessian: foot.hessian };
         let reach = 2.0 * self.radius;
         if self.is_convex || foot.distance >= reach {
             return grown;
@@ -78,14 +78,13 @@ impl RoundedSurface {
         if (centre - at).norm() >= reach * (1.0 - CENTRE) {
             return grown;
         }
-        let (_, first) = self.surface.closest(&x);
         // A ball that finds no place in a groove of many flanks leaves it open.
-        self.filled(&x, centre, vec![first, flank]).unwrap_or(grown)
+        self.filled(&x, centre, vec![foot.triangle, flank]).unwrap_or(grown)
     }
 
-    /// Distance from the ball that meets these flanks (triangles) of a groove and others, starting from a centre
-    /// that is too close to one of them.
-    fn filled(&self, x: &Point3, mut centre: Point3, mut flanks: Vec<usize>) -> Option<Foot> {
+    /// Distance from the ball that meets these flanks (triangles) of a groove and others, starting from a
+    /// centre that is too close to one of them.
+    fn filled(&self, x: &Point3, mut centre: Point3, mut flanks: Vec<usize>) -> Option<Distance> {
         let reach = 2.0 * self.radius;
         while flanks.len() <= FLANKS {
             let mut normals = Vec::new();
@@ -117,21 +116,27 @@ impl RoundedSurface {
         None
     }
 
-    /// Distance from the ball about a centre, which can move along the edge between two flanks.
-    fn of_ball(&self, x: &Point3, centre: &Point3, normals: &[Vector3]) -> Foot {
+    /// Distance from the ball about a centre, held by flanks of these normals: it moves along with a single
+    /// one and along the edge between two. Where a flank is an edge or a corner, its curvature is left out of
+    /// the Hessian.
+    fn of_ball(&self, x: &Point3, centre: &Point3, normals: &[Vector3]) -> Distance {
         let length = (centre - x).norm();
         let gradient = (centre - x) / length;
-        let mut across = Matrix3::identity() - gradient * gradient.transpose();
-        if let [a, b] = normals {
-            let along = a.cross(b).normalize();
-            across -= along * along.transpose();
-        }
-        Foot { distance: self.radius - length, gradient, hessian: -across / length }
+        let across = Matrix3::identity() - gradient * gradient.transpose();
+        let held = match normals {
+            [_] => Matrix3::zeros(),
+            [a, b] => {
+                let along = a.cross(b).normalize();
+                across - along * along.transpose()
+            }
+            _ => across,
+        };
+        Distance { value: self.radius - length, gradient, hessian: -held / length }
     }
 }
 
-/// Shortest vector `v` with `n . v >= d` for all pairs of unit normals and distances, and the normals of those
-/// that it meets as equalities, at most three. All such sets are tried: a ball meets few flanks.
+/// Shortest vector `v` with `n . v >= d` for all pairs of unit normals and distances, and the normals of
+/// those that it meets as equalities, at most three. All such sets are tried: a ball meets few flanks.
 fn nearest_beyond(planes: &[(Vector3, f64)]) -> Option<(Vector3, Vec<Vector3>)> {
     let count = planes.len();
     let mut best: Option<(Vector3, Vec<Vector3>)> = None;
@@ -160,8 +165,8 @@ fn nearest_beyond(planes: &[(Vector3, f64)]) -> Option<(Vector3, Vec<Vector3>)> 
 
 impl Shape for RoundedSurface {
     fn foot(&self, p: &Vector3) -> (f64, Vector3) {
-        let Foot { distance, gradient, .. } = self.distance(p);
-        (distance, gradient)
+        let Distance { value, gradient, .. } = self.distance(p);
+        (value, gradient)
     }
 
     fn hessian(&self, p: &Vector3) -> Matrix3 {
@@ -224,6 +229,21 @@ mod tests {
             soup.face(number, quad).unwrap();
         }
         Arc::new(Surface::new(soup, 1.0).unwrap())
+    }
+
+    /// Between the faces of a sheet every position is nearly as deep, so that the search is cut off.
+    #[test]
+    fn the_depth_of_a_thin_sheet_is_found_in_bounded_work() {
+        let half = [25e-3, 25e-3, 5e-5];
+        let turn = nalgebra::Rotation3::new(Vector3::new(0.4, -0.7, 0.2));
+        let flat = boxed(half, [0.0; 3]);
+        let points = flat.points().iter().map(|p| turn * p).collect();
+        let mut soup = Soup { points, ..Soup::default() };
+        for (number, &triangle) in flat.triangles().iter().enumerate() {
+            soup.triangle(number, triangle);
+        }
+        let depth = Surface::new(soup, 1.0).unwrap().depth();
+        assert!((0.5 * half[2]..=half[2] * (1.0 + 1e-9)).contains(&depth), "{depth}");
     }
 
     #[test]

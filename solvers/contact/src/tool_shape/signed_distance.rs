@@ -16,6 +16,17 @@ pub(super) const AXIS: Parameter =
 /// to it is noise.
 pub(super) const MEDIAL: f64 = 1e-12;
 
+/// Signed distance with its derivatives at one point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Distance {
+    /// Signed distance, m; negative inside.
+    pub value: f64,
+    /// Unit gradient, away from the tool.
+    pub gradient: Vector3,
+    /// Hessian (3, 3), 1/m: the curvature of the level set through the point.
+    pub hessian: Matrix3,
+}
+
 /// Shape of a tool, in its own frame. Lengths are in metres.
 pub(super) trait Shape {
     /// Returns the signed distance and its gradient.

@@ -15,6 +15,9 @@ const FLAT: f64 = 1e-10;
 /// Accuracy of the depth.
 const DEPTH: f64 = 0.1;
 
+/// Largest number of boxes in which the deepest position is searched: some tenths of a second.
+const MOST_BOXES: usize = 100_000;
+
 /// Signed distance from a surface with its derivatives.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Foot {
@@ -24,6 +27,8 @@ pub struct Foot {
     pub gradient: Vector3,
     /// Hessian (3, 3), 1/m.
     pub hessian: Matrix3,
+    /// Triangle with the closest point.
+    pub triangle: usize,
 }
 
 impl Surface {
@@ -39,7 +44,7 @@ impl Surface {
         let [low, high] = self.bounds();
         let is_near = distance.abs() <= NEAR * (high - low).norm();
         if closest.feature == Feature::Face || pseudo.dot(&face) > 1.0 - FLAT || is_near {
-            return Foot { distance, gradient: pseudo, hessian: Matrix3::zeros() };
+            return Foot { distance, gradient: pseudo, hessian: Matrix3::zeros(), triangle };
         }
         let gradient = (p - closest.at) / distance;
         let mut across = Matrix3::identity() - gradient * gradient.transpose();
@@ -48,7 +53,7 @@ impl Surface {
             let tangent = (corners[(edge + 1) % 3] - corners[edge]).normalize();
             across -= tangent * tangent.transpose();
         }
-        Foot { distance, gradient, hessian: across / distance }
+        Foot { distance, gradient, hessian: across / distance, triangle }
     }
 
     /// Whether no edge is concave, to 1e-9 of the surface's size.
@@ -65,12 +70,14 @@ impl Surface {
     }
 
     /// Depth of the innermost position (m), the radius of the largest ball inside, from 10 % below to exact.
-    /// It is found by halving boxes: the distance changes at most as fast as the position.
+    /// It is found by halving boxes: the distance changes at most as fast as the position. Of a thin sheet
+    /// every position between both faces is nearly as deep, and the search ends at [`MOST_BOXES`] with the
+    /// depth found until then, which is never too large.
     pub fn depth(&self) -> f64 {
         let [low, high] = self.bounds();
         let mut deepest: f64 = 0.0;
         let mut open = vec![(nalgebra::center(&low, &high), (high - low) * 0.5)];
-        while !open.is_empty() {
+        while (1..=MOST_BOXES).contains(&open.len()) {
             let depths: Vec<f64> = open.iter().map(|(middle, _)| -self.signed_distance(middle)).collect();
             deepest = depths.iter().copied().fold(deepest, f64::max);
             let may_be_deeper = |((_, half), depth): &(&(Point3, Vector3), &f64)| {

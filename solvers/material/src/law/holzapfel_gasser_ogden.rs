@@ -11,25 +11,26 @@ use crate::material::{Material, Tangent};
 use crate::separated::Separated;
 use crate::volumetric::Volumetric;
 
-/// Holzapfel, Gasser and Ogden's law of two families of dispersed fibres: `c` and `k1` in Pa, `k2` and the dispersion
-/// `d` (`kappa` in the paper) without unit.
+/// Holzapfel, Gasser and Ogden's law of two families of dispersed fibres: `c` and `k1` in Pa, `k2` and the
+/// dispersion `d` (`kappa` in the paper) without unit.
 ///
 /// ```text
-/// W = c/2 (J^(-2/3) I1 - 3) + kappa/2 (J - 1)^2 + k1/(2 k2) sum_(i = 1, 2) (exp(k2 Ei^2) - 1)   only where Ei > 0
-/// Ei = d (I1 - 3) + (1 - 3 d) (I4i - 1)
+/// W = c/2 (J^(-2/3) I1 - 3) + kappa/2 (J - 1)^2 + k1/(2 k2) sum_(i = 1, 2) (exp(k2 Ei^2) - 1)
+/// Ei = d (I1 - 3) + (1 - 3 d) (I4i - 1)     only where Ei > 0
 /// ```
 ///
 /// The families lie at `+angle` and `-angle` from the fibre towards the sheet. In an artery the fibre is the
-/// circumferential direction, the sheet the axial one. With `d = 0` all fibres of a family are parallel; with `d = 1/3` they
-/// have no direction. At `angle = 0` the families coincide, so their constants add up.
+/// circumferential direction, the sheet the axial one. With `d = 0` all fibres of a family are parallel; with
+/// `d = 1/3` they have no direction. At `angle = 0` the families coincide, so their constants add up.
 ///
-/// `I1` of the matrix is isochoric. `I1` and `I4i` of the fibres are not: `Ei + 1` is the mean squared stretch of the
-/// fibres of a family. With isochoric invariants fibres would not resist a change of volume, and a wall that is stretched
-/// would swell instead of stretching its fibres (Sansour 2008; Nolan et al. 2014). At `J = 1` the two are the same. The
-/// tangent jumps where a family passes its rest length; at rest it is that of extension.
+/// `I1` of the matrix is isochoric. `I1` and `I4i` of the fibres are not: `Ei + 1` is the mean squared
+/// stretch of the fibres of a family. With isochoric invariants fibres would not resist a change of volume,
+/// and a wall that is stretched would swell instead of stretching its fibres (Sansour 2008; Nolan et al.
+/// 2014). At `J = 1` the two are the same. The tangent jumps where a family passes its rest length; at rest
+/// it is that of extension.
 ///
-/// Sources: Gasser, Ogden and Holzapfel, J. R. Soc. Interface 3 (2006) 15-35; Sansour, Eur. J. Mech. A/Solids 27 (2008)
-/// 28-39; Nolan et al., J. Mech. Behav. Biomed. Mater. 39 (2014) 48-60.
+/// Sources: Gasser, Ogden and Holzapfel, J. R. Soc. Interface 3 (2006) 15-35; Sansour, Eur. J. Mech. A/Solids
+/// 27 (2008) 28-39; Nolan et al., J. Mech. Behav. Biomed. Mater. 39 (2014) 48-60.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HolzapfelGasserOgden {
     matrix: MooneyRivlin,
@@ -64,9 +65,9 @@ pub(super) const ENTRY: Entry<Build<HolzapfelGasserOgden>> = Entry {
 };
 
 impl HolzapfelGasserOgden {
-    /// Builds the law from the shear modulus `c` (Pa, positive) of the matrix, the constants `k1` (Pa, zero or more) and
-    /// `k2` (positive) of the fibres, the angle (rad) and the dispersion (0 to 1/3) of both families, and the bulk
-    /// modulus (Pa, positive).
+    /// Builds the law from the shear modulus `c` (Pa, positive) of the matrix, the constants `k1` (Pa, zero
+    /// or more) and `k2` (positive) of the fibres, the angle (rad) and the dispersion (0 to 1/3) of both
+    /// families, and the bulk modulus (Pa, positive).
     pub fn new(
         c: f64,
         [k1, k2]: [f64; 2],
@@ -126,8 +127,8 @@ material_of_reinforced!(HolzapfelGasserOgden);
 mod tests {
     use super::*;
 
-    /// Pure shear diag(l, 1/l, 1) keeps the volume. Each family has the stress `2 k1 E exp(k2 E^2) F A F^T`, and the sum
-    /// of both has no shear.
+    /// Pure shear diag(l, 1/l, 1) keeps the volume. Each family has the stress `2 k1 E exp(k2 E^2) F A F^T`,
+    /// and the sum of both has no shear.
     #[test]
     fn pure_shear_has_the_stress_of_the_formula() {
         let (c, k1, k2, angle, d) = (7.64e3, 996.6e3, 524.6, 49.98_f64.to_radians(), 0.226);

@@ -11,8 +11,8 @@ use crate::material::{Material, Tangent};
 use crate::separated::Separated;
 use crate::volumetric::Volumetric;
 
-/// Holzapfel and Ogden's law, orthotropic in fibre (f), sheet (s) and normal: constants `a` in Pa, `b` without
-/// unit.
+/// Holzapfel and Ogden's law, orthotropic in fibre (f), sheet (s) and normal: constants `a` in Pa, `b`
+/// without unit.
 ///
 /// ```text
 /// W = a/(2 b) (exp(b (J^(-2/3) I1 - 3)) - 1) + kappa/2 (J - 1)^2
@@ -20,14 +20,14 @@ use crate::volumetric::Volumetric;
 ///     + afs/(2 bfs) (exp(bfs I8fs^2) - 1)
 /// ```
 ///
-/// The invariant `I1` of the matrix is isochoric. The invariants of the fibres are not: `I4i = |F i|^2` is the
-/// squared stretch of a fibre and `I8fs = F f . F s` the shear between fibre and sheet. With isochoric invariants
-/// fibres would not resist a change of volume, and a body that is stretched would swell instead of stretching its
-/// fibres (Sansour 2008; Nolan et al. 2014). At `J = 1` the two are the same. The tangent jumps where a fibre passes its
-/// rest length; at rest it is that of extension.
+/// The invariant `I1` of the matrix is isochoric. The invariants of the fibres are not: `I4i = |F i|^2` is
+/// the squared stretch of a fibre and `I8fs = F f . F s` the shear between fibre and sheet. With isochoric
+/// invariants fibres would not resist a change of volume, and a body that is stretched would swell instead of
+/// stretching its fibres (Sansour 2008; Nolan et al. 2014). At `J = 1` the two are the same. The tangent
+/// jumps where a fibre passes its rest length; at rest it is that of extension.
 ///
-/// Sources: Holzapfel and Ogden, Phil. Trans. R. Soc. A 367 (2009) 3445-3475; Sansour, Eur. J. Mech. A/Solids 27
-/// (2008) 28-39; Nolan et al., J. Mech. Behav. Biomed. Mater. 39 (2014) 48-60.
+/// Sources: Holzapfel and Ogden, Phil. Trans. R. Soc. A 367 (2009) 3445-3475; Sansour, Eur. J. Mech. A/Solids
+/// 27 (2008) 28-39; Nolan et al., J. Mech. Behav. Biomed. Mater. 39 (2014) 48-60.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HolzapfelOgden {
     matrix: FungDemiray,
@@ -80,9 +80,9 @@ fn pair(values: &Values, constant: &'static str, exponent: &'static str) -> Resu
 }
 
 impl HolzapfelOgden {
-    /// Builds the law from pairs of a constant (Pa) and an exponent: those of the matrix (positive), the fibre, the
-    /// sheet and the shear between the two (constants zero or more, exponents positive), and the bulk modulus (Pa,
-    /// positive).
+    /// Builds the law from pairs of a constant (Pa) and an exponent: those of the matrix (positive), the
+    /// fibre, the sheet and the shear between the two (constants zero or more, exponents positive), and the
+    /// bulk modulus (Pa, positive).
     pub fn new(
         matrix: [f64; 2],
         fibre: [f64; 2],
@@ -130,8 +130,8 @@ impl Reinforced for HolzapfelOgden {
         self.sheet.a > 0.0 || self.shear.a > 0.0
     }
 
-    /// The shear between fibre and sheet is orthogonal to the stretches of both, which share the deviatoric strains
-    /// of a plane.
+    /// The shear between fibre and sheet is orthogonal to the stretches of both, which share the deviatoric
+    /// strains of a plane.
     fn fibre_shear(&self) -> f64 {
         let (f, s) = (self.fibre.a, self.sheet.a);
         (2.0 / 3.0 * (f + s + (f * f - f * s + s * s).sqrt())).max(self.shear.a)

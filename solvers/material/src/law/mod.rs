@@ -205,8 +205,8 @@ const OTHER_MODULI: [&str; 6] = [
 ];
 
 impl Law {
-    /// Returns the law with a volumetric energy of this form and its own bulk modulus. `None` if no term of its
-    /// energy is a function of `J` alone.
+    /// Returns the law with a volumetric energy of this form and its own bulk modulus. `None` if no term of
+    /// its energy is a function of `J` alone.
     pub fn with_volumetric(self, form: VolumetricForm) -> Option<Law> {
         let (rest, Volumetric { form: own, bulk }) = self.without_volume()?;
         if own == form {

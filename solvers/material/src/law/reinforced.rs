@@ -1,8 +1,9 @@
-//! Laws of a matrix with families of fibres: `W = W_matrix + sum_i g_i(q_i)`, `q_i = A_i : (C - I) = 2 A_i : E`.
+//! Laws of a matrix with families of fibres: `W = W_matrix + sum_i g_i(q_i)`,
+//! `q_i = A_i : (C - I) = 2 A_i : E`.
 //!
-//! The symmetric structure tensor `A_i` is written in the axes fibre (1), sheet (2) and normal (3): `q` is the
-//! squared stretch less one, `I4 - 1`, for `A = a x a`, and the shear `I8` between two directions for their
-//! symmetric product. A law gives its matrix and the functions `g_i`.
+//! The symmetric structure tensor `A_i` is written in the axes fibre (1), sheet (2) and normal (3): `q` is
+//! the squared stretch less one, `I4 - 1`, for `A = a x a`, and the shear `I8` between two directions for
+//! their symmetric product. A law gives its matrix and the functions `g_i`.
 
 use shape::{Matrix3, Vector3};
 
@@ -46,8 +47,8 @@ impl Exponential {
         [0.5 * a / b * (b * q * q).exp_m1(), grown * q, grown * (1.0 + 2.0 * b * q * q)]
     }
 
-    /// Returns [`Exponential::at`] in extension and zero in compression, in which fibres buckle. A body at rest has
-    /// the stiffness of extension.
+    /// Returns [`Exponential::at`] in extension and zero in compression, in which fibres buckle. A body at
+    /// rest has the stiffness of extension.
     pub fn in_extension(&self, q: f64) -> [f64; 3] {
         if q < 0.0 { [0.0; 3] } else { self.at(q) }
     }
@@ -73,8 +74,8 @@ pub(super) trait Reinforced: Clone {
     /// Whether the fibres do not all lie along the first axis.
     fn needs_sheets(&self) -> bool;
 
-    /// Largest shear modulus that fibres in extension add at small strain, Pa: half the largest eigenvalue of their
-    /// stiffness `sum 4 g''(0) A x A` among deviatoric strains.
+    /// Largest shear modulus that fibres in extension add at small strain, Pa: half the largest eigenvalue of
+    /// their stiffness `sum 4 g''(0) A x A` among deviatoric strains.
     fn fibre_shear(&self) -> f64;
 }
 

@@ -21,9 +21,10 @@ use crate::volumetric::Volumetric;
 ///          = c5 l + c6                 lm <= l       straight; c6 follows by continuity
 /// ```
 ///
-/// The fibres see the isochoric stretch, as in FEBio. FEBio's volumetric energy is the logarithmic one. The tangent
-/// jumps at `l = 1` and at `l = lm`; at rest it is that of extension. Sources: Weiss, Maker and Govindjee, Comput.
-/// Methods Appl. Mech. Eng. 135 (1996) 107-128; FEBio User Manual, Transversely Isotropic Mooney-Rivlin.
+/// The fibres see the isochoric stretch, as in FEBio. FEBio's volumetric energy is the logarithmic one. The
+/// tangent jumps at `l = 1` and at `l = lm`; at rest it is that of extension. Sources: Weiss, Maker and
+/// Govindjee, Comput. Methods Appl. Mech. Eng. 135 (1996) 107-128; FEBio User Manual, Transversely Isotropic
+/// Mooney-Rivlin.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TransIsoMooneyRivlin {
     matrix: MooneyRivlin,
@@ -62,8 +63,8 @@ pub(super) const ENTRY: Entry<Build<TransIsoMooneyRivlin>> = Entry {
     },
 };
 
-/// Abscissas and weights of Gauss's rule with eight points on -1 to 1, the positive half. Source: Abramowitz and
-/// Stegun, Handbook of Mathematical Functions, table 25.4.
+/// Abscissas and weights of Gauss's rule with eight points on -1 to 1, the positive half. Source: Abramowitz
+/// and Stegun, Handbook of Mathematical Functions, table 25.4.
 const GAUSS: [(f64, f64); 4] = [
     (0.183_434_642_495_649_8, 0.362_683_783_378_362),
     (0.525_532_409_916_329, 0.313_706_645_877_887_3),
@@ -72,9 +73,9 @@ const GAUSS: [(f64, f64); 4] = [
 ];
 
 impl TransIsoMooneyRivlin {
-    /// Builds the law from `C10` and `C01` (Pa, their sum positive), the constants `c3` (Pa, zero or more), `c4`
-    /// (positive) and `c5` (Pa, zero or more) of the fibres, the stretch `lm` (1 or more) at which they are straight, and
-    /// the bulk modulus (Pa, positive).
+    /// Builds the law from `C10` and `C01` (Pa, their sum positive), the constants `c3` (Pa, zero or more),
+    /// `c4` (positive) and `c5` (Pa, zero or more) of the fibres, the stretch `lm` (1 or more) at which they
+    /// are straight, and the bulk modulus (Pa, positive).
     pub fn new(
         [c10, c01]: [f64; 2],
         [c3, c4, c5]: [f64; 3],
@@ -92,10 +93,11 @@ impl TransIsoMooneyRivlin {
         Ok(TransIsoMooneyRivlin { straight: law.straightening(lm - 1.0), ..law })
     }
 
-    /// Returns `F2` at the extension `x = l - 1` of straightening fibres, `c3 int_0^x (exp(c4 t) - 1) / (1 + t) dt`.
+    /// Returns `F2` at the extension `x = l - 1` of straightening fibres,
+    /// `c3 int_0^x (exp(c4 t) - 1) / (1 + t) dt`.
     ///
-    /// The closed form is a difference of exponential integrals, which cancels at small extension. Gauss's rule adds
-    /// positive terms only. Its panels are so short that the remainder is below 1e-17 of the sum.
+    /// The closed form is a difference of exponential integrals, which cancels at small extension. Gauss's
+    /// rule adds positive terms only. Its panels are so short that the remainder is below 1e-17 of the sum.
     fn straightening(&self, x: f64) -> f64 {
         let panels = ((self.c4 + 4.0) * x).ceil().max(1.0);
         let half = 0.5 * x / panels;
@@ -177,7 +179,8 @@ mod tests {
         if l <= 1.0 { 0.0 } else if l < 1.062 { at(l) } else { 467.1e6 * (l - 1.062) + at(1.062) }
     }
 
-    /// An incompressible stretch l along the fibre has `sigma_11 - sigma_22 = 2 (l^2 - 1/l) (C10 + C01/l) + l dF2/dl`.
+    /// An incompressible stretch l along the fibre has
+    /// `sigma_11 - sigma_22 = 2 (l^2 - 1/l) (C10 + C01/l) + l dF2/dl`.
     #[test]
     fn a_bar_along_the_fibre_has_the_stress_of_the_formula() {
         for l in [0.95_f64, 1.03, 1.0619, 1.1] {

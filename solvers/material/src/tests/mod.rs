@@ -13,7 +13,8 @@ use crate::prony::Prony;
 use crate::viscoelastic::{deviator, relaxed_stress_and_tangent};
 use crate::volumetric::VolumetricForm;
 
-/// Returns every law of the catalogue with a Young's modulus of 20 kPa, in every form of its volumetric energy.
+/// Returns every law of the catalogue with a Young's modulus of 20 kPa, in every form of its volumetric
+/// energy.
 fn laws(poisson: f64) -> Vec<Law> {
     let laws = Law::all(20e3, poisson).unwrap();
     let others: Vec<Law> = laws.iter().flat_map(other_volumes).collect();

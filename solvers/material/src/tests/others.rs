@@ -15,7 +15,8 @@ const ANGLE: f64 = 0.7;
 const DISPERSION: f64 = 0.15;
 const STRAIGHT: f64 = 1.2;
 
-/// Laws with moduli of their own, in every form of their volumetric energy; the axes do not matter to those of foams.
+/// Laws with moduli of their own, in every form of their volumetric energy; the axes do not matter to those
+/// of foams.
 fn others() -> Vec<Law> {
     let laws: Vec<Law> = vec![
         Guccione::new(2e3, [2.0, 0.5, 1.0], 50e3).unwrap().into(),
@@ -30,8 +31,8 @@ fn others() -> Vec<Law> {
     laws.into_iter().chain(forms).collect()
 }
 
-/// Returns the distance of a state in the axes of the material from the nearest state in which the tangent of a law
-/// jumps: fibres at rest length, or straight.
+/// Returns the distance of a state in the axes of the material from the nearest state in which the tangent of
+/// a law jumps: fibres at rest length, or straight.
 fn distance_to_jump(law: &Law, H: &Matrix3) -> f64 {
     let F = Matrix3::identity() + H;
     let square = |x: f64, y: f64| (F * Vector3::new(x, y, 0.0)).norm_squared();
@@ -99,8 +100,8 @@ proptest! {
             let at = AtPoint::new(&law, Some(&R));
             prop_assert!((at.energy(&both) - law.energy(&H)).abs() < 1e-12 * scale);
             prop_assert!((at.stress(&both) - law.stress(&H) * R.transpose()).norm() < 1e-12 * scale);
-            // The axes may turn about the fibre, of which two families of fibres and sheets allow half a turn only.
-            // They may take half a turn about every axis.
+            // The axes may turn about the fibre, of which two families of fibres and sheets allow half a turn
+            // only. They may take half a turn about every axis.
             let about = if law.has_sheets() { PI } else { about };
             for spin in [[about, 0.0, 0.0], [0.0, PI, 0.0], [0.0, 0.0, PI]] {
                 let spin = rotation(spin);
@@ -134,7 +135,8 @@ fn a_body_at_rest_or_turned_has_no_stress() {
     }
 }
 
-/// The modulus that scales time steps and penalties is half the largest stiffness among deviatoric strains at rest.
+/// The modulus that scales time steps and penalties is half the largest stiffness among deviatoric strains at
+/// rest.
 #[test]
 fn shear_modulus_of_fibres_is_the_largest_at_rest() {
     let fibres = [
