@@ -71,7 +71,7 @@ impl Surface {
 
     /// Depth of the innermost position (m), the radius of the largest ball inside, from 10 % below to exact.
     /// It is found by halving boxes: the distance changes at most as fast as the position. Of a thin sheet
-    /// every position between both faces is nearly as deep, and the search ends at [`MOST_BOXES`] with the
+    /// every position between both faces is nearly as deep, and the search ends at 100,000 boxes with the
     /// depth found until then, which is never too large.
     pub fn depth(&self) -> f64 {
         let [low, high] = self.bounds();
