@@ -20,3 +20,4 @@
 
 pub mod exact;
 pub mod scene;
+pub mod tissue;

@@ -10,8 +10,9 @@ use cases::scene::{Check, Run, Scene, load_study};
 use common::tissuebench;
 use toml::{Table, Value};
 
-/// Parts of the list from which a scene does not choose, and those of third-party solvers.
-const NO_PARTS: [&str; 6] = ["units", "metrics", "warnings", "files", "purposes", "publications"];
+/// Parts of the list from which a scene does not choose, those of third-party solvers, and tissues, whose
+/// laws are parts of their own and whose constants have tests beside them.
+const NO_PARTS: [&str; 7] = ["units", "metrics", "warnings", "files", "purposes", "publications", "tissues"];
 /// Words that are the default of their key.
 const DEFAULTS: [(&str, &str); 4] = [
     ("method.neighbourhood", "ball"),

@@ -456,11 +456,10 @@ fn a_problem_is_written_for_others() {
     let [straight, path] =
         ["along = [0, 0, -1], drive = { closure", "drive = { path = [[\"0 mm\", \"0 mm\", \"-2 mm\"]] }"];
     refused(&format!("{straight} = \"2 mm\" }}"), path, "key 'tool[0].drive.path'");
-    assert_fails(
-        &tissuebench(&dir, &["export", &pressed, "--method", "efg", "--out", "pressed"]),
-        2,
-        "is not a finite-element method",
-    );
+    let springs = "procedure = { kind = \"static\", steps = 2 }\nfoundation = [{ on = \"z-min\", stiffness = \"1 kPa/mm\" }]";
+    refused("procedure = { kind = \"static\", steps = 2 }", springs, "key 'foundation[0]'");
+    let done = tissuebench(&dir, &["export", &pressed, "--method", "efg", "--out", "pressed"]);
+    assert_fails(&done, 2, "is not a finite-element method");
 }
 
 #[test]

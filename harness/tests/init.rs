@@ -213,13 +213,80 @@ fn what_makes_no_scene_is_refused_by_its_option() {
     refused(&["--hold", "z < 3"], "--hold");
     refused(&["--hold", "z < -30 mm"], "no corner of the surface lies there");
     refused(&["--hold", "z < 30 mm"], "constrains the whole body");
-    refused(&["--hold", "z > 10 mm"], "constrains the point that the plate from the top touches first");
+    refused(&["--hold", "z > 10 mm"], "constrains the point that a plate from the top touches first");
     refused(&["--closure", "40 mm"], "the body is only 30 mm high");
     refused(&["--load", "1 kPa"], "--load '1 kPa': ");
-    refused(&["--gap", "1 mm", "--strain", "small"], "small strain has no plate");
+    refused(&["--gap", "1 mm", "--strain", "small"], "small strain has no tool");
     refused(&["--methods", "tet4,hex8"], "'hex8' is not one of tet4, tet4-nodal, tet10, efg");
     refused(&["--nodes", "3"], "--nodes '3': a number from 100 to 200000");
     refused(&["--spacing", "20 mm"], "is too large for the body");
     assert_fails(&tissuebench(&["init", "--out", &out]), 2, "--file is needed");
     assert_fails(&tissuebench(&["init", "--file", &inside(&dir, "none.stl")]), 2, "there is no such file");
+}
+
+#[test]
+fn a_ball_jaws_and_a_file_stand_where_they_touch() {
+    let (dir, file, out) = folder();
+    let instrument = write(&dir, "instrument.stl", &tetrahedron());
+    for (tool, count, sides) in
+        [("ball", 1, "z-max"), ("jaws", 2, "z-min"), (instrument.as_str(), 1, "z-max")]
+    {
+        let made = tissuebench(&[
+            "init",
+            "--file",
+            &file,
+            "--tool",
+            tool,
+            "--friction",
+            "0.3",
+            "--press-from",
+            "top",
+            "--closure",
+            "1 mm",
+            "--methods",
+            "tet4",
+            "--nodes",
+            "300",
+            "--out",
+            &out,
+            "--force",
+        ]);
+        assert_eq!(made.code, 0, "{tool}: {}", made.stderr);
+        let text = std::fs::read_to_string(&out).unwrap();
+        assert_eq!(text.matches("[[tool]]").count(), count, "{text}");
+        assert!(text.contains(&format!("touch = \"{sides}\"")), "{text}");
+        assert!(text.contains("friction = 0.3\nstick"), "{text}");
+        let run = tissuebench(&["run", &out, "--method", "tet4-fine", "--format", "json"]);
+        let object = &objects(&run.stdout)[0];
+        let force =
+            object["metrics"]["tool-force"]["value"].as_f64().unwrap_or_else(|| panic!("{}", run.stderr));
+        // Each tool touches from the start and pushes; 1 mm into soft tissue is less than 5 N.
+        assert!(force > 1e-3 && force < 5.0, "{tool}: {force}");
+    }
+}
+
+#[test]
+fn tools_that_init_cannot_take_are_refused() {
+    let (_dir, file, out) = folder();
+    let refused = |options: &[&str], says: &str| {
+        let all = [&["init", "--file", &file, "--out", &out], options].concat();
+        assert_fails(&tissuebench(&all), 2, says);
+    };
+    refused(&["--tool", "bal"], "--tool 'bal': is not one of plate, ball, jaws; did you mean 'ball'?");
+    refused(&["--tool", "ball", "--strain", "small"], "small strain has no tool");
+    refused(&["--friction=-1"], "--friction '-1': a coefficient above zero");
+}
+
+/// A blunt instrument: a tetrahedron that stands on a face.
+fn tetrahedron() -> String {
+    let corners = [[0.0, 0.0, 20.0], [12.0, 0.0, 0.0], [-6.0, 10.0, 0.0], [-6.0, -10.0, 0.0]];
+    let mut text = String::from("solid tip\n");
+    for [a, b, c] in [[0, 1, 2], [0, 2, 3], [0, 3, 1], [1, 3, 2]] {
+        text += "facet normal 0 0 0\nouter loop\n";
+        for [x, y, z] in [a, b, c].map(|k| corners[k]) {
+            writeln!(text, "vertex {x} {y} {z}").unwrap();
+        }
+        text += "endloop\nendfacet\n";
+    }
+    text + "endsolid\n"
 }

@@ -121,5 +121,5 @@ fn cells_of_another_kind_are_refused_with_a_way_out() {
     let (head, _) = of_file.rsplit_once("size = ").unwrap();
     refused(&format!("{head}size = {{ level = 1 }}\n"), "makes cells of one kind, not mixed-linear");
     let reduced = mixed("mixed2-2.2-text.msh", "mixed-quadratic") + "reduced = true\n";
-    refused(&reduced, "applies to hex20 or wedge15 only");
+    refused(&reduced, "applies to hex8, hex20 or wedge15 only");
 }

@@ -79,7 +79,7 @@ fn paths_that_cannot_be_followed_are_refused() {
         PLATE,
         DRAG,
         steps,
-        "bends at 0.2000 of its length, between the ends of 12 load steps; take procedure.steps = 5",
+        "bends at 0.2000 of the loading, between the ends of 12 load steps; take procedure.steps = 5",
     );
     refused(PLATE, "path = []", STATIC, "key 'tool[0].drive.path': is empty");
     refused(

@@ -13,7 +13,7 @@ use geometry::{CellKind, Cloud, Kidney, Mesh, cloud};
 use interp::Scheme;
 use lanes::LanePath;
 use material::{Law, LinearElastic, NeoHookean};
-use shape::{DilationGroups, FixedDof, Matrix3, Point3, RowBlocks, Vector3, VolumeRows};
+use shape::{DilationGroups, FixedDof, HourglassModulus, Matrix3, Point3, RowBlocks, Vector3, VolumeRows};
 use statics::{Assembled, LinearBody, LinearProblem, assemble};
 
 type Kernels = Vec<(&'static str, fn(usize))>;
@@ -32,6 +32,8 @@ fn main() -> ExitCode {
         ("explicit-tet4", |times| force(CellKind::Tet4, false, times)),
         ("explicit-tet4-nodal", |times| force(CellKind::Tet4, true, times)),
         ("explicit-hex8", |times| force(CellKind::Hex8, false, times)),
+        ("explicit-hex8-mean", |times| force(CellKind::Hex8, true, times)),
+        ("explicit-hex8-reduced", |times| force_by(Held::one_point(10), false, Precision::Double, times)),
         ("explicit-tet4-single", |times| force_of(CellKind::Tet4, false, Precision::Single, times)),
         ("explicit-hex8-single", |times| force_of(CellKind::Hex8, false, Precision::Single, times)),
         ("explicit-hex20", |times| force(CellKind::Hex20, false, times)),
@@ -124,6 +126,11 @@ impl Held {
         Held { volume, nodal, fixed, material: [LinearElastic::new(20e3, 0.3).unwrap()], mesh }
     }
 
+    fn one_point(n: usize) -> Held {
+        let held = Held::new(CellKind::Hex8, n);
+        Held { volume: fem::uniform_rows(&held.mesh, 0.05, HourglassModulus::PWave).unwrap(), ..held }
+    }
+
     fn assembled(&self, projected: bool) -> Assembled<'_> {
         let body = LinearBody {
             nodes: self.mesh.points(),
@@ -182,7 +189,14 @@ fn force(kind: CellKind, projected: bool, times: usize) {
 
 fn force_of(kind: CellKind, projected: bool, precision: Precision, times: usize) {
     // About a thousand elements to six thousand; the points of a quadratic element are many.
-    let held = Held::new(kind, if kind.order() == 1 { 10 } else { 5 });
+    let mut held = Held::new(kind, if kind.order() == 1 { 10 } else { 5 });
+    if kind == CellKind::Hex8 {
+        held.nodal = fem::element_dilation(&held.mesh, &VolumeRule::STANDARD).unwrap();
+    }
+    force_by(held, projected, precision, times);
+}
+
+fn force_by(held: Held, projected: bool, precision: Precision, times: usize) {
     let laws = [Law::NeoHookean(NeoHookean::new(20e3, 0.495).unwrap())];
     let groups = projected.then_some(&held.nodal);
     let body = ExplicitBody { volume: &held.volume, laws: &laws, region: &[], axes: &[], groups };

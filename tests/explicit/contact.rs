@@ -48,10 +48,10 @@ impl Pressed {
 
     /// Returns a fraction of the critical step, with the penalty on the whole surface.
     fn step(&self, part: f64) -> f64 {
-        let springs = Springs { surface: &self.surface, modulus: 1e8 };
+        let springs = Springs { surface: &self.surface, modulus: 1e8, damping: 0.0 };
         let mut force = self.force();
         let zero = self.zero();
-        part * critical_step_touching(&mut force, &self.mass, &zero, |_| true, Some(springs), LANCZOS)
+        part * critical_step_touching(&mut force, &self.mass, &zero, |_| true, &[springs], LANCZOS)
             .unwrap()
             .dt
     }
@@ -90,7 +90,7 @@ fn the_body_gains_the_momentum_that_the_tool_gives() {
     let mut force = pressed.force();
     let dt = pressed.step(0.8);
     let drive = Drive::Closure(12e-3);
-    let moving = MovingTool { tool: &tool, drive, over: 300.0 * dt, mass: 0.0, damping: 0.0 };
+    let moving = MovingTool { tool: &tool, drive, over: 300.0 * dt, curve: None, mass: 0.0, damping: 0.0 };
     let tools = Tools::new(&surface, &[moving], &pressed.zero()).unwrap();
     let mut motion =
         Dynamics::new(&mut force, &pressed.mass, &[], params(dt, 0.0), pressed.zero(), pressed.zero())
@@ -128,7 +128,8 @@ fn energy_balances_with_tools_that_slide_and_swing() {
     ] {
         let along = if friction > 0.0 { aslant } else { -Vector3::z() };
         let tool = jaw(along, friction);
-        let moving = MovingTool { tool: &tool, drive, over: 1500.0 * dt, mass: 0.1 * body, damping };
+        let moving =
+            MovingTool { tool: &tool, drive, over: 1500.0 * dt, curve: None, mass: 0.1 * body, damping };
         let tools = Tools::new(&surface, &[moving], &pressed.zero()).unwrap();
         let mut force = pressed.force();
         let start = (pressed.zero(), pressed.zero());
@@ -164,7 +165,7 @@ fn a_force_comes_to_rest_where_the_tissue_carries_it() {
     for mass in [0.1 * body, 0.3 * body] {
         let drive = Drive::Force(0.5);
         let damping = 200.0;
-        let moving = MovingTool { tool: &tool, drive, over: 0.05, mass, damping };
+        let moving = MovingTool { tool: &tool, drive, over: 0.05, curve: None, mass, damping };
         let tools = Tools::new(&surface, &[moving], &pressed.zero()).unwrap();
         let mut force = pressed.force();
         let start = (pressed.zero(), pressed.zero());
@@ -197,7 +198,8 @@ fn a_step_may_change_on_the_way() {
     let dt = pressed.step(0.8);
     let run = |plan: &[(f64, usize)]| {
         let drive = Drive::Force(0.5);
-        let moving = MovingTool { tool: &tool, drive, over: 400.0 * dt, mass: 0.1 * body, damping: 30.0 };
+        let moving =
+            MovingTool { tool: &tool, drive, over: 400.0 * dt, curve: None, mass: 0.1 * body, damping: 30.0 };
         let tools = Tools::new(&surface, &[moving], &pressed.zero()).unwrap();
         let mut force = pressed.force();
         let start = (pressed.zero(), pressed.zero());
@@ -245,6 +247,7 @@ fn bits_do_not_depend_on_threads_and_far_tools_cost_nothing() {
                 tool,
                 drive: Drive::Closure(8e-3),
                 over: 100.0 * dt,
+                curve: None,
                 mass: 0.0,
                 damping: 0.0,
             });
@@ -272,7 +275,14 @@ fn what_cannot_go_on_is_named() {
     let tool = jaw(-Vector3::z(), 0.0);
     let mut force = pressed.force();
     let dt = pressed.step(0.9);
-    let moving = MovingTool { tool: &tool, drive: Drive::Force(1.0), over: 0.0, mass: 1e-6, damping: 0.0 };
+    let moving = MovingTool {
+        tool: &tool,
+        drive: Drive::Force(1.0),
+        over: 0.0,
+        curve: None,
+        mass: 1e-6,
+        damping: 0.0,
+    };
     let mut ends = |moving: MovingTool, dt: f64| {
         let tools = Tools::new(&surface, &[moving], &pressed.zero())?;
         Dynamics::new(&mut force, &pressed.mass, &[], params(dt, 0.0), pressed.zero(), pressed.zero())?

@@ -4,10 +4,12 @@ use explicit::{
     ExplicitBody, ExplicitError, InternalForce, LanczosParams, Lumping, RelaxationParams, lumped_mass, relax,
 };
 use geometry::CellKind;
+use geometry::generate::{Jitter, box_mesh};
 use integration::block::Block;
+use integration::model::{Model, Projection, solve, steps};
 use lanes::LanePath;
 use material::{Law, Material as _, NeoHookean};
-use shape::{FixedDof, Matrix3, Point3, Vector3};
+use shape::{FixedDof, HourglassModulus, Matrix3, Point3, Vector3};
 
 fn params(tolerance: f64) -> RelaxationParams {
     RelaxationParams {
@@ -96,4 +98,40 @@ fn a_bent_box_comes_to_rest_and_too_few_steps_are_an_error() {
     let few = RelaxationParams { steps: 20, ..params(1e-9) };
     let error = relax(&mut force, &mass, &fixed, &mut none, ramp, few).unwrap_err();
     assert!(matches!(error, ExplicitError::NotRelaxed { steps: 20, error, .. } if error > 1e-9), "{error}");
+}
+
+/// Hexahedra with one point: relaxation with the lane kernel ends at the equilibrium of Newton's method, whose
+/// stiffness of hourglass control is assembled. A bent beam of one cell across has all its bending energy in
+/// the patterns.
+#[test]
+fn hexahedra_with_one_point_rest_where_newton_finds_them() {
+    let max = Point3::new(0.04, 0.01, 0.01);
+    let jitter = Some(Jitter { fraction: 0.2, seed: 7 });
+    for cells in [[4, 1, 1], [6, 2, 2]] {
+        let mesh = box_mesh(CellKind::Hex8, Point3::origin(), max, cells, [1.0; 3], jitter).unwrap();
+        let volume = fem::uniform_rows(&mesh, 0.05, HourglassModulus::PWave).unwrap();
+        let model = Model::new(mesh, Projection::OnePoint);
+        assert_eq!(model.volume, volume);
+        let law = Law::NeoHookean(NeoHookean::new(20e3, 0.45).unwrap());
+        let mut fixed = model.hold(&["x-min"], &[0, 1, 2], |_| Vector3::zeros());
+        fixed.extend(model.hold(&["x-max"], &[2], |_| Vector3::new(0.0, 0.0, -8e-3)));
+        let problem = statics::StaticProblem { fixed: &fixed, ..model.problem(&law) };
+        let path = solve("one point", &problem, &steps(2));
+
+        let mass = lumped_mass(&volume, &[1060.0], &[], Lumping::RowSum).unwrap();
+        let laws = [law];
+        let body = ExplicitBody { volume: &volume, laws: &laws, region: &[], axes: &[], groups: None };
+        let mut force = InternalForce::new(body, LanePath::best()).unwrap();
+        assert_eq!(force.info().kernel.name(), "hex8 one point");
+        let ramp = model.mesh.points().iter().map(|x| Vector3::new(0.0, 0.0, -0.2 * x.x)).collect();
+        let mut none = |_: &[Vector3], _: &mut [Vector3]| ();
+        let (u, info) = relax(&mut force, &mass, &fixed, &mut none, ramp, params(1e-9)).unwrap();
+        let gap = u.iter().zip(&path.u).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
+        assert!(gap < 1e-7 * 8e-3, "{gap:e} {info:?}");
+        let energy = force.energy(&u).unwrap();
+        assert!((energy / path.steps[path.steps.len() - 1].energy - 1.0).abs() < 1e-7);
+        let part = volume.hourglass_energy(|_| [laws[0].lambda(), laws[0].mu()], &u) / energy;
+        let [least, most] = if cells[1] == 1 { [0.5, 1.0] } else { [0.05, 0.5] };
+        assert!(part > least && part < most, "{cells:?}: {part}");
+    }
 }

@@ -5,10 +5,10 @@ use fem::SurfaceRule;
 use geometry::CellKind;
 use integration::cuboid::{Cuboid, distance, largest, moving, params};
 use material::{Law, LinearElastic, NeoHookean};
-use shape::{FixedDof, Matrix3, Point3, Vector3};
+use shape::{Curve, FixedDof, Matrix3, Point3, Vector3};
 use statics::{
-    Inertia, Load, Mass, NewtonParams, PenaltySurface, Ramp, Ramps, SolidDilation, StaticParams,
-    StaticProblem, TimeError, TimeParams, TimeProblem, solve_in_time, solve_static,
+    Curves, Inertia, Load, Mass, NewtonParams, PenaltySurface, SolidDilation, StaticParams, StaticProblem,
+    TimeError, TimeParams, TimeProblem, solve_in_time, solve_static,
 };
 
 const DENSITY: f64 = 1000.0;
@@ -87,10 +87,10 @@ fn the_trapezoidal_rule_keeps_the_energy_of_a_linear_body() {
         // With damping and loads, all energy supplied and removed is accounted for.
         let traction = vec![Vector3::new(40.0, -30.0, 20.0); block.volume.weights().len()];
         let loads = [Load::Body { values: traction.iter().map(|t| t / 0.01).collect() }];
-        let body = StaticProblem { loads: &loads, ..body.clone() };
+        let curves = Curves::all(Curve::growth(0.05));
+        let body = StaticProblem { loads: &loads, curves, ..body.clone() };
         let inertia = Inertia { mass: &mass, damping: 20.0, displacement: &[], velocity: &velocity };
-        let ramps = Ramps::all(Ramp::Linear { over: 0.05 });
-        let problem = TimeProblem { body: &body, ramps, inertia: Some(inertia), relaxation: &[] };
+        let problem = TimeProblem { body: &body, inertia: Some(inertia), relaxation: &[] };
         let path = solve_in_time(&problem, &params(0.1, 50, 1.0), |_, _, _| ()).unwrap();
         let energy = path.steps.last().unwrap().energy;
         assert!(
@@ -191,14 +191,15 @@ fn a_slow_tool_with_inertia_presses_as_a_static_one() {
     };
     let quasi =
         StaticParams { steps: 20, smallest: 1.0 / 64.0, newton, augmentations: 0, limit_within: None };
+    let body = StaticProblem { curves: Curves::proportional(), ..body };
     let still = solve_static(&body, &quasi, |_, _| ()).unwrap();
     assert_eq!(still.failure, None);
 
     let mass = block.lumped(DENSITY);
     // The lowest period is about 20 ms, so the loading takes a hundred periods.
-    let ramps = Ramps::all(Ramp::Smooth { over: 2.0 });
+    let slow = StaticProblem { curves: Curves::all(Curve::smooth_growth(2.0)), ..body };
     let inertia = Inertia { mass: &mass, damping: 0.0, displacement: &[], velocity: &[] };
-    let problem = TimeProblem { body: &body, ramps, inertia: Some(inertia), relaxation: &[] };
+    let problem = TimeProblem { body: &slow, inertia: Some(inertia), relaxation: &[] };
     let path = solve_in_time(&problem, &TimeParams { newton, ..params(2.0, 20, 0.5) }, |_, _, _| ()).unwrap();
     assert_eq!(path.failure, None);
     let force = |tools: &[contact::ToolState]| tools[0].force.z;
@@ -226,15 +227,16 @@ fn a_moved_base_carries_the_body() {
     let fixed = block.constrained(|x, axis| (x.z == 0.0).then_some([5e-3, 0.0, 0.0][axis]));
     let body = block.body(&laws, &fixed);
     let mass = block.consistent(DENSITY);
-    let ramps = Ramps::all(Ramp::Smooth { over: 0.05 });
+    let curve = Curve::smooth_growth(0.05);
+    let body = StaticProblem { curves: Curves::all(curve.clone()), ..body };
     let inertia = Inertia { mass: &mass, damping: 0.0, displacement: &[], velocity: &[] };
-    let problem = TimeProblem { body: &body, ramps, inertia: Some(inertia), relaxation: &[] };
+    let problem = TimeProblem { body: &body, inertia: Some(inertia), relaxation: &[] };
     let lost = |steps: usize| {
         let (mut worst, mut largest) = (0.0f64, 0.0f64);
         solve_in_time(&problem, &params(0.06, steps, 1.0), |done, motion, _| {
             largest = largest.max(done.energy.kinetic);
             worst = worst.max(done.energy.lost().abs());
-            let base = ramps.supports.value(done.step.time) * 5e-3;
+            let base = curve.value(done.step.time) * 5e-3;
             assert!((motion.u[fixed[0].node as usize].x - base).abs() < 1e-18);
         })
         .unwrap();
@@ -245,8 +247,8 @@ fn a_moved_base_carries_the_body() {
 
     // With a slow ramp and damping, the whole body moves with the base.
     let inertia = Inertia { damping: 200.0, ..inertia };
-    let ramps = Ramps::all(Ramp::Linear { over: 0.5 });
-    let problem = TimeProblem { ramps, inertia: Some(inertia), ..problem };
+    let slow = StaticProblem { curves: Curves::all(Curve::growth(0.5)), ..body.clone() };
+    let problem = TimeProblem { body: &slow, inertia: Some(inertia), ..problem };
     let path = solve_in_time(&problem, &params(2.0, 400, 0.5), |_, _, _| ()).unwrap();
     assert_eq!(path.failure, None);
     let exact = vec![Vector3::new(5e-3, 0.0, 0.0); block.nodes().len()];
@@ -264,6 +266,8 @@ fn a_surface_held_by_penalty_is_driven_too() {
     let constrained = [PenaltySurface {
         surface: &surface,
         axes: [true; 3],
+        along_normal: false,
+        damping: 0.0,
         values: vec![Vector3::new(5e-3, 0.0, 0.0); surface.weights().len()],
         beta: 1e10,
     }];
@@ -272,9 +276,9 @@ fn a_surface_held_by_penalty_is_driven_too() {
     let exact = block.body(&laws, &fixed);
     let mass = block.lumped(DENSITY);
     let run = |body: &StaticProblem| {
-        let ramps = Ramps::all(Ramp::Smooth { over: 0.05 });
+        let body = &StaticProblem { curves: Curves::all(Curve::smooth_growth(0.05)), ..body.clone() };
         let inertia = Some(Inertia { mass: &mass, damping: 0.0, displacement: &[], velocity: &[] });
-        let problem = TimeProblem { body, ramps, inertia, relaxation: &[] };
+        let problem = TimeProblem { body, inertia, relaxation: &[] };
         solve_in_time(&problem, &params(0.05, 50, 0.5), |_, _, _| ()).unwrap().motion
     };
     let error = distance(&run(&body).u, &run(&exact).u) / 5e-3;
@@ -372,7 +376,7 @@ fn unusable_problems_are_refused() {
     let bad = moving(&jump, &mass, &[], &[]);
     assert!(matches!(
         solve_in_time(&bad, &good, |_, _, _| ()).unwrap_err(),
-        TimeError::Parameter { what: "the displacement of a support without a ramp", .. }
+        TimeError::Parameter { what: "the displacement of a support at the start", .. }
     ));
     // Row sums of a tet10 are negative at its corners; four points give a singular mass matrix.
     assert!(matches!(

@@ -5,7 +5,7 @@ use integration::cuboid::{Cuboid, distance, moving, params};
 use material::{Law, LinearElastic};
 use nalgebra::{Matrix3 as State, Vector3 as OneState};
 use shape::Vector3;
-use statics::{Inertia, Ramp, Ramps, TimeProblem, solve_in_time};
+use statics::{Inertia, TimeProblem, solve_in_time};
 
 const DENSITY: f64 = 1000.0;
 
@@ -26,8 +26,7 @@ fn oscillator(rho_inf: f64, damping: f64, omega_dt: f64, steps: usize) -> (Vec<f
     let displacement = up(1e-3);
     let velocity = up(0.02);
     let inertia = Inertia { mass: &mass, damping, displacement: &displacement, velocity: &velocity };
-    let problem =
-        TimeProblem { body: &body, ramps: Ramps::all(Ramp::AtOnce), inertia: Some(inertia), relaxation: &[] };
+    let problem = TimeProblem { body: &body, inertia: Some(inertia), relaxation: &[] };
     let top = block.nodes().iter().position(|x| x.z > 0.0).unwrap();
     let mut path = Vec::new();
     let params = params(omega_dt / omega * steps as f64, steps, rho_inf);

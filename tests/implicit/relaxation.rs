@@ -6,9 +6,9 @@ use integration::cuboid::{Cuboid, moving, params};
 use material::{
     Law, LinearElastic, Material, MooneyRivlin, NeoHookean, NeoHookeanIsochoric, Prony, SaintVenantKirchhoff,
 };
-use shape::{FixedDof, Vector3};
+use shape::{Curve, FixedDof, Vector3};
 use statics::{
-    Load, Motion, Ramp, Ramps, SolidDilation, StaticProblem, TimeParams, TimeProblem, TimeStep, solve_in_time,
+    Curves, Load, Motion, SolidDilation, StaticProblem, TimeParams, TimeProblem, TimeStep, solve_in_time,
 };
 
 const YOUNG: f64 = 20e3;
@@ -30,11 +30,12 @@ fn end(x: &shape::Point3) -> bool {
 fn pulls(
     block: &Cuboid,
     body: &StaticProblem,
-    ramp: Ramp,
+    curve: Curve,
     relaxation: &[Option<Prony>],
     params: &TimeParams,
 ) -> Vec<(f64, f64, TimeStep)> {
-    let problem = TimeProblem { body, ramps: Ramps::all(ramp), inertia: None, relaxation };
+    let body = &StaticProblem { curves: Curves::all(curve), ..body.clone() };
+    let problem = TimeProblem { body, inertia: None, relaxation };
     let mut pulls = Vec::new();
     let path = solve_in_time(&problem, params, |done, motion: &Motion, _| {
         let faces = block.nodes().iter().zip(&motion.reaction).filter(|(x, _)| end(x));
@@ -88,7 +89,7 @@ fn a_stretched_and_held_bar_relaxes_by_the_series() {
             for dilation in dilations {
                 let mut body = block.body(&laws, &fixed);
                 body.solid.dilation = dilation;
-                let found = pulls(&block, &body, Ramp::AtOnce, &prony, &params(2.0, 16, 1.0));
+                let found = pulls(&block, &body, Curve::at_once(), &prony, &params(2.0, 16, 1.0));
                 assert_eq!((found[0].0, found.len()), (0.0, 17));
                 for (t, force, done) in &found {
                     let exact = whole * series().relaxation(*t);
@@ -103,9 +104,7 @@ fn a_stretched_and_held_bar_relaxes_by_the_series() {
                     continue;
                 }
                 // At a constant rate followed by a constant value, the integral of the series is also exact.
-                for (t, force, _) in
-                    pulls(&block, &body, Ramp::Linear { over: 0.5 }, &prony, &params(2.0, 16, 1.0))
-                {
+                for (t, force, _) in pulls(&block, &body, Curve::growth(0.5), &prony, &params(2.0, 16, 1.0)) {
                     let integral = |t: f64| -> f64 {
                         let term = |(g, tau): &(f64, f64)| g * tau * -(-t / tau).exp_m1();
                         series().relaxed() * t + series().terms().iter().map(term).sum::<f64>()
@@ -140,8 +139,7 @@ fn a_loaded_bar_creeps_with_order_two() {
     let tip = block.nodes().iter().position(end).unwrap();
     let worst = |steps: usize| {
         let mut worst = 0.0f64;
-        let problem =
-            TimeProblem { body: &body, ramps: Ramps::all(Ramp::AtOnce), inertia: None, relaxation: &prony };
+        let problem = TimeProblem { body: &body, inertia: None, relaxation: &prony };
         let path = solve_in_time(&problem, &params(2.0, steps, 1.0), |done, motion, _| {
             let error = (motion.u[tip].x / SIDE / exact(done.step.time) - 1.0).abs();
             assert!(done.step.time > 0.0 || error < 1e-11, "at once it is elastic: {error:e}");
@@ -177,8 +175,7 @@ fn at_the_end_a_bar_is_a_softer_one() {
         let last = |laws: &[Law], relaxation: &[Option<Prony>]| {
             let mut body = block.body(laws, &fixed);
             body.solid.dilation = dilation;
-            let found =
-                pulls(&block, &body, Ramp::Linear { over: 10.0 }, relaxation, &params(100.0, 100, 1.0));
+            let found = pulls(&block, &body, Curve::growth(10.0), relaxation, &params(100.0, 100, 1.0));
             // Convergence is quadratic because the tangent is the derivative of the relaxed stress.
             let most = found.iter().map(|f| f.2.step.iterations.len()).max().unwrap();
             assert!(most <= 8, "{most} iterations");
@@ -206,7 +203,7 @@ fn laws_without_a_split_converge() {
         let last = |dilation| {
             let mut body = block.body(&laws, &fixed);
             body.solid.dilation = dilation;
-            let found = pulls(&block, &body, Ramp::Linear { over: 1.0 }, &prony, &params(2.0, 10, 1.0));
+            let found = pulls(&block, &body, Curve::growth(1.0), &prony, &params(2.0, 10, 1.0));
             let most = found.iter().map(|f| f.2.step.iterations.len()).max().unwrap();
             assert!(most <= 14, "{} iterations", most);
             found.last().unwrap().1

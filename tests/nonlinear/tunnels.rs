@@ -18,9 +18,9 @@ use geometry::CellKind;
 use geometry::quadrature::Parts;
 use integration::model::*;
 use material::{Law, NeoHookean};
-use shape::{FixedDof, Matrix3, Point3, Vector3};
+use shape::{Curve, FixedDof, Matrix3, Point3, Vector3};
 use statics::{
-    Frames, NewtonParams, Ramp, Ramps, StaticError, StaticParams, StaticPath, StaticProblem, TimeParams,
+    Curves, Frames, NewtonParams, StaticError, StaticParams, StaticPath, StaticProblem, TimeParams,
     TimeProblem, solve_in_time, solve_static,
 };
 
@@ -127,8 +127,8 @@ fn frames_and_time_steps_are_cut_as_well() {
             newton: cut(1).newton,
             augmentations: 0,
         };
-        let ramps = Ramps::all(Ramp::Linear { over: 2.0 });
-        let time = TimeProblem { body: problem, ramps, inertia: None, relaxation: &[] };
+        let slow = StaticProblem { curves: Curves::all(Curve::growth(2.0)), ..problem.clone() };
+        let time = TimeProblem { body: &slow, inertia: None, relaxation: &[] };
         let path = solve_in_time(&time, &params, |_, _, _| {}).unwrap();
         assert!(path.failure.is_none(), "{:?}", path.failure);
         agree(path.steps.last().unwrap().step.tools[0].force.z, many, "a time step");

@@ -5,10 +5,10 @@ use geometry::generate::box_mesh;
 use geometry::{CellKind, Mesh};
 use material::Law;
 use shape::VolumeRows;
-use shape::{FixedDof, Point3, Vector3};
+use shape::{Curve, FixedDof, Point3, Vector3};
 use statics::{
-    Inertia, LinearSystems, Mass, NewtonParams, Ramp, Ramps, Solid, SolidDilation, StaticProblem, TimeParams,
-    TimeProblem,
+    Active, Curves, Inertia, LinearSystems, Mass, NewtonParams, Solid, SolidDilation, StaticProblem,
+    TimeParams, TimeProblem,
 };
 
 /// A box with its tables.
@@ -71,8 +71,7 @@ impl Cuboid {
             laws,
             region: &[],
             axes: &[],
-            active: &[],
-            activation: 1.0,
+            active: Active::default(),
             dilation: SolidDilation::Standard,
         };
         StaticProblem {
@@ -84,12 +83,13 @@ impl Cuboid {
             penalties: &[],
             contact: None,
             tools: &[],
+            curves: Curves::all(Curve::at_once()),
             systems: LinearSystems::Factored,
         }
     }
 }
 
-/// Returns a dynamic problem without damping and relaxation, whose loads act at once.
+/// Returns a dynamic problem without damping and relaxation.
 pub fn moving<'a>(
     body: &'a StaticProblem<'a>,
     mass: &'a Mass,
@@ -97,7 +97,7 @@ pub fn moving<'a>(
     velocity: &'a [Vector3],
 ) -> TimeProblem<'a> {
     let inertia = Some(Inertia { mass, damping: 0.0, displacement, velocity });
-    TimeProblem { body, ramps: Ramps::all(Ramp::AtOnce), inertia, relaxation: &[] }
+    TimeProblem { body, inertia, relaxation: &[] }
 }
 
 /// Returns parameters for equal steps without error control.

@@ -3,4 +3,5 @@
 pub mod block;
 pub mod cuboid;
 pub mod model;
+pub mod organs;
 pub mod tools;

@@ -4,10 +4,11 @@ use fem::VolumeRule;
 use geometry::generate::{Jitter, box_mesh};
 use geometry::{CellKind, Facet, Mesh};
 use material::Law;
-use shape::{DilationGroups, Rows, VolumeRows};
+use shape::{DilationGroups, HourglassModulus, Rows, VolumeRows};
 use shape::{FixedDof, Point3, Vector3};
 use statics::{
-    LinearSystems, NewtonParams, Solid, SolidDilation, StaticParams, StaticPath, StaticProblem, solve_static,
+    Active, Curves, LinearSystems, NewtonParams, Solid, SolidDilation, StaticParams, StaticPath,
+    StaticProblem, solve_static,
 };
 
 /// Treatment of the volume change.
@@ -21,20 +22,22 @@ pub enum Projection {
     Nodal,
     /// A pressure field of its own.
     Mixed,
+    /// One point for each element, hence one dilation, and hourglass control.
+    OnePoint,
 }
 
 /// A mesh with the tables of one method.
 pub struct Model {
     /// The mesh.
     pub mesh: Mesh,
-    /// Standard quadrature of the mesh.
+    /// Quadrature of the method.
     pub volume: VolumeRows,
     groups: Option<DilationGroups>,
     pressure: Option<Rows>,
 }
 
 /// All methods: standard elements, and the remedies for volumetric locking with their elements.
-pub const METHODS: [(CellKind, Projection); 8] = [
+pub const METHODS: [(CellKind, Projection); 9] = [
     (CellKind::Tet4, Projection::Standard),
     (CellKind::Tet10, Projection::Standard),
     (CellKind::Hex8, Projection::Standard),
@@ -43,13 +46,17 @@ pub const METHODS: [(CellKind, Projection); 8] = [
     (CellKind::Tet10, Projection::Element),
     (CellKind::Tet4, Projection::Nodal),
     (CellKind::Tet10, Projection::Mixed),
+    (CellKind::Hex8, Projection::OnePoint),
 ];
 
 impl Model {
     /// Builds the tables of a projection.
     pub fn new(mesh: Mesh, projection: Projection) -> Model {
         let rule = VolumeRule::STANDARD;
-        let volume = fem::volume_rows(&mesh, &rule).unwrap();
+        let volume = match projection {
+            Projection::OnePoint => fem::uniform_rows(&mesh, 0.05, HourglassModulus::PWave).unwrap(),
+            _ => fem::volume_rows(&mesh, &rule).unwrap(),
+        };
         let groups = match projection {
             Projection::Element => Some(fem::element_dilation(&mesh, &rule).unwrap()),
             Projection::Nodal => Some(DilationGroups::nodal(&volume).unwrap()),
@@ -84,8 +91,7 @@ impl Model {
                 laws: std::slice::from_ref(law),
                 region: &[],
                 axes: &[],
-                active: &[],
-                activation: 1.0,
+                active: Active::default(),
                 dilation: self.dilation(),
             },
             loads: &[],
@@ -94,6 +100,7 @@ impl Model {
             penalties: &[],
             contact: None,
             tools: &[],
+            curves: Curves::proportional(),
             systems: LinearSystems::Factored,
         }
     }

@@ -35,14 +35,12 @@ impl Scene {
             add("procedure.precision", "precision = \"single\" with clouds".into(), help);
         }
         let ramp = |tool: &Tool| tool.over.or(self.procedure.duration());
-        for (i, tool) in self.tools.iter().enumerate().filter(|_| implicit) {
-            if ramp(tool) != ramp(&self.tools[0]) {
+        let mut ramped = self.tools.iter().enumerate().filter(|(_, tool)| implicit && tool.curve.is_none());
+        if let Some((_, first)) = ramped.next() {
+            for (i, _) in ramped.filter(|(_, tool)| ramp(tool) != ramp(first)) {
                 let help = "give all tools the same, or take kind = \"explicit\"";
-                add(
-                    &format!("tool[{i}].drive.over"),
-                    "a ramp other than the first tool's in implicit dynamics".into(),
-                    help,
-                );
+                let what = "a ramp other than the first tool's in implicit dynamics".into();
+                add(&format!("tool[{i}].drive.over"), what, help);
             }
         }
         for (i, method) in self.methods.iter().enumerate() {

@@ -236,10 +236,35 @@ impl Body {
 
     /// Reports the names in a selection that are not names of surfaces.
     pub(crate) fn find(&self, place: &Place, report: &Report) {
-        let (Some(known), Place::On(names)) = (self.surfaces(), place) else { return };
-        for name in names.iter().filter(|n| !known.contains(&n.as_str())) {
+        let Some(known) = self.surfaces() else { return };
+        let (key, names) = match place {
+            Place::On(names) => ("on", names),
+            Place::Edge(names) => ("edge", names),
+            Place::Where(_) | Place::At(_) | Place::Everywhere => return,
+        };
+        let unknown = |name: &&String| !known.contains(&name.as_str());
+        for name in names.iter().filter(unknown) {
             let problem = format!("is not a surface of a {}", self.name());
-            report.add("on", Problem::new(problem).found(name).help(suggest(name, &known)));
+            report.add(key, Problem::new(problem).found(name).help(suggest(name, &known)));
+        }
+        if key == "edge" && !names.iter().any(|name| unknown(&name)) {
+            self.check_edge(names, report);
+        }
+    }
+
+    /// Reports surfaces that share no edge.
+    fn check_edge(&self, names: &[String], report: &Report) {
+        let help = "name two surfaces that meet: edge = [\"x-min\", \"z-min\"]";
+        report.require(names.len() != 1, "edge", "is one surface, not an edge", help);
+        let opposite = |name: &String| match name.split_once('-') {
+            Some((axis, "min")) => format!("{axis}-max"),
+            Some((axis, "max")) => format!("{axis}-min"),
+            _ => String::new(),
+        };
+        let apart = names.iter().find(|name| names.contains(&opposite(name)));
+        if let (Body::Box { .. }, Some(name)) = (self, apart) {
+            let problem = format!("names '{name}' and '{}', which do not meet", opposite(name));
+            report.add("edge", Problem::new(problem).help(help));
         }
     }
 }

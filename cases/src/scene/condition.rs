@@ -1,15 +1,19 @@
 //! Supports and loads of a scene.
 
+use std::sync::Arc;
+
 use catalogue::Problem;
 use schemars::JsonSchema;
 use serde::Deserialize;
+use shape::Curve;
 
 use super::body::Body;
+use super::curve::{NamedCurve, named};
 use super::field::{ExactWord, FieldKeys, ScalarField, VectorField, VectorKeys};
 use super::procedure::{Procedure, ProcedureKind};
 use super::region::Region;
 use super::report::Report;
-use super::selection::{Names, Place};
+use super::selection::{Names, Place, PlaceKeys};
 use super::units::{BodyForce, Force, Length, Pressure, Q};
 
 /// Prescribed displacement along one axis
@@ -37,19 +41,25 @@ enum MoveKeys {
     Axes(AxesKeys),
 }
 
-/// Prescribed displacement of a region
+/// Prescribed displacement of faces, an edge, or points
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct SupportKeys {
-    /// Names given by the shape or the mesh file
+    /// Names of surfaces given by the shape, or of surfaces, curves, points and sets of nodes of the mesh file
     on: Option<Names>,
     /// Comparisons joined by 'and'
     #[serde(rename = "where")]
     place: Option<Region>,
+    /// Surfaces that share an edge or a corner, such as ["x-min", "z-min"], or a curve of the mesh file
+    edge: Option<Names>,
+    /// Points of the body, which are nodes of elements: [["5 mm", "0 mm", "0 mm"]]
+    at: Option<Vec<[Q<Length>; 3]>>,
     /// Axes fixed at zero, such as "xyz"
     fix: Option<String>,
     #[serde(rename = "move")]
     motion: Option<MoveKeys>,
+    /// Name of the curve that the motion follows; the common growth unless given
+    curve: Option<String>,
 }
 
 /// A load: exactly one of traction, pressure (along the inner normal), force and body force
@@ -72,6 +82,8 @@ pub(crate) struct LoadKeys {
     at: Option<Vec<[Q<Length>; 3]>>,
     /// Force per volume, everywhere
     body: Option<VectorKeys<BodyForce>>,
+    /// Name of the curve that the load follows; the common growth unless given
+    curve: Option<String>,
 }
 
 /// Prescribed displacement of a support along one axis, in metres.
@@ -90,6 +102,8 @@ pub struct Support {
     pub place: Place,
     /// Prescribed displacements along x, y, z; `None` for a free axis. At least one is prescribed.
     pub motion: [Option<Prescribed>; 3],
+    /// Factor of the displacements over time; `None` for the common growth.
+    pub curve: Option<Arc<Curve>>,
 }
 
 impl Support {
@@ -109,6 +123,8 @@ pub struct Load {
     pub kind: LoadKind,
     /// Whether a pressure keeps the normals and the areas of the undeformed surface.
     pub dead: bool,
+    /// Factor of the load over time; `None` for the common growth.
+    pub curve: Option<Arc<Curve>>,
 }
 
 /// Kinds of loads.
@@ -149,8 +165,10 @@ impl LoadKind {
 
 impl SupportKeys {
     /// Reads a support; checks its names of surfaces if the body is known.
-    pub fn read(self, body: Option<&Body>, report: &Report) -> Support {
-        let place = Place::required(self.on, self.place, report);
+    pub fn read(self, body: Option<&Body>, curves: &[NamedCurve], report: &Report) -> Support {
+        let curve = named(self.curve.as_ref(), curves, "curve", report);
+        let SupportKeys { on, place, edge, at, .. } = self;
+        let place = Place::of_support(PlaceKeys { on, place, edge, at }, report);
         body.inspect(|body| body.find(&place, report));
         let mut motion: [Option<Prescribed>; 3] = [None, None, None];
         if let Some(fix) = &self.fix {
@@ -178,7 +196,7 @@ impl SupportKeys {
         if motion.iter().all(Option::is_none) && self.fix.is_none() {
             report.missing("fix", "write fix = \"xyz\", or move = { z = \"-1 mm\" }");
         }
-        Support { place, motion }
+        Support { place, motion, curve }
     }
 }
 
@@ -202,7 +220,8 @@ fn moved(
 
 impl LoadKeys {
     /// Reads a load; checks its names of surfaces if the body is known.
-    pub fn read(self, body: Option<&Body>, report: &Report) -> Option<Load> {
+    pub fn read(self, body: Option<&Body>, curves: &[NamedCurve], report: &Report) -> Option<Load> {
+        let curve = named(self.curve.as_ref(), curves, "curve", report);
         let points = self.at.map(|at| at.into_iter().map(|x| x.map(|q| q.0)).collect::<Vec<_>>());
         let force = self.force.map(|force| force.map(|q| q.0));
         let (has_force, at) = (force.is_some(), points.is_some());
@@ -254,7 +273,7 @@ impl LoadKeys {
             }
         };
         body.inspect(|body| body.find(&place, report));
-        Some(Load { place, kind, dead })
+        Some(Load { place, kind, dead, curve })
     }
 }
 
@@ -288,7 +307,7 @@ pub(crate) fn demands(
         report.require(loads.is_empty(), "load[0]", problem, help);
     }
     let jumps = procedure.has_inertia() && procedure.ramp().is_some_and(|ramp| ramp.over == Some(0.0));
-    if let (true, Some(i)) = (jumps, supports.iter().position(Support::moves)) {
+    if let (true, Some(i)) = (jumps, supports.iter().position(|s| s.moves() && s.curve.is_none())) {
         let problem = Problem::new(format!("leaves no time for the motion of support[{i}]"));
         report.add("procedure.over", problem.help("a mass can't jump: give the duration of the motion"));
     }

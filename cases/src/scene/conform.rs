@@ -60,6 +60,15 @@ fn any(value: &DeValue<'_>, span: Range<usize>, path: &str, schema: &Value, find
             Ok(form) => keys(table, span, path, form, several, findings),
             Err(finding) => findings.push(*finding),
         },
+        // Lists of numbers or of expressions: the form that fits best, the first of equals.
+        (DeValue::Array(_), several) => {
+            let of_form = |form: &&Map<String, Value>| {
+                let mut of_form = Vec::new();
+                one(value, span.clone(), path, form, &mut of_form);
+                of_form
+            };
+            findings.extend(several.iter().map(of_form).min_by_key(Vec::len).into_iter().flatten());
+        }
         (_, several) => {
             let words: Vec<&str> = several.iter().flat_map(|form| words(form)).collect();
             if matches!(value, DeValue::String(text) if words.contains(&text.as_ref())) {

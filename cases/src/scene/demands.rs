@@ -11,7 +11,7 @@ use super::purpose::Purpose;
 use super::reference::Reference;
 use super::report::{Report, which};
 use super::scene::Scene;
-use super::{condition, material as materials, method, tool};
+use super::{condition, foundation, material as materials, method, timing, tool};
 use crate::exact::{Exact, SolutionEntry};
 
 /// Reports every contradiction.
@@ -23,12 +23,16 @@ pub(crate) fn scene(scene: &Scene, report: &Report) {
     }
     materials::unique(&scene.regions, report);
     let has_exact = matches!(reference, Some(Reference::Exact { .. }));
+    foundation::demands(&scene.foundations, procedure, report);
     condition::demands((&scene.supports, &scene.loads), procedure, has_exact, report);
     tool::demands(&scene.tools, procedure, report);
+    timing::demands(scene, report);
     method::demands(&scene.methods, kind, !scene.regions.is_empty(), report);
     if let Some(id) = &scene.output.beside {
         known_methods(std::slice::from_ref(id), scene, "output.beside", report);
     }
+    let regions = scene.regions.iter().map(|region| region.name.as_str());
+    scene.output.check_regions(std::iter::once("body").chain(regions), &report.at("output"));
     scene.output.demands(kind, reference, &report.at("output"));
     if let Some(reference) = reference {
         self::reference(reference, scene, report);
@@ -114,8 +118,7 @@ pub(crate) fn check(check: &Check, scene: &Scene, report: &Report) {
     }
     let kind = scene.procedure.kind();
     let reference = scene.reference.as_ref();
-    let compared = reference.is_some();
-    let solved = reference.is_some_and(Reference::is_solved);
+    let (compared, solved) = (reference.is_some(), reference.is_some_and(Reference::is_solved));
     let stepped = !kind.has_no_steps();
     let moves = scene.procedure.ramp().is_some();
     let vibrates = kind == ProcedureKind::Modes;
@@ -146,6 +149,7 @@ pub(crate) fn check(check: &Check, scene: &Scene, report: &Report) {
             "needs [procedure] kind = \"modes\" and [reference] exact = \"...\" in the scene",
         ),
         Needs::Support => (!scene.supports.is_empty(), "needs a [[support]] in the scene"),
+        Needs::Foundation => (!scene.foundations.is_empty(), "needs a [[foundation]] in the scene"),
         Needs::SupportMoment => (
             !scene.supports.is_empty() && scene.output.moments_about.is_some(),
             "needs a [[support]] and output.moments_about in the scene",
@@ -158,6 +162,7 @@ pub(crate) fn check(check: &Check, scene: &Scene, report: &Report) {
         Needs::Point => (probed, "needs output.probes in the scene"),
         Needs::Stretch => (!scene.output.stretches.is_empty(), "needs output.stretches in the scene"),
         Needs::Enclosed => (!scene.output.volumes.is_empty(), "needs output.volumes in the scene"),
+        Needs::RegionEnergy => (!scene.output.energies.is_empty(), "needs output.energies in the scene"),
         Needs::Tool => (touched, "needs a [[tool]] in the scene"),
         Needs::ToolReference => (
             touched && (solved || presses(scene)),
@@ -199,9 +204,11 @@ fn number(check: &Check, scene: &Scene, report: &Report) {
 fn numbered(needs: Needs, scene: &Scene) -> (usize, &'static str) {
     match needs {
         Needs::Support | Needs::SupportMoment => (scene.supports.len(), "support"),
+        Needs::Foundation => (scene.foundations.len(), "foundation"),
         Needs::Mean => (scene.output.means.len(), "face in output.means"),
         Needs::Point | Needs::Motion => (scene.output.probes.len(), "point in output.probes"),
         Needs::Stretch => (scene.output.stretches.len(), "entry of output.stretches"),
+        Needs::RegionEnergy => (scene.output.energies.len(), "region in output.energies"),
         Needs::Enclosed => (scene.output.volumes.len(), "surface in output.volumes"),
         _ => (scene.tools.len(), "tool"),
     }

@@ -34,7 +34,7 @@ impl Origin {
         self.files.own()
     }
 
-    /// The text of the file; with shared methods, the equivalent text in which these are written out.
+    /// The text of the file; with shared methods or tissues, the equivalent text in which these are written out.
     pub(crate) fn text(&self) -> &str {
         &self.text
     }
@@ -73,6 +73,8 @@ pub(crate) struct Document<'t> {
     pub root: Spanned<DeTable<'t>>,
     pub sources: Sources<'t>,
     pub files: Files,
+    /// Whether tables of the text stand for others, as the names of tissues do.
+    pub is_expanded: bool,
 }
 
 impl<'t> Document<'t> {
@@ -89,7 +91,7 @@ impl<'t> Document<'t> {
             Ok(root) => {
                 let whole = Spanned::new(root.span(), DeValue::Table(root.get_ref().clone()));
                 match limits::excess(&whole) {
-                    None => Ok(Document { root, sources, files }),
+                    None => Ok(Document { root, sources, files, is_expanded: false }),
                     Some((span, key, problem)) => {
                         let place = sources.place(Some(span));
                         Err(vec![files.error(ErrorKind::Invalid, place, &key, problem)])
@@ -153,7 +155,7 @@ impl<'t> Document<'t> {
         let wrong =
             |bad: toml::de::Error| vec![self.error(bad.span(), "", Problem::new(clip(bad.message())))];
         let keys = T::deserialize(values()).map_err(wrong)?;
-        let text = if self.files.are_several() {
+        let text = if self.files.are_several() || self.is_expanded {
             let mut table = toml::Table::deserialize(values()).map_err(wrong)?;
             table.remove("methods_from");
             table.to_string()

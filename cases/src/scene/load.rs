@@ -7,7 +7,7 @@ use super::error::{ErrorKind, SceneError, unread};
 use super::report::Report;
 use super::scene::{Scene, SceneKeys};
 use super::set::Override;
-use super::{demands, shared};
+use super::{demands, shared, tissue};
 
 /// Reads the scene in a file. Messages name the file by `path` as given.
 pub fn load(path: &Path) -> Result<Scene, Vec<SceneError>> {
@@ -48,7 +48,7 @@ pub(crate) fn resolved(keys: SceneKeys, origin: Origin) -> Result<Scene, Vec<Sce
 
 /// The JSON schema of scene files.
 pub fn schema() -> serde_json::Value {
-    shared::describe(document::schema::<SceneKeys>())
+    tissue::describe(shared::describe(document::schema::<SceneKeys>()))
 }
 
 /// The text of a scene or study file.

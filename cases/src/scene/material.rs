@@ -2,13 +2,16 @@
 //! their own material.
 
 use std::borrow::Cow;
+use std::sync::Arc;
 
 use catalogue::{Problem, Value, Values};
 use material::{Law, LawEntry, Material as _, VolumetricForm};
 use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::Deserialize;
+use shape::Curve;
 
 use super::body::Body;
+use super::curve::{NamedCurve, named};
 use super::expression::Expression;
 use super::field::ScalarField;
 use super::procedure::{Procedure, ProcedureKind};
@@ -38,9 +41,11 @@ struct BesideLaw {
     /// Direction of the fibres in the undeformed body, of any length: [1, 0, 0], or expressions in x, y and z
     /// (metres) such as ["-y", "x", "0"]; for laws that depend on directions
     fibers: Option<DirectionKeys>,
-    /// Active stress of contracting muscle along the fibres at the end of the loading, with which it grows: the second
+    /// Active stress of contracting muscle along the fibres, which grows with the loading or along active_curve: the second
     /// Piola-Kirchhoff stress T f x f beside the passive law; none unless given
     active: Option<Q<Pressure>>,
+    /// Name of the curve that the active stress follows; the common growth unless given
+    active_curve: Option<String>,
     /// Direction within a sheet across the fibres; its part along the fibre is taken off. Any direction across the
     /// fibre unless given, for a law that is the same all around the fibre
     sheets: Option<DirectionKeys>,
@@ -145,6 +150,8 @@ pub struct Material {
     pub directions: Option<Directions>,
     /// Active stress along the fibres at the end of the loading, in pascals; 0 without.
     pub active: f64,
+    /// Factor of the active stress over time; `None` for the common growth.
+    pub active_curve: Option<Arc<Curve>>,
 }
 
 /// Directions of a material.
@@ -195,7 +202,7 @@ pub struct MaterialRegion {
 }
 
 impl MaterialKeys {
-    pub fn read(self, report: &Report) -> Option<Material> {
+    pub fn read(self, curves: &[NamedCurve], report: &Report) -> Option<Material> {
         let density = self.beside.density.map(|d| report.positive("density", d.0));
         let prony = prony(self.beside.prony, report);
         let entry = self.law.0;
@@ -208,7 +215,10 @@ impl MaterialKeys {
         let active = self.beside.active.map_or(0.0, |active| active.0);
         let help = "take a law with fibres, such as law = \"guccione\"";
         report.require(active == 0.0 || directions.is_some(), "active", "has no fibre to act along", help);
-        Some(Material { entry, values, volumetric, law, density, prony, directions, active })
+        let active_curve = named(self.beside.active_curve.as_ref(), curves, "active_curve", report);
+        let help = "give active = \"60 kPa\", the stress at the factor 1";
+        report.require(active != 0.0 || active_curve.is_none(), "active_curve", "has no active stress", help);
+        Some(Material { entry, values, volumetric, law, density, prony, directions, active, active_curve })
     }
 }
 
@@ -263,9 +273,9 @@ fn prony(terms: Vec<PronyKeys>, report: &Report) -> Vec<Relaxation> {
 }
 
 impl RegionKeys {
-    pub fn read(self, report: &Report) -> Option<MaterialRegion> {
+    pub fn read(self, curves: &[NamedCurve], report: &Report) -> Option<MaterialRegion> {
         let place = Place::required(self.on, self.place, report);
-        let material = self.material.read(&report.at("material"));
+        let material = self.material.read(curves, &report.at("material"));
         Some(MaterialRegion { name: self.name, place, material: material? })
     }
 }
@@ -408,8 +418,17 @@ mod tests {
         values.give("poisson", Value::Number(0.3)).unwrap();
         let volumetric = Some(VolumetricForm::SimoTaylor);
         let law = with_volumetric((entry.build)(&values).unwrap(), volumetric).unwrap();
-        let (density, prony, directions, active) = (None, Vec::new(), None, 0.0);
-        let material = Material { entry, values, volumetric, law, density, prony, directions, active };
+        let material = Material {
+            entry,
+            values,
+            volumetric,
+            law,
+            density: None,
+            prony: Vec::new(),
+            directions: None,
+            active: 0.0,
+            active_curve: None,
+        };
         // kappa = E / (3 (1 - 2 nu)).
         for (law, bulk) in [(material.law().clone(), 12.5e3), (material.at_poisson(0.45).unwrap(), 50e3)] {
             let Law::WithVolumetric(law) = law else { panic!("{law:?}") };

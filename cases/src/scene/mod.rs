@@ -14,11 +14,13 @@ mod check;
 mod condition;
 mod conform;
 mod coverage;
+mod curve;
 mod demands;
 mod document;
 mod error;
 mod expression;
 mod field;
+mod foundation;
 mod limits;
 mod load;
 mod material;
@@ -38,7 +40,10 @@ mod shared;
 mod sources;
 mod study;
 mod table;
+mod timing;
+mod tissue;
 mod tool;
+mod touch;
 mod units;
 mod vocabulary;
 mod words;
@@ -47,16 +52,19 @@ pub use axis::Axis;
 pub use body::Body;
 pub use check::{Bound, Check};
 pub use condition::{Load, LoadKind, Prescribed, Support};
+pub use curve::NamedCurve;
 pub use document::Origin;
 pub use error::{ErrorKind, SceneError};
 pub use expression::{Expression, NotFinite};
 pub use field::{ScalarField, VectorField};
+pub use foundation::Foundation;
 pub use load::{load, load_with, parse, parse_with, schema};
 pub use material::{Direction, Directions, Material, MaterialRegion, Relaxation, medium};
 pub use mesh_file::MeshFile;
 pub use method::{
     Basis, Cloud, ConstraintRows, Dilation, Efg, Element, Essential, EssentialKind, External, Family, Fem,
-    Functions, Integration, Jitter, Mass, Method, Refine, Regions, Setting, Size, SupportRule, SupportShape,
+    Functions, Hourglass, HourglassModulus, Integration, Jitter, Mass, Method, Refine, Regions, Setting,
+    Size, SupportRule, SupportShape,
 };
 pub use output::{Enclosed, Output, Repeated, Stretch, Target, Transfer};
 pub use procedure::{

@@ -1,6 +1,6 @@
 //! Output of a scene: probes, means, transfers, and frames of a repeated loading.
 
-use catalogue::{Problem, Values};
+use catalogue::{Problem, Values, suggest};
 use schemars::JsonSchema;
 use serde::Deserialize;
 
@@ -28,6 +28,8 @@ pub(crate) struct OutputKeys {
     stretches: Option<Vec<StretchKeys>>,
     /// Surfaces whose enclosed volume is reported: [{ on = "inner" }]
     volumes: Option<Vec<VolumeKeys>>,
+    /// Regions whose strain energy is reported: names of [[region]], and "body" for the rest
+    energies: Option<Vec<String>>,
     /// Point about which the moments of tools and supports are reported
     moments_about: Option<[Q<Length>; 3]>,
     transfer: Option<TransfersKeys>,
@@ -159,6 +161,8 @@ pub struct Output {
     pub stretches: Vec<Stretch>,
     /// Surfaces whose enclosed volume is reported.
     pub volumes: Vec<Enclosed>,
+    /// Regions whose strain energy is reported; "body" is the part without a region of its own.
+    pub energies: Vec<String>,
     /// Point about which moments are reported, m.
     pub moments_about: Option<[f64; 3]>,
     /// Transfers of the nodal displacements to other points.
@@ -227,12 +231,17 @@ impl OutputKeys {
             let help = "name a surface, such as { on = \"inner\" }, or leave the key out";
             report.require(!volumes.is_empty(), "volumes", "is empty", help);
         }
+        if let Some(energies) = &self.energies {
+            let help = "name a region, such as \"body\", or leave the key out";
+            report.require(!energies.is_empty(), "energies", "is empty", help);
+        }
         let mean = |of: MeanKeys, report: &Report| Some(Place::required(of.on, of.place, report));
         Output {
             probes: self.probes.unwrap_or_default().into_iter().map(|x| x.map(|q| q.0)).collect(),
             means: report.each("means", self.means.unwrap_or_default(), mean),
             stretches: report.each("stretches", self.stretches.unwrap_or_default(), StretchKeys::read),
             volumes: report.each("volumes", self.volumes.unwrap_or_default(), VolumeKeys::read),
+            energies: self.energies.unwrap_or_default(),
             moments_about: self.moments_about.map(|x| x.map(|q| q.0)),
             transfers: match self.transfer {
                 None => Vec::new(),
@@ -299,6 +308,18 @@ impl TransferKeys {
 }
 
 impl Output {
+    /// Reports names in `energies` that are not those of the `known` regions.
+    pub(crate) fn check_regions<'a>(&self, known: impl Iterator<Item = &'a str>, report: &Report) {
+        let known: Vec<&str> = known.collect();
+        for (index, name) in
+            self.energies.iter().enumerate().filter(|(_, name)| !known.contains(&name.as_str()))
+        {
+            let problem =
+                Problem::new("is not a region of the scene").found(name).help(suggest(name, &known));
+            report.add(&format!("energies[{index}]"), problem);
+        }
+    }
+
     /// Reports contradictions with the procedure and the reference.
     pub(crate) fn demands(&self, kind: ProcedureKind, reference: Option<&Reference>, report: &Report) {
         if let Some((problem, help)) = kind.lacks_displacements() {
@@ -307,6 +328,7 @@ impl Output {
                 ("means", !self.means.is_empty()),
                 ("stretches", !self.stretches.is_empty()),
                 ("volumes", !self.volumes.is_empty()),
+                ("energies", !self.energies.is_empty()),
                 ("moments_about", self.moments_about.is_some()),
                 ("transfer", !self.transfers.is_empty()),
                 ("beside", self.beside.is_some()),

@@ -196,6 +196,26 @@ table! {
     }
 }
 
+/// Most load steps that are proposed.
+const MOST_PROPOSED: usize = 10_000;
+
+impl Static {
+    /// Returns the first of some fractions of the loading at which no load step ends, with help: the number
+    /// of steps that ends at all of them.
+    pub(crate) fn missed(&self, parts: &[f64]) -> Option<(f64, String)> {
+        let meets = |steps: usize| {
+            let near = |part: f64| (part - part.round()).abs() < 1e-6;
+            move |part: &f64| near(part * steps as f64)
+        };
+        let missed = parts.iter().copied().find(|part| !meets(self.steps)(part))?;
+        let help = match (1..=MOST_PROPOSED).find(|steps| parts.iter().all(meets(*steps))) {
+            Some(least) => format!("take procedure.steps = {least} or a multiple of it"),
+            None => "give fractions with simple ratios".into(),
+        };
+        Some((missed, help))
+    }
+}
+
 table! {
     /// Settings of Newton's method in a step
     pub struct Newton from NewtonKeys {

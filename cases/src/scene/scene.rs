@@ -1,15 +1,20 @@
 //! A scene: its keys, and the form that the program uses, in which every quantity is an `f64` in SI units and
 //! every choice is an enum.
 
+use std::sync::Arc;
+
 use catalogue::Problem;
 use schemars::JsonSchema;
 use serde::Deserialize;
+use shape::Curve;
 
 use super::body::{Body, BodyKeys};
 use super::check::{Check, CheckKeys};
 use super::condition::{Load, LoadKeys, Support, SupportKeys};
+use super::curve::{CurveKeys, NamedCurve};
 use super::document::Origin;
 use super::error::{ErrorKind, SceneError};
+use super::foundation::{Foundation, FoundationKeys};
 use super::material::{Material, MaterialKeys, MaterialRegion, RegionKeys};
 use super::method::{Method, MethodKeys};
 use super::output::{Output, OutputKeys};
@@ -41,7 +46,11 @@ pub(crate) struct SceneKeys {
     #[serde(default)]
     load: Vec<LoadKeys>,
     #[serde(default)]
+    foundation: Vec<FoundationKeys>,
+    #[serde(default)]
     tool: Vec<ToolKeys>,
+    #[serde(default)]
+    curve: Vec<CurveKeys>,
     procedure: Option<ProcedureKeys>,
     /// A file of methods that several scenes share, relative to the folder of the scene. A `[[method]]` takes
     /// one of its methods by `use = "id"`
@@ -76,8 +85,12 @@ pub struct Scene {
     pub supports: Vec<Support>,
     /// Given loads.
     pub loads: Vec<Load>,
+    /// Springs and dampers on parts of the surface.
+    pub foundations: Vec<Foundation>,
     /// Rigid tools.
     pub tools: Vec<Tool>,
+    /// Curves that loads, supports, tools and materials name.
+    pub curves: Vec<NamedCurve>,
     /// Solution procedure.
     pub procedure: Procedure,
     /// Methods to run: at least one, with unique ids.
@@ -99,8 +112,8 @@ impl Scene {
         self.origin.file()
     }
 
-    /// The text of the file; with shared methods, the equivalent text in which these are written out. It
-    /// contains the whole scene except the meshes that it names.
+    /// The text of the file; with shared methods or tissues, the equivalent text in which these are written
+    /// out. It contains the whole scene except the meshes that it names.
     pub fn text(&self) -> &str {
         self.origin.text()
     }
@@ -127,6 +140,20 @@ impl Scene {
             || self.supports.iter().any(Support::moves)
     }
 
+    /// Key and curve of every condition that has one.
+    pub fn curved(&self) -> impl Iterator<Item = (String, &Arc<Curve>)> {
+        let supports = self.supports.iter().map(|support| &support.curve).enumerate();
+        let loads = self.loads.iter().map(|load| &load.curve).enumerate();
+        let tools = self.tools.iter().map(|tool| &tool.curve).enumerate();
+        let materials =
+            self.materials().map(|(key, material)| (format!("{key}.active_curve"), &material.active_curve));
+        (supports.map(|(i, curve)| (format!("support[{i}].curve"), curve)))
+            .chain(loads.map(|(i, curve)| (format!("load[{i}].curve"), curve)))
+            .chain(tools.map(|(i, curve)| (format!("tool[{i}].drive.curve"), curve)))
+            .chain(materials)
+            .filter_map(|(key, curve)| Some((key, curve.as_ref()?)))
+    }
+
     /// Whether the file has `key`.
     pub fn has(&self, key: &str) -> bool {
         self.origin.has(key)
@@ -148,18 +175,23 @@ impl SceneKeys {
         let sound = !self.title.trim().is_empty();
         report.require(sound, "title", "is empty", "describe the scene in one line");
         let body = self.body.read(&report.at("body"));
-        let material = self.material.read(&report.at("material"));
+        let given = self.curve.len();
+        let curves = report.each("curve", self.curve, CurveKeys::read);
+        let material = self.material.read(&curves, &report.at("material"));
         let count = self.region.len();
-        let regions = report.each("region", self.region, RegionKeys::read);
-        let (supports, loads) = conditions(body.as_ref(), self.support, self.load, report);
+        let region = |keys: RegionKeys, report: &Report| keys.read(&curves, report);
+        let regions = report.each("region", self.region, region);
+        let (supports, loads) = conditions(body.as_ref(), &curves, self.support, self.load, report);
+        let founded = |keys: FoundationKeys, report: &Report| Some(keys.read(body.as_ref(), report));
+        let foundations = report.each("foundation", self.foundation, founded);
         let procedure = Procedure::read(self.procedure, !self.tool.is_empty(), &report.at("procedure"));
-        let tools = report.each("tool", self.tool, ToolKeys::read);
+        let tools = report.each("tool", self.tool, |keys, report| keys.read(body.as_ref(), &curves, report));
         let methods = report.each("method", self.method, MethodKeys::read);
         let output = self.output.unwrap_or_default().read(&report.at("output"));
         let reference = self.reference.and_then(|keys| keys.read(&report.at("reference")));
         let checks = report.each("check", self.check, CheckKeys::read);
         let (body, material) = (body?, material?);
-        (regions.len() == count).then(|| Scene {
+        (regions.len() == count && curves.len() == given).then(|| Scene {
             title: self.title,
             source: self.source,
             purpose: self.purpose.unwrap_or(Purpose::Smooth),
@@ -169,7 +201,9 @@ impl SceneKeys {
             regions,
             supports,
             loads,
+            foundations,
             tools,
+            curves,
             procedure,
             methods,
             output,
@@ -184,12 +218,13 @@ impl SceneKeys {
 /// Reads supports and loads; checks the names of surfaces if the body is known.
 fn conditions(
     body: Option<&Body>,
+    curves: &[NamedCurve],
     supports: Vec<SupportKeys>,
     loads: Vec<LoadKeys>,
     report: &Report,
 ) -> (Vec<Support>, Vec<Load>) {
-    let supports = report.each("support", supports, |keys, report| Some(keys.read(body, report)));
-    (supports, report.each("load", loads, |keys, report| keys.read(body, report)))
+    let supports = report.each("support", supports, |keys, report| Some(keys.read(body, curves, report)));
+    (supports, report.each("load", loads, |keys, report| keys.read(body, curves, report)))
 }
 
 /// The parts of a scene with valid keys, if the keys of other parts are not valid.
@@ -201,13 +236,16 @@ pub(crate) struct SoundParts {
     support: Vec<SupportKeys>,
     #[serde(default)]
     load: Vec<LoadKeys>,
+    #[serde(default)]
+    curve: Vec<CurveKeys>,
 }
 
 impl SoundParts {
     /// Reports errors in these parts, so that an error in one part does not hide errors in another.
     pub fn check(self, report: &Report) {
         let body = self.body.and_then(|keys| keys.read(&report.at("body")));
-        self.material.map(|keys| keys.read(&report.at("material")));
-        conditions(body.as_ref(), self.support, self.load, report);
+        let curves = report.each("curve", self.curve, CurveKeys::read);
+        self.material.map(|keys| keys.read(&curves, &report.at("material")));
+        conditions(body.as_ref(), &curves, self.support, self.load, report);
     }
 }

@@ -27,6 +27,7 @@ use super::report::{Report, beside, which};
 use super::scene::{SceneKeys, SoundParts};
 use super::set::Override;
 use super::sources::Taken;
+use super::tissue;
 use catalogue::Problem;
 
 /// Schemas, generated once: generating a schema takes longer than checking a file.
@@ -74,8 +75,9 @@ pub(crate) fn read(
     keys(document)
 }
 
-/// Keys of a scene; or all errors in the keys, and in the values of the parts whose keys are valid.
-pub(crate) fn keys(document: Document<'_>) -> Result<(SceneKeys, Origin), Vec<SceneError>> {
+/// Keys of a scene, with its tissues written out; or all errors in the keys, and in the values of the parts whose keys are valid.
+pub(crate) fn keys(mut document: Document<'_>) -> Result<(SceneKeys, Origin), Vec<SceneError>> {
+    tissue::expand(&mut document)?;
     let Err(mut errors) = document.check(&SCENE) else { return document.values() };
     if let Some((parts, origin)) = document.sound::<SoundParts>(&errors) {
         let report = Report::new(&origin);

@@ -11,10 +11,14 @@ use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::de::Error;
 use serde::{Deserialize, Deserializer};
 use serde_json::json;
+use shape::Curve;
 
+use super::body::Body;
+use super::curve::{NamedCurve, named as curve_named};
 use super::mesh_file::MeshFile;
-use super::procedure::{Procedure, ProcedureKind};
+use super::procedure::{Procedure, ProcedureKind, Static};
 use super::report::Report;
+use super::touch::AtKeys;
 use super::units::{ContactSlope, Force, Length, Pressure, Q, Time, Unit};
 use super::vocabulary::{Given, ToolShapes, Vocabulary, Word, build, settings, tagged};
 
@@ -68,7 +72,7 @@ impl<'de> Deserialize<'de> for ShapeWord {
 #[derive(Deserialize, JsonSchema)]
 struct BesideShape {
     name: String,
-    at: [Q<Length>; 3],
+    at: AtKeys,
     /// Direction of motion; not with a path
     along: Option<[f64; 3]>,
     drive: DriveKeys,
@@ -117,6 +121,8 @@ struct DriveKeys {
     pressure: Option<Q<Pressure>>,
     /// Time of the ramp (dynamics)
     over: Option<Q<Time>>,
+    /// Name of the curve that the drive follows; the common growth unless given
+    curve: Option<String>,
 }
 
 /// A rigid tool.
@@ -141,6 +147,8 @@ pub struct Tool {
     pub drive: Drive,
     /// Time of the ramp in seconds (dynamics).
     pub over: Option<f64>,
+    /// Factor of the drive over time; `None` for the common growth.
+    pub curve: Option<Arc<Curve>>,
     /// Normal pressure per penetration, in pascals per metre.
     pub penalty: f64,
     /// Friction; `None` without a coefficient, or with a coefficient of 0.
@@ -168,13 +176,16 @@ pub enum Drive {
 }
 
 impl ToolKeys {
-    pub fn read(self, report: &Report) -> Option<Tool> {
+    pub fn read(self, body: Option<&Body>, curves: &[NamedCurve], report: &Report) -> Option<Tool> {
         let keys = self.beside;
         let placed = match self.shape {
             ShapeWord::Named(word) => named(&word, self.settings, report),
             ShapeWord::File => self.surface.and_then(|keys| surface(keys, report)),
         };
-        let DriveKeys { closure, path, force, pressure, over } = keys.drive;
+        let DriveKeys { closure, path, force, pressure, over, curve } = keys.drive;
+        let help = "leave it out: the curve has its own times";
+        report.require(over.is_none() || curve.is_none(), "drive.over", "can't be combined with curve", help);
+        let curve = curve_named(curve.as_ref(), curves, "drive.curve", report);
         let path: Option<Vec<[f64; 3]>> =
             path.map(|legs| legs.into_iter().map(|leg| leg.map(|q| q.0)).collect());
         let length = |leg: &[f64; 3]| leg.iter().map(|x| x * x).sum::<f64>().sqrt();
@@ -216,16 +227,22 @@ impl ToolKeys {
             Some(axis) => Some(unit(axis, "axis", report)?),
             None => shape.axis(along.into()).map(Into::into),
         };
+        let turned = axis.map_or_else(Matrix3::identity, |axis| contact::Tool::turned_to(&axis.into()));
+        let at = match keys.at {
+            AtKeys::Point(at) => std::array::from_fn(|a| at[a].0 + middle[a]),
+            touch => touch.read((&shape, turned, along), body, report)?,
+        };
         Some(Tool {
             name: keys.name,
             shape,
             file,
-            at: std::array::from_fn(|a| keys.at[a].0 + middle[a]),
+            at,
             along,
             path,
             axis,
             drive,
             over: over.map(|q| q.0),
+            curve,
             penalty: report.positive("penalty", keys.penalty.0),
             friction: friction(keys.friction.unwrap_or(0.0), keys.stick, report),
         })
@@ -312,8 +329,19 @@ pub(crate) fn demands(tools: &[Tool], procedure: &Procedure, report: &Report) {
             let help = format!("a {} procedure has no time axis: leave it out", kind.name());
             report.add("drive.over", Problem::new("is the time of a ramp").help(help));
         }
+        // In explicit dynamics a drive may act at once.
+        let sound = match kind {
+            ProcedureKind::Explicit => tool.over.is_none_or(|over| over >= 0.0),
+            _ => tool.over.is_none_or(|over| over > 0.0),
+        };
+        report.require(
+            sound,
+            "drive.over",
+            "is no duration of a ramp",
+            "give a time above zero, or leave it out",
+        );
         if let Procedure::Static(asked) = procedure {
-            steps_meet_bends(tool, asked.steps, &report);
+            steps_meet_bends(tool, asked, &report);
         }
         if matches!(tool.drive, Drive::Pressure(_)) && tool.shape.face_area(&tool.along.into()).is_none() {
             let help =
@@ -323,30 +351,37 @@ pub(crate) fn demands(tools: &[Tool], procedure: &Procedure, report: &Report) {
     }
 }
 
-/// Most load steps that are proposed for a path.
-const MOST_STEPS: usize = 10_000;
-
 /// Requires that load steps end at the bends of a path: a step across a bend would cut it, and friction would
 /// act along the cut.
-fn steps_meet_bends(tool: &Tool, steps: usize, report: &Report) {
+fn steps_meet_bends(tool: &Tool, asked: &Static, report: &Report) {
     let lengths: Vec<f64> =
         tool.path.iter().map(|leg| leg.iter().map(|x| x * x).sum::<f64>().sqrt()).collect();
     let whole: f64 = lengths.iter().sum();
-    let bends: Vec<f64> = (lengths.iter())
-        .scan(0.0, |sum, length| {
-            *sum += length;
-            Some(*sum / whole)
-        })
-        .collect();
-    let meets = |steps: usize| {
-        let near = |part: f64| (part - part.round()).abs() < 1e-6;
-        move |bend: &f64| near(bend * steps as f64)
+    let bends = (lengths.iter()).scan(0.0, |sum, length| {
+        *sum += length;
+        Some(*sum / whole)
+    });
+    let bends: Vec<f64> = match &tool.curve {
+        None => bends.collect(),
+        Some(curve) if curve.is_smooth() && curve.steepest() > 0.0 && tool.path.len() > 1 => {
+            let problem = Problem::new("passes the bends of the path between two load steps");
+            return report.add("drive.curve", problem.help("take a curve without smooth = true"));
+        }
+        Some(curve) => bends.flat_map(|bend| crossings(curve, bend)).collect(),
     };
-    let Some(missed) = bends.iter().find(|bend| !meets(steps)(bend)) else { return };
-    let problem = format!("bends at {missed:.4} of its length, between the ends of {steps} load steps");
-    let help = match (1..=MOST_STEPS).find(|steps| bends.iter().all(meets(*steps))) {
-        Some(least) => format!("take procedure.steps = {least} or a multiple of it"),
-        None => "give legs whose lengths have simple ratios".into(),
-    };
-    report.add("drive.path", Problem::new(problem).help(help));
+    if let Some((missed, help)) = asked.missed(&bends) {
+        let problem =
+            format!("bends at {missed:.4} of the loading, between the ends of {} load steps", asked.steps);
+        report.add("drive.path", Problem::new(problem).help(&help));
+    }
+}
+
+/// Returns the times at which a curve of straight lines passes a factor.
+fn crossings(curve: &Curve, factor: f64) -> Vec<f64> {
+    let each = curve.points().windows(2).filter_map(|pair| {
+        let ([start, from], [end, to]) = (pair[0], pair[1]);
+        let part = (factor - from) / (to - from);
+        (0.0..=1.0).contains(&part).then_some(start + part * (end - start))
+    });
+    each.collect()
 }

@@ -22,7 +22,7 @@ macro_rules! dims {
         }
     )*};
 }
-dims!(Length, Pressure, Density, Force, Time, BodyForce, ContactSlope, Rate, Bytes, Angle);
+dims!(Length, Pressure, Density, Force, Time, BodyForce, ContactSlope, SurfaceDamping, Rate, Bytes, Angle);
 
 /// A quantity of dimension `D`: text in the file, SI value in the program.
 pub(crate) struct Q<D>(pub f64, PhantomData<D>);

@@ -8,6 +8,7 @@ mod good;
 mod limits;
 mod project;
 mod shared;
+mod tissue;
 
 /// A scene with every part that runs today, and some parts that are not available yet.
 pub const SCENE: &str = r#"title = "A block"

@@ -27,17 +27,16 @@ pub fn reference(stored: &Stored) -> String {
     let mut text = String::new();
     for step in &stored.steps {
         for tool in &step.tools {
-            let off = [tool.low, tool.high].map(|f| 100.0 * (f / tool.force - 1.0));
-            writeln!(
-                text,
-                "{:7.3} mm  {:9.5} N  {:+.2} % {:+.2} %  probes within {:.4} mm",
-                1e3 * tool.closure,
-                tool.force,
-                off[0],
-                off[1],
-                1e3 * step.probe_band
-            )
-            .expect("a string");
+            // A tool that has not touched yet has no force to compare with.
+            let spread = if tool.force > 0.0 {
+                let [low, high] = [tool.low, tool.high].map(|f| 100.0 * (f / tool.force - 1.0));
+                format!("{low:+.2} % {high:+.2} %")
+            } else {
+                format!("up to {:.5} N", tool.high)
+            };
+            let (closure, probes) = (1e3 * tool.closure, 1e3 * step.probe_band);
+            writeln!(text, "{closure:7.3} mm  {:9.5} N  {spread}  probes within {probes:.4} mm", tool.force)
+                .expect("a string");
         }
     }
     text
@@ -101,7 +100,7 @@ pub fn outcomes(outcomes: &[Outcome], by: Seconds) -> String {
         false => ["max x [mm]", "max y [mm]", "max z [mm]"],
     };
     let [x, y, z] = metric::MAX.components();
-    let columns: [(Address, &str, f64); 19] = [
+    let columns: [(Address, &str, f64); 20] = [
         (metric::L2.whole(), "L2 [%]", 100.0),
         (metric::ENERGY.whole(), "energy [%]", 100.0),
         (metric::PRESSURE.whole(), "pressure [%]", 100.0),
@@ -116,6 +115,7 @@ pub fn outcomes(outcomes: &[Outcome], by: Seconds) -> String {
         (metric::HISTORY_ERROR.whole(), "history [%]", 100.0),
         (metric::PERIOD.whole(), "period [s]", 1.0),
         (metric::STRAIN_ENERGY_ERROR.whole(), "work error [%]", 100.0),
+        (metric::HOURGLASS_ENERGY.whole(), "hourglass [%]", 100.0),
         (metric::LOAD_CARRIED.whole(), "load [%]", 100.0),
         (metric::TOOL_FORCE.whole(), "force [N]", 1.0),
         (metric::TOOL_FORCE_ERROR.whole(), "force error [%]", 100.0),
@@ -188,6 +188,11 @@ pub fn places(outcomes: &[Outcome]) -> String {
             &["moment of a support [N mm]", "support", "x", "y", "z"][..],
             1e3,
         ),
+        (
+            metric::FOUNDATION_FORCE.components().to_vec(),
+            &["force of springs and dampers on the body [N]", "foundation", "x", "y", "z"],
+            1.0,
+        ),
         (metric::TOOL_MOMENT.components().to_vec(), &["moment on a tool [N mm]", "tool", "x", "y", "z"], 1e3),
         (
             vec![metric::PROBE_PEAK.whole(), metric::PROBE_PEAK_TIME.whole()],
@@ -195,6 +200,7 @@ pub fn places(outcomes: &[Outcome]) -> String {
             1e3,
         ),
         (vec![metric::STRETCH.whole()], &["stretch", "point", "[1]"], 1.0),
+        (vec![metric::REGION_ENERGY.whole()], &["strain energy of a region", "region", "[mJ]"], 1e3),
         (vec![metric::ENCLOSED_VOLUME.whole()], &["enclosed volume", "surface", "[mL]"], 1e6),
     ] {
         let rows = outcomes.iter().flat_map(|outcome| {

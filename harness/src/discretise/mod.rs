@@ -9,9 +9,10 @@ use fem::{Elements, VolumeRule};
 use geometry::shapes::Shape;
 use geometry::{Cloud, Mesh, Point3};
 use material::{AtPoint, Law};
-use shape::{DilationGroups, Matrix3, RowSource, Rows, SourceError, VolumeRows};
+use shape::{DilationGroups, HourglassModulus, Matrix3, RowSource, Rows, SourceError, VolumeRows};
 
 pub(crate) mod gradients;
+pub(crate) mod node_set;
 pub(crate) mod place;
 
 use crate::adapter::Outside;
@@ -177,6 +178,19 @@ impl Discretisation {
             shape_functions: "one row per Gauss point of each element".into(),
             outside: None,
             source: Arc::new(move || Ok(Box::new(Elements::new(mesh.clone(), rule)))),
+        }
+    }
+
+    /// Gives hexahedra with one point hourglass control with this coefficient (dimensionless) and
+    /// modulus.
+    pub(crate) fn controlled(self, coefficient: f64, modulus: HourglassModulus) -> Discretisation {
+        let mesh = self.mesh.clone();
+        let elements =
+            move || Elements::new(mesh.clone(), VolumeRule::reduced()).controlled(coefficient, modulus);
+        Discretisation {
+            shape_functions: "one row per element, with its mean gradients and hourglass control".into(),
+            source: Arc::new(move || Ok(Box::new(elements()))),
+            ..self
         }
     }
 

@@ -52,6 +52,7 @@ pub fn holds(place: &Place, x: &Point3, tolerance: f64) -> bool {
     match place {
         Place::Where(region) => region.contains([x.x, x.y, x.z], tolerance),
         Place::On(_) | Place::Everywhere => true,
+        Place::Edge(_) | Place::At(_) => false,
     }
 }
 
@@ -60,6 +61,8 @@ pub fn key(place: &Place, key: &str) -> Key {
     Key::Scene(match place {
         Place::On(_) => format!("{key}.on"),
         Place::Where(_) => format!("{key}.where"),
+        Place::Edge(_) => format!("{key}.edge"),
+        Place::At(_) => format!("{key}.at"),
         Place::Everywhere => key.into(),
     })
 }
@@ -69,15 +72,26 @@ pub fn words(place: &Place) -> String {
     match place {
         Place::On(names) => names.join(", "),
         Place::Where(region) => region.text.clone(),
+        Place::Edge(names) => names.join(" and "),
+        Place::At(points) => {
+            let each = points.iter().map(|x| {
+                let [x, y, z] = x.map(millimetres);
+                format!("({x}, {y}, {z})")
+            });
+            format!("{} mm", each.collect::<Vec<_>>().join(", "))
+        }
         Place::Everywhere => "everywhere".into(),
     }
+}
+
+/// Returns a length in mm, rounded to a nanometre: 0.04 m times 1000 differs from 40 in the last digit.
+fn millimetres(metres: f64) -> f64 {
+    (metres * 1e9).round() / 1e6
 }
 
 /// Describes the extent of the mesh in mm, the most common unit of scenes.
 pub fn extent(mesh: &Mesh) -> String {
     let (low, high) = bounds(mesh);
-    // Rounded to a nanometre: 0.04 m times 1000 differs from 40 in the last digit.
-    let millimetres = |m: f64| (m * 1e9).round() / 1e6;
     let along =
         |a: usize| format!("{} = {} to {}", ["x", "y", "z"][a], millimetres(low[a]), millimetres(high[a]));
     format!("the mesh spans {} mm", (0..3).map(along).collect::<Vec<_>>().join(", "))
@@ -120,24 +134,24 @@ pub fn outer(key: &str, place: &Place, mesh: &Mesh, faces: &[Facet]) -> Result<(
 }
 
 /// Returns the facets named by the place of the support or load at `key`. The name `surface` is the whole
-/// boundary of any mesh. A place given by comparisons returns the whole boundary.
+/// boundary of any mesh. A place given by comparisons returns the whole boundary. Edges, points and sets of nodes
+/// have no facets.
 ///
 /// # Errors
 /// Returns an error that lists the known names if the mesh lacks a named surface.
 pub fn facets(key: &str, place: &Place, mesh: &Mesh) -> Result<Vec<Facet>, Failure> {
-    let Place::On(names) = place else { return Ok(mesh.boundary()) };
+    let names = match place {
+        Place::On(names) => names,
+        Place::Where(_) | Place::Everywhere => return Ok(mesh.boundary()),
+        Place::Edge(_) | Place::At(_) => return Ok(Vec::new()),
+    };
     let mut all = Vec::new();
     for name in names {
         match mesh.group(name) {
             Some(group) => all.extend_from_slice(group),
             None if name == "surface" => all.extend(mesh.boundary()),
-            None => {
-                let known: Vec<&str> = mesh.group_names().filter(|name| *name != "surface").collect();
-                let known = [&["surface"], &known[..]].concat();
-                let problem = format!("names '{name}', a surface that the mesh does not have");
-                let help = format!("the mesh has {}", known.join(", "));
-                return Err(Failure::input(self::key(place, key), problem, &help));
-            }
+            None if mesh.node_group(name).is_some() => {}
+            None => return Err(unknown(self::key(place, key), name, mesh)),
         }
     }
     all.sort_unstable();
@@ -145,19 +159,15 @@ pub fn facets(key: &str, place: &Place, mesh: &Mesh) -> Result<Vec<Facet>, Failu
     Ok(all)
 }
 
-/// Returns the sorted indices of the nodes in the place: the nodes of its named facets, or all mesh nodes
-/// that satisfy its comparisons.
-///
-/// # Errors
-/// Returns an error if the mesh lacks a named surface.
-pub fn nodes(key: &str, place: &Place, mesh: &Mesh) -> Result<Vec<u32>, Failure> {
-    if let Place::On(_) = place {
-        return Ok(mesh.facet_group_nodes(&facets(key, place, mesh)?));
+/// Returns the error of a name that is neither a surface nor a set of nodes of the mesh.
+pub(crate) fn unknown(key: Key, name: &str, mesh: &Mesh) -> Failure {
+    let known: Vec<&str> = mesh.group_names().filter(|name| *name != "surface").collect();
+    let mut help = format!("the mesh has {}", [&["surface"], &known[..]].concat().join(", "));
+    let sets: Vec<&str> = mesh.node_groups().map(|(name, _)| name).collect();
+    if !sets.is_empty() {
+        help += &format!(" and the sets of nodes {}", sets.join(", "));
     }
-    let tolerance = tolerance(mesh);
-    Ok((0..mesh.points().len() as u32)
-        .filter(|&n| holds(place, &mesh.points()[n as usize], tolerance))
-        .collect())
+    Failure::input(key, format!("names '{name}', a surface that the mesh does not have"), &help)
 }
 
 /// Returns the part of the boundary in the place. A facet counts as whole if all its corners and its centroid

@@ -6,7 +6,7 @@ use geometry::Vector3;
 use super::solved::Solved;
 use crate::discretise::place;
 use crate::error::Failure;
-use crate::outcome::{FaceMean, Outcome, SupportForce, push};
+use crate::outcome::{FaceMean, Metric, Outcome, SupportForce, push};
 
 /// Adds support forces (N) and mean displacements (m) to the outcome, its metrics and its steps.
 pub(crate) fn places(outcome: &mut Outcome, run: &Solved) -> Result<(), Failure> {
@@ -40,6 +40,12 @@ pub(crate) fn places(outcome: &mut Outcome, run: &Solved) -> Result<(), Failure>
             );
         }
     }
+    let founded = |m: &&Metric| std::ptr::eq(m.of.metric, &metric::FOUNDATION_FORCE);
+    let forces: Vec<Metric> = match &solution.history {
+        Some(history) => history.last.points.iter().filter(founded).cloned().collect(),
+        None => prepared.foundation_forces(&solution.u, &[]),
+    };
+    outcome.metrics.extend(forces);
     for (index, face) in outcome.means.iter().enumerate() {
         for (axis, of) in metric::MEAN.components().into_iter().enumerate() {
             push(&mut outcome.metrics, of.at(index), face.u[axis]);

@@ -3,10 +3,12 @@
 mod comparison;
 mod dead_pressure;
 mod displacement;
+mod energies;
 mod exact_fit;
 mod face_results;
 mod few_cells;
 mod hourglass;
+mod hourglass_control;
 mod large_strain;
 pub(crate) mod mean_pressure;
 mod modes;
@@ -42,6 +44,7 @@ use comparison::{against, push_difference};
 use norms::{difference, norms, relative};
 
 pub(crate) use displacement::displacement;
+pub(crate) use energies::energies;
 pub(crate) use face_results::places;
 pub(crate) use modes::report as report_modes;
 pub(crate) use over_time::over_time;
@@ -90,6 +93,9 @@ pub(crate) fn measure(
     };
     if let Some(energy) = energy {
         push(metrics, &metric::STRAIN_ENERGY, energy);
+        if let Some(part) = hourglass_control::part(run, energy) {
+            push(metrics, &metric::HOURGLASS_ENERGY, part);
+        }
     }
     if let Some(residual) = solution.residual {
         push(metrics, &metric::RESIDUAL, residual);

@@ -7,6 +7,7 @@ use geometry::{Point3, Vector3};
 use shape::VolumeRows;
 
 use super::hourglass::shear;
+use super::hourglass_control;
 use super::solved::Solved;
 use crate::error::Failure;
 use crate::outcome::{Metric, Warning, push};
@@ -105,7 +106,9 @@ fn without_energy(run: &Solved, modes: &statics::Modes, count: usize) -> Result<
         let of = |rows: &VolumeRows, region: &[u16]| {
             shear(run.setup, rows.at(), rows.weights(), region, shape, true)
         };
-        of(&fine, &fine_region) - of(&own.rows, &own.region)
+        of(&fine, &fine_region)
+            - of(&own.rows, &own.region)
+            - hourglass_control::energy(run.setup, own, shape)
     };
     let masses = point_masses(&fine, &density, &fine_region)?;
     let inertia = |shape: &[Vector3]| {

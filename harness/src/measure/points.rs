@@ -3,7 +3,7 @@
 
 use std::collections::HashMap;
 
-use cases::scene::{Enclosed, Output};
+use cases::scene::{Enclosed, Output, Place};
 use catalogue::metric;
 use geometry::{Facet, Mesh, Point3, Vector3};
 use shape::{FluxRows, GradRows, Matrix3, Resultant};
@@ -12,6 +12,7 @@ use super::probes::{Probes, check_points};
 use super::solved::Solved;
 use super::states::recorded;
 use super::stress::Recovered;
+use crate::discretise::node_set;
 use crate::discretise::place::{self, Patch};
 use crate::error::{Failure, Key};
 use crate::outcome::{LoadStep, Metric, Outcome, Probe, ToolStep, push};
@@ -19,16 +20,23 @@ use crate::prepare::surfaces::flux;
 use crate::scenario::setup::{Applied, Setup};
 
 /// Refuses points outside the mesh, and surfaces that enclose no volume, before anything is solved.
-pub(crate) fn check(mesh: &Mesh, Setup { output, loads, .. }: &Setup) -> Result<(), Failure> {
+pub(crate) fn check(mesh: &Mesh, Setup { output, loads, supports, .. }: &Setup) -> Result<(), Failure> {
     for load in loads {
         if let Applied::Points { at, .. } = &load.applied {
             check_points(mesh, at, |index| format!("{}.at[{index}]", load.key))?;
+        }
+    }
+    for support in supports {
+        if let Place::At(at) = &support.place {
+            let at: Vec<Point3> = at.iter().map(|x| Point3::from(*x)).collect();
+            check_points(mesh, &at, |index| format!("{}.at[{index}]", support.key))?;
         }
     }
     let points: Vec<Point3> = output.stretches.iter().map(|stretch| stretch.at.into()).collect();
     check_points(mesh, &points, |index| format!("output.stretches[{index}].at"))?;
     for (index, volume) in output.volumes.iter().enumerate() {
         let key = format!("output.volumes[{index}]");
+        node_set::refuse(&key, &volume.surface, mesh)?;
         let patch = place::patch(&key, &volume.surface, mesh)?;
         if patch.whole.is_empty() && patch.cut.is_empty() {
             return Err(place::empty(&key, &volume.surface, mesh));
@@ -102,7 +110,7 @@ pub(crate) fn points(outcome: &mut Outcome, run: &Solved, probes: &[Point3]) -> 
         for (step, state) in outcome.steps.iter_mut().zip(recorded(run, usize::MAX)) {
             let recovered = state.parameters.filter(|_| !probes.is_empty());
             let recovered = recovered.and_then(|parameters| Recovered::new(run, state.u, parameters));
-            step.points = of_probes(&probes.at(state.u, recovered.as_ref()));
+            step.points.extend(of_probes(&probes.at(state.u, recovered.as_ref())));
             step.points.extend(others(state.u));
             if let Some(about) = about {
                 step.points.extend(moments(&about, &step.tools, &step.supports));

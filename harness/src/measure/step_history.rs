@@ -59,6 +59,9 @@ pub(crate) fn report(
 
 /// Fraction of the largest value on the reference's path below which a value is rounding.
 const ROUNDING: f64 = 1e-12;
+/// The same for forces of tools, which are known to the residual of Newton's method: after a tool has let go,
+/// 1e-8 of its full force may remain.
+const FORCE: f64 = 1e-7;
 
 /// Largest values on a path.
 struct Largest {
@@ -81,7 +84,7 @@ impl Largest {
 fn against(step: &LoadStep, reference: &LoadStep, largest: &Largest) -> Vec<Metric> {
     let mut metrics = Vec::new();
     for (index, (tool, other)) in step.tools.iter().zip(&reference.tools).enumerate() {
-        if other.pushed.abs() > ROUNDING * largest.force {
+        if other.pushed.abs() > FORCE * largest.force {
             push(&mut metrics, metric::TOOL_FORCE_ERROR.at(index), (tool.pushed / other.pushed - 1.0).abs());
         }
     }

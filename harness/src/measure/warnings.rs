@@ -10,7 +10,7 @@ use super::patch::patch_error;
 use super::penetration::{self, narrowest};
 use super::solved::Solved;
 use super::stress::Recovered;
-use super::{dead_pressure, exact_fit, few_cells, hourglass, large_strain};
+use super::{dead_pressure, exact_fit, few_cells, hourglass, hourglass_control, large_strain};
 use crate::adapter;
 use crate::discretise::{Essential, place};
 use crate::error::Failure;
@@ -79,7 +79,7 @@ pub(crate) fn warnings(
     found.extend(value(&metric::SMALLEST_FINE_J).and_then(folded));
     found.extend(last.into_iter().flat_map(few_carriers));
     let at_rest = matches!(run.setup.procedure, Procedure::Static(_));
-    found.extend(last.into_iter().filter(|_| at_rest).flat_map(untouched));
+    found.extend(last.into_iter().filter(|_| at_rest).flat_map(|step| untouched(run, step)));
     found.extend(value(&metric::LIMIT_LOAD).filter(|_| run.solution.is_whole()).map(unstable));
     found.extend(run.solution.spurious_motion.and_then(spurious_motion));
     found.extend(inside(run));
@@ -87,6 +87,7 @@ pub(crate) fn warnings(
     found.extend(dead_pressure::warnings(run)?);
     found.extend(few_cells::warning(run, metrics)?);
     found.extend(hourglass::warning(run, value(&metric::STRAIN_ENERGY), largest)?);
+    found.extend(value(&metric::HOURGLASS_ENERGY).and_then(hourglass_control::warning));
     found.extend(run.solution.digits.and_then(few_digits));
     found.extend(unchecked(run));
     found.extend(large_strain(run));
@@ -325,11 +326,15 @@ fn inside(run: &Solved) -> Vec<Warning> {
     each.collect()
 }
 
-/// Warning of tools without contact at the end. In a static procedure tools only close, so such a tool misses
-/// the body or has slipped off.
-fn untouched(step: &LoadStep) -> Vec<Warning> {
+/// Warning of tools without contact at the end. Such a tool misses the body or has slipped off, unless its
+/// curve takes it back.
+fn untouched(run: &Solved, step: &LoadStep) -> Vec<Warning> {
+    let goes_back = |index: usize| {
+        let curve = run.setup.tools[index].curve.as_ref();
+        curve.is_some_and(|curve| curve.value(1.0) < curve.largest())
+    };
     let free = step.tools.iter().enumerate().filter(|(_, tool)| tool.active == 0 && tool.closure != 0.0);
-    let each = free.map(|(index, _)| {
+    let each = free.filter(|(index, _)| !goes_back(*index)).map(|(index, _)| {
         let message =
             "is not in contact at the end: its force is 0. Move the tool further (drive), or place it nearer (at)";
         Warning::new(&warning::TOOL_UNTOUCHED, 0.0, format!("tool[{index}]"), message.to_string())

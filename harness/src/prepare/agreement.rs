@@ -7,7 +7,7 @@ use geometry::{Mesh, Vector3};
 use shape::position;
 
 use super::values::at;
-use crate::discretise::place;
+use crate::discretise::{node_set, place};
 use crate::error::{Failure, Key};
 use crate::scenario::setup::Support;
 
@@ -18,7 +18,7 @@ const ROUNDING: f64 = 1e-12;
 /// Refuses supports that prescribe different values at a mesh vertex.
 pub(super) fn check(supports: &[Support], mesh: &Mesh) -> Result<(), Failure> {
     let values = |support: &Support| -> Result<Vec<(u32, Vector3)>, Failure> {
-        let vertices = place::nodes(&support.key, &support.place, mesh)?;
+        let vertices = node_set::known(&support.key, &support.place, mesh)?;
         let points: Vec<_> = vertices.iter().map(|&vertex| mesh.points()[vertex as usize]).collect();
         let values = at(support, &points)?;
         Ok(vertices.into_iter().zip(values).collect())
@@ -28,11 +28,18 @@ pub(super) fn check(supports: &[Support], mesh: &Mesh) -> Result<(), Failure> {
     let largest = values.iter().flatten().map(|(_, value)| value.amax()).fold(size, f64::max);
     // First support and its value, m, by vertex and axis.
     let mut prescribed: HashMap<(u32, usize), (usize, f64)> = HashMap::new();
+    let curves_differ = |one: usize, other: usize| supports[one].curve != supports[other].curve;
     for (index, (support, values)) in supports.iter().zip(values).enumerate() {
         for (vertex, value) in values {
             for axis in (0..3).filter(|&axis| support.axes[axis]) {
                 let second = value[axis];
                 let &mut (other, first) = prescribed.entry((vertex, axis)).or_insert((index, second));
+                if first != 0.0 && curves_differ(index, other) {
+                    let node = position(&mesh.points()[vertex as usize], size);
+                    let problem = format!("moves {node} along another curve than {}", supports[other].key);
+                    let help = "let the regions of supports overlap only where their curves agree";
+                    return Err(Failure::input(Key::Scene(support.key.clone()), problem, help));
+                }
                 if (first - second).abs() > ROUNDING * largest {
                     let axis = ["x", "y", "z"][axis];
                     let node = position(&mesh.points()[vertex as usize], size);

@@ -29,7 +29,41 @@ impl Prepared {
     /// Returns the tables with the conditions of a problem in files: prescribed degrees of freedom and nodal
     /// forces (N).
     pub(crate) fn under(self, fixed: Vec<FixedDof>, forces: Vec<Vector3>) -> Prepared {
-        Prepared { fixed, nodal: Some(forces), ..self }
+        Prepared { fixed, nodal: vec![forces], ..self }
+    }
+
+    /// Returns the resultant of all loads at the end of the loading, at the nodal parameters `u` (m), N.
+    pub fn resultant(&self, u: &[Vector3]) -> Vector3 {
+        let mut nodal = vec![Vector3::zeros(); u.len()];
+        let own = &self.own_curves;
+        for (index, pressure) in self.following.iter().enumerate() {
+            pressure.add_force(u, own.at_end(&own.following, index), &mut nodal);
+        }
+        let mut sum: Vector3 = nodal.iter().sum();
+        for (index, (surface, values)) in self.surfaces.iter().enumerate() {
+            let factor = own.at_end(&own.loads, index);
+            for (q, w) in surface.weights().iter().enumerate() {
+                sum += factor
+                    * *w
+                    * match values {
+                        Values::Traction(t) => t[q],
+                        Values::Pressure(p) => surface.normals()[q] * -p[q],
+                    };
+            }
+        }
+        let mut index = self.surfaces.len();
+        for values in &self.body_force {
+            let factor = own.at_end(&own.loads, index);
+            for (b, w) in values.iter().zip(self.volume.rows.weights()) {
+                sum += b * (factor * *w);
+            }
+            index += 1;
+        }
+        for forces in &self.nodal {
+            sum += forces.iter().sum::<Vector3>() * own.at_end(&own.loads, index);
+            index += 1;
+        }
+        sum
     }
 
     /// Evaluates a load at its points.
@@ -39,8 +73,11 @@ impl Prepared {
             Applied::Points { at, force } => {
                 let (rows, _) = self.source.at_points(at)?;
                 let added = rows.rows().apply_transposed(&vec![*force; at.len()]);
-                let forces = self.nodal.get_or_insert_with(|| vec![Vector3::zeros(); added.len()]);
-                forces.iter_mut().zip(added).for_each(|(force, added)| *force += added);
+                let same = self.own_curves.nodal.iter().position(|curve| *curve == load.curve);
+                match same.map(|index| &mut self.nodal[index]) {
+                    Some(forces) => forces.iter_mut().zip(added).for_each(|(force, added)| *force += added),
+                    None => self.nodal.push(added),
+                }
                 Ok(())
             }
             Applied::Body(field) => {

@@ -6,7 +6,7 @@ use shape::SurfaceRows;
 
 use super::Prepared;
 use super::surfaces::cut_surface;
-use crate::discretise::place;
+use crate::discretise::{node_set, place};
 use crate::error::Failure;
 
 /// Returns the scene key of a surface for means.
@@ -20,6 +20,7 @@ fn key(index: usize) -> String {
 /// Returns an error for the first surface that contains nothing of the body or has an unknown name.
 pub fn check_means(mesh: &Mesh, places: &[Place]) -> Result<(), Failure> {
     for (index, place) in places.iter().enumerate() {
+        node_set::refuse(&key(index), place, mesh)?;
         let patch = place::patch(&key(index), place, mesh)?;
         if patch.whole.is_empty() && patch.cut.is_empty() {
             return Err(place::empty(&key(index), place, mesh));

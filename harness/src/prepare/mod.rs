@@ -4,14 +4,19 @@ mod agreement;
 mod axes;
 mod conditions;
 mod contact_tables;
+mod foundation_tables;
+mod foundations;
 mod loads;
 mod means;
 mod nodal_patch;
+mod own_curves;
+mod penalty_points;
 pub(crate) mod region_check;
 mod sharp;
 mod support_forces;
 mod support_gap;
 pub(crate) mod surfaces;
+mod timed;
 mod values;
 
 use std::collections::HashMap;
@@ -20,22 +25,23 @@ use cases::scene::{ConstraintRows, Place};
 use contact::ContactSurface;
 use fem::SurfaceRule;
 use geometry::{FaceKind, Facet, Mesh, Point3, Vector3};
-use shape::{
-    FixedDof, FluxRows, GradRows, PointRows, RowSource, Rows, SurfaceRows, TraceRows, Unity, VolumeRows,
-};
+use shape::{FixedDof, FluxRows, PointRows, RowSource, SurfaceRows, TraceRows, VolumeRows};
 use statics::{
     Assembled, ConstraintRow, Factored, FollowingPressure, LinearBody, LinearProblem, Load, PenaltySurface,
     SolveError, Weak, WeakSupport, multiplier_rows,
 };
 
 use crate::discretise::place::tolerance;
-use crate::discretise::{Discretisation, Essential, Volume, gradients, place};
+use crate::discretise::{Discretisation, Essential, Volume, gradients, node_set, place};
 use crate::error::{Failure, Key};
 use crate::outcome::{Counters, Plan, StageName};
 use crate::scenario::setup::{Setup, Support};
 use conditions::Held;
 use contact_tables::Touch;
+use foundation_tables::OwnedFoundation;
 use nodal_patch::{mean_rows, nodal_patches, on_facets};
+use own_curves::OwnCurves;
+use surfaces::values_of;
 use values::{Values, at, not_finite};
 
 pub use means::check_means;
@@ -71,18 +77,20 @@ pub struct Prepared {
     /// Pressures on the deformed surface.
     following: Vec<FollowingPressure>,
     body_force: Vec<Vec<Vector3>>,
-    /// Nodal forces of a problem in files, N.
-    nodal: Option<Vec<Vector3>>,
+    /// Nodal forces of forces at points, by curve, and of a problem in files, N.
+    nodal: Vec<Vec<Vector3>>,
     fixed: Vec<FixedDof>,
     constraints: Vec<ConstraintRow>,
     /// Whether the constraints are eliminated instead of being enforced by multipliers.
     eliminates: bool,
     weak: Vec<OwnedWeak>,
     penalties: Vec<OwnedPenalty>,
+    foundations: Vec<OwnedFoundation>,
     /// The conditions that belong to each support.
     held: Vec<Held>,
     /// Contact tables; `None` without tools.
     touch: Option<Touch>,
+    own_curves: OwnCurves,
 }
 
 /// Fills all tables in the plan.
@@ -106,21 +114,26 @@ pub fn prepare(
         surfaces: Vec::new(),
         following: Vec::new(),
         body_force: Vec::new(),
-        nodal: None,
+        nodal: Vec::new(),
         fixed: Vec::new(),
         constraints: Vec::new(),
         eliminates: matches!(method.essential, Essential::Elimination(_)),
         weak: Vec::new(),
         penalties: Vec::new(),
+        foundations: Vec::new(),
         held: Vec::new(),
         touch: None,
+        own_curves: OwnCurves::default(),
     };
     for load in &setup.loads {
         prepared.load(method, load)?;
+        prepared.time_loads(&load.curve);
     }
+    prepared.found(method, &setup.foundations)?;
     if plan.runs(StageName::Elimination) || plan.runs(StageName::WeakSupports) {
         prepared.constrain(method, &setup.supports)?;
     }
+    prepared.time_all(setup);
     counters.surface_rows += prepared.surfaces.iter().map(|(s, _)| s.weights().len() as u64).sum::<u64>();
     counters.surface_rows += prepared.following.iter().map(|p| p.len() as u64).sum::<u64>();
     counters.flux_rows += prepared.weak.iter().map(|w| w.values.len() as u64).sum::<u64>();
@@ -143,7 +156,7 @@ pub fn prepare(
 }
 
 impl Prepared {
-    /// Returns the weak supports for the solver.
+    /// Returns the weak supports for the solver, then the springs.
     pub fn weak(&self) -> Vec<WeakSupport<'_>> {
         self.weak
             .iter()
@@ -156,6 +169,7 @@ impl Prepared {
                 h: self.spacing,
                 trace: w.trace.as_ref(),
             })
+            .chain(self.foundations.iter().filter_map(OwnedFoundation::weak))
             .collect()
     }
 
@@ -174,16 +188,20 @@ impl Prepared {
         &self.fixed
     }
 
-    /// Returns the surfaces constrained by penalty in a static procedure, for the solver.
+    /// Returns the surfaces constrained by penalty in a static procedure, then those on springs and dampers, for the
+    /// solver.
     pub fn penalties(&self) -> Vec<PenaltySurface<'_>> {
         self.penalties
             .iter()
             .map(|h| PenaltySurface {
                 surface: &h.surface,
                 axes: h.axes,
+                along_normal: false,
                 values: h.values.clone(),
                 beta: h.beta,
+                damping: 0.0,
             })
+            .chain(self.foundations.iter().map(OwnedFoundation::penalty))
             .collect()
     }
 
@@ -220,7 +238,10 @@ impl Prepared {
 
     /// Whether all essential conditions are prescribed at nodes.
     pub fn holds_nodes_alone(&self) -> bool {
-        self.constraints.is_empty() && self.weak.is_empty() && self.penalties.is_empty()
+        self.constraints.is_empty()
+            && self.weak.is_empty()
+            && self.penalties.is_empty()
+            && self.foundations.is_empty()
     }
 
     /// Returns a finer quadrature than the method's own, for error norms and consistent masses, and the
@@ -246,28 +267,6 @@ impl Prepared {
         &self.following
     }
 
-    /// Returns the resultant of all surface loads and body forces at the nodal parameters `u` (m), N.
-    pub fn resultant(&self, u: &[Vector3]) -> Vector3 {
-        let mut nodal = vec![Vector3::zeros(); u.len()];
-        self.following.iter().for_each(|pressure| pressure.add_force(u, 1.0, &mut nodal));
-        let mut sum: Vector3 = nodal.iter().sum();
-        for (surface, values) in &self.surfaces {
-            for (q, w) in surface.weights().iter().enumerate() {
-                sum += *w
-                    * match values {
-                        Values::Traction(t) => t[q],
-                        Values::Pressure(p) => surface.normals()[q] * -p[q],
-                    };
-            }
-        }
-        for values in &self.body_force {
-            for (b, w) in values.iter().zip(self.volume.rows.weights()) {
-                sum += b * *w;
-            }
-        }
-        sum
-    }
-
     /// Applies all supports.
     fn constrain(&mut self, method: &Discretisation, supports: &[Support]) -> Result<(), Failure> {
         agreement::check(supports, method.mesh())?;
@@ -284,13 +283,14 @@ impl Prepared {
                 Essential::Multipliers => self.constrain_rows(method, support, None)?,
                 Essential::Elimination(rows) => self.constrain_rows(method, support, Some(*rows))?,
                 Essential::Nitsche(gamma) => {
-                    self.constrain_weakly(method, support, Weak::Nitsche { gamma: *gamma })?;
+                    self.constrain_weakly(method, support, (Weak::Nitsche { gamma: *gamma }, *gamma))?;
                 }
                 Essential::Penalty(factor) => {
-                    self.constrain_weakly(method, support, Weak::Penalty { factor: *factor })?;
+                    self.constrain_weakly(method, support, (Weak::Penalty { factor: *factor }, *factor))?;
                 }
             }
             self.hold(support.axes, from);
+            self.time_supports(&support.curve);
         }
         Ok(())
     }
@@ -304,7 +304,7 @@ impl Prepared {
         first: &mut HashMap<(u32, usize), f64>,
         node: impl Fn(u32) -> u32,
     ) -> Result<(), Failure> {
-        let vertices = place::nodes(&support.key, &support.place, mesh)?;
+        let vertices = node_set::nodes(&support.key, &support.place, mesh)?;
         if vertices.is_empty() {
             return Err(place::empty(&support.key, &support.place, mesh));
         }
@@ -359,19 +359,24 @@ impl Prepared {
             let values = at(support, &nodes)?;
             self.constraints.extend(collocated(&rows, support.axes, &values));
         }
+        let bare = node_set::points(&support.key, &support.place, method.mesh())?;
+        if !bare.is_empty() {
+            let (rows, _) = self.source.at_points(&bare)?;
+            self.constraints.extend(collocated(&rows, support.axes, &at(support, &bare)?));
+        }
         if self.constraints.len() == before {
             return Err(place::empty(&support.key, &support.place, method.mesh()));
         }
         Ok(())
     }
 
-    /// Constrains a cloud by a weak condition on the facets of the place, and by a penalty in its volume if
-    /// the place has one (a clamped end instead of a clamped face).
+    /// Constrains a cloud by a weak condition on the facets of the place, and by a penalty with the same factor in
+    /// its volume if the place has one (a clamped end instead of a clamped face).
     fn constrain_weakly(
         &mut self,
         method: &Discretisation,
         support: &Support,
-        weak: Weak,
+        (weak, factor): (Weak, f64),
     ) -> Result<(), Failure> {
         let patch = place::patch(&support.key, &support.place, method.mesh())?;
         let before = self.weak.len();
@@ -388,8 +393,10 @@ impl Prepared {
             }
             self.constrain_flux(method, support, flux, weak, trace)?;
         }
-        let (Weak::Nitsche { gamma: factor } | Weak::Penalty { factor }) = weak;
         if let Some(flux) = self.clamped_volume(method, support)? {
+            self.constrain_flux(method, support, flux, Weak::Penalty { factor }, None)?;
+        }
+        if let Some(flux) = self.at_bare_points(method, support)? {
             self.constrain_flux(method, support, flux, Weak::Penalty { factor }, None)?;
         }
         if self.weak.len() == before {
@@ -404,7 +411,7 @@ impl Prepared {
         let young = setup.materials[0].young();
         let penalty = |weak: &OwnedWeak| match weak.method {
             Weak::Penalty { factor } => Some(factor * young / self.spacing),
-            Weak::Nitsche { .. } => None,
+            Weak::Nitsche { .. } | Weak::Spring { .. } => None,
         };
         let betas: Option<Vec<f64>> = self.weak.iter().map(penalty).collect();
         let Some(betas) = betas.filter(|_| self.constraints.is_empty()) else {
@@ -416,8 +423,7 @@ impl Prepared {
         };
         for (weak, beta) in self.weak.drain(..).zip(betas) {
             let flux = weak.flux;
-            let at = PointRows::new(flux.points().to_vec(), flux.at().rows().clone())?;
-            let surface = SurfaceRows::new(at, flux.weights().to_vec(), flux.normals().to_vec())?;
+            let surface = values_of(&flux)?;
             self.penalties.push(OwnedPenalty { surface, axes: weak.axes, values: weak.values, beta });
         }
         Ok(())
@@ -443,39 +449,6 @@ impl Prepared {
         };
         self.weak.push(OwnedWeak { flux, axes: support.axes, values, region, method: weak, trace });
         Ok(())
-    }
-
-    /// Returns the volume points in the place as a table of penalty points. Their weights are divided by the
-    /// spacing: a penalty factor then means the same stiffness per depth of one node spacing as on a surface.
-    fn clamped_volume(
-        &self,
-        method: &Discretisation,
-        support: &Support,
-    ) -> Result<Option<FluxRows>, Failure> {
-        if !matches!(support.place, Place::Where(_)) {
-            return Ok(None);
-        }
-        let tolerance = tolerance(method.mesh());
-        let rows = &self.volume.rows;
-        let inside: Vec<usize> = (0..rows.points().len())
-            .filter(|&q| place::holds(&support.place, &rows.points()[q], tolerance))
-            .collect();
-        if inside.is_empty() {
-            return Ok(None);
-        }
-        let (mut offsets, mut nodes, mut values, mut grads) = (vec![0], Vec::new(), Vec::new(), Vec::new());
-        for &q in &inside {
-            let (row_nodes, row_values) = rows.rows().row(q);
-            nodes.extend_from_slice(row_nodes);
-            values.extend_from_slice(row_values);
-            grads.extend_from_slice(rows.row(q).1);
-            offsets.push(nodes.len());
-        }
-        let points = inside.iter().map(|&q| rows.points()[q]).collect();
-        let table = Rows::new(rows.rows().node_count(), offsets, nodes, values, Unity::NotPromised)?;
-        let at = GradRows::new(points, table, grads)?;
-        let weights = inside.iter().map(|&q| rows.weights()[q] / self.spacing).collect();
-        Ok(Some(FluxRows::new(at, weights, vec![Vector3::z(); inside.len()])?))
     }
 }
 

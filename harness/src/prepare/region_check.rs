@@ -6,9 +6,9 @@ use cases::scene::Place;
 use geometry::{Mesh, Point3, quadrature};
 
 use crate::discretise::place::{Patch, tolerance};
-use crate::discretise::{Discretisation, Essential, place};
+use crate::discretise::{Discretisation, Essential, node_set, place};
 use crate::error::Failure;
-use crate::scenario::setup::{Applied, Load, Setup, Support};
+use crate::scenario::setup::{Applied, Foundation, Load, Setup, Support};
 
 /// Fails, as a run would, on the first support or load whose place is empty or names a surface that the mesh
 /// does not have. A plan calls only this check: filling the tables costs a thousand times as much.
@@ -19,17 +19,21 @@ pub fn check(method: &Discretisation, setup: &Setup) -> Result<(), Failure> {
             loaded(load, mesh)?;
         }
     }
+    for foundation in &setup.foundations {
+        founded(foundation, mesh)?;
+    }
     for support in &setup.supports {
         let held_somewhere = match method.essential {
             Essential::Nodal | Essential::Coupling(_) => {
-                !place::nodes(&support.key, &support.place, mesh)?.is_empty()
+                !node_set::nodes(&support.key, &support.place, mesh)?.is_empty()
             }
             _ => {
                 let patch = place::patch(&support.key, &support.place, mesh)?;
                 if matches!(method.essential, Essential::Nitsche(_)) {
                     place::outer(&support.key, &support.place, mesh, &patch.whole)?;
                 }
-                !patch.whole.is_empty() || holds_inside(method, support, &patch)
+                let points = node_set::points(&support.key, &support.place, mesh)?;
+                !patch.whole.is_empty() || !points.is_empty() || holds_inside(method, support, &patch)
             }
         };
         if !held_somewhere {
@@ -41,7 +45,17 @@ pub fn check(method: &Discretisation, setup: &Setup) -> Result<(), Failure> {
 
 /// Returns the faces on which a load acts.
 pub(super) fn loaded(load: &Load, mesh: &Mesh) -> Result<Patch, Failure> {
-    let mut patch = place::patch(&load.key, &load.place, mesh)?;
+    faces(&load.key, &load.place, load.along_normal, mesh)
+}
+
+/// Returns the faces on which springs and dampers act.
+pub(super) fn founded(foundation: &Foundation, mesh: &Mesh) -> Result<Patch, Failure> {
+    faces(&foundation.key, &foundation.place, foundation.along_normal, mesh)
+}
+
+fn faces(key: &str, place: &Place, along_normal: bool, mesh: &Mesh) -> Result<Patch, Failure> {
+    node_set::refuse(key, place, mesh)?;
+    let mut patch = place::patch(key, place, mesh)?;
     // A wall between two cells may be named from both sides, but is loaded once.
     let mut seen = HashSet::new();
     patch.whole.retain(|facet| {
@@ -50,10 +64,10 @@ pub(super) fn loaded(load: &Load, mesh: &Mesh) -> Result<Patch, Failure> {
         seen.insert(nodes)
     });
     if patch.whole.is_empty() && patch.cut.is_empty() {
-        return Err(place::empty(&load.key, &load.place, mesh));
+        return Err(place::empty(key, place, mesh));
     }
-    if load.along_normal {
-        place::outer(&load.key, &load.place, mesh, &patch.whole)?;
+    if along_normal {
+        place::outer(key, place, mesh, &patch.whole)?;
     }
     Ok(patch)
 }

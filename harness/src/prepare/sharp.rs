@@ -38,7 +38,7 @@ pub(super) fn mark(
     facets: &[Facet],
     passes: impl Fn(Facet) -> bool,
     points: &[Point3],
-    PlacedTool { tool, drive, .. }: &PlacedTool,
+    PlacedTool { tool, drive, curve, .. }: &PlacedTool,
     sharp: &mut [bool],
 ) {
     let faces: Vec<Face> = facets.iter().map(|&facet| face(mesh, facet)).collect();
@@ -47,6 +47,7 @@ pub(super) fn mark(
         face.corners.iter().for_each(|&corner| around.entry(corner).or_default().push(k));
     }
     let (low, high) = place::bounds(mesh);
+    let farthest = curve.as_ref().map_or(1.0, |curve| curve.largest());
     let way = |x: &Point3| way(tool, x, (high - low).norm());
     let first = |x: &Point3, edge: Option<Vector3>, owners: &[usize]| {
         let bent = |&a: &usize| owners.iter().any(|&b| faces[a].normal.dot(&faces[b].normal) < FLAT);
@@ -69,7 +70,7 @@ pub(super) fn mark(
         let squares = points.iter().map(|p| (p - x).norm_squared());
         met.is_some_and(|met| {
             touched - met > ON_THE_WAY * squares.fold(f64::INFINITY, f64::min).sqrt()
-                || matches!(*drive, Drive::Closure(end) if met < end && end < touched)
+                || matches!(*drive, Drive::Closure(end) if met < end * farthest && end * farthest < touched)
         })
     };
     for (&corner, owners) in &around {

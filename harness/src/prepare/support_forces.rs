@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use geometry::{Point3, Vector3};
 use shape::{FixedDof, Resultant};
+use statics::Timing;
 
 use super::Prepared;
 use super::conditions::{Conditions, Held};
@@ -57,9 +58,10 @@ impl Prepared {
     }
 
     /// Returns the resultant of each penalty surface's forces on the body under Newton's method. `u` (m) are
-    /// the nodal parameters and `part` is the applied fraction of the prescribed displacements.
-    pub fn penalty_forces(&self, u: &[Vector3], part: f64) -> Vec<Resultant> {
-        let each = self.penalties.iter().map(|held| {
+    /// the nodal parameters at `time`, and `timing` gives the curves of the prescribed displacements.
+    pub fn penalty_forces(&self, u: &[Vector3], timing: &Timing, time: f64) -> Vec<Resultant> {
+        let each = self.penalties.iter().enumerate().map(|(index, held)| {
+            let part = timing.of(index).value(time);
             let mut sum = Resultant::default();
             let moved = held.surface.rows().apply(u);
             let points = held.surface.points().iter().zip(&moved).zip(&held.values);

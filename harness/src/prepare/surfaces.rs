@@ -1,7 +1,7 @@
 //! Rows of shape functions over parts of the surface.
 
 use geometry::{Point3, Vector3, quadrature};
-use shape::{FluxRows, RowSource, SurfaceRows};
+use shape::{FluxRows, PointRows, RowSource, SurfaceRows};
 
 use crate::discretise::place::{CutTriangle, Patch};
 use crate::error::Failure;
@@ -43,4 +43,10 @@ fn cut_points(cut: &[CutTriangle]) -> (Vec<Point3>, Vec<f64>, Vec<Vector3>) {
         }
     }
     (points, weights, normals)
+}
+
+/// Returns the rows of a surface without their gradients.
+pub(super) fn values_of(flux: &FluxRows) -> Result<SurfaceRows, Failure> {
+    let at = PointRows::new(flux.points().to_vec(), flux.at().rows().clone())?;
+    Ok(SurfaceRows::new(at, flux.weights().to_vec(), flux.normals().to_vec())?)
 }

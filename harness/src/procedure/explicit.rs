@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use cases::scene::Explicit;
 use cases::scene::Precision::{Double, Single};
 use catalogue::metric;
-use contact::Drive;
+use contact::{ContactSurface, Drive};
 use explicit::{
     Balance, Dynamics, DynamicsParams, ExplicitBody, ExplicitError, External, InternalForce, LanczosParams,
     Lumping, MovingTool, Precision, Prescribed, Springs, Tools, critical_step_touching, lumped_mass,
@@ -13,8 +13,8 @@ use explicit::{
 };
 use geometry::{Point3, Vector3};
 use lanes::LanePath;
-use shape::{Resultant, VolumeRows};
-use statics::nodal_forces;
+use shape::{Curve, Resultant, VolumeRows};
+use statics::{Curves, nodal_forces_by_curve};
 
 use super::problem::Problem;
 use super::solution::{Solution, StepHistory};
@@ -45,7 +45,7 @@ pub(super) fn stages(setup: &Setup, asked: &Explicit) -> Stages {
     Stages {
         mass: (true, "lumped".into()),
         stiffness: (false, "explicit: only forces are evaluated".into()),
-        time_steps: (true, steps + &setup.pressures()),
+        time_steps: (true, steps + &setup.pressures() + &setup.springs() + &setup.curves()),
         factorisation: (false, "explicit: the mass is diagonal".into()),
         newton: (false, "explicit".into()),
         ..Stages::linear()
@@ -59,30 +59,36 @@ pub(super) fn solve(problem: &Problem, asked: &Explicit, meters: &mut Meters) ->
     timings.time("solve", || motion(problem, asked, counters))
 }
 
-/// Nodal forces of the loads (N) and prescribed displacements of the supports (m), at the end of their
-/// growth.
-struct Loading {
-    loads: Vec<Vector3>,
-    led: BTreeMap<(u32, u8), f64>,
-    /// Time over which the loads and displacements grow, s.
-    over: f64,
+/// Loads and prescribed displacements of the supports, with their curves over time.
+struct Loading<'a> {
+    /// Nodal forces of each curve, N, in the nodes that have any.
+    loads: Vec<(Curve, Vec<(usize, Vector3)>)>,
+    /// Full displacement, m, and the number of the condition with its curve.
+    led: BTreeMap<(u32, u8), (f64, usize)>,
+    curves: Curves<'a>,
 }
 
-impl Loading {
-    fn part(&self, t: f64) -> f64 {
-        if t < self.over { t / self.over } else { 1.0 }
-    }
-
+impl Loading<'_> {
     /// Displacement (m) of each prescribed degree of freedom over time (s).
     fn motions(&self) -> Vec<Box<dyn Fn(f64) -> f64 + Sync + '_>> {
-        let motion = |&value: &f64| Box::new(move |t: f64| value * self.part(t)) as Box<_>;
+        let motion = |&(value, index): &(f64, usize)| {
+            let curve = self.curves.fixed.of(index);
+            Box::new(move |t: f64| value * curve.value(t)) as Box<_>
+        };
         self.led.values().map(motion).collect()
     }
 
-    fn new(problem: &Problem, asked: &Explicit) -> Result<Loading, Failure> {
+    fn new<'a>(problem: &Problem<'a>, asked: &Explicit) -> Result<Loading<'a>, Failure> {
         let Problem { prepared, .. } = *problem;
-        let loads = nodal_forces(&prepared.volume.rows, &prepared.loads())?;
-        Ok(Loading { loads, led: led(prepared), over: asked.ramp.growth() })
+        let over = asked.ramp.growth();
+        let growth = if over > 0.0 { Curve::growth(over) } else { Curve::at_once() };
+        let curves = prepared.curves(Curves::all(growth));
+        let loads = nodal_forces_by_curve(&prepared.volume.rows, &prepared.loads(), &curves.loads)?;
+        let loaded = |forces: Vec<Vector3>| -> Vec<(usize, Vector3)> {
+            forces.into_iter().enumerate().filter(|(_, force)| *force != Vector3::zeros()).collect()
+        };
+        let loads = loads.into_iter().map(|(curve, forces)| (curve, loaded(forces))).collect();
+        Ok(Loading { loads, led: led(prepared), curves })
     }
 }
 
@@ -96,11 +102,15 @@ fn motion(problem: &Problem, asked: &Explicit, counters: &mut Counters) -> Resul
     counters.mass_nodes += mass.len() as u64;
 
     let loading = Loading::new(problem, asked)?;
-    let loaded: Vec<usize> =
-        (0..loading.loads.len()).filter(|&i| loading.loads[i] != Vector3::zeros()).collect();
-    let mut load = |t: f64, u: &[Vector3], _: &[Vector3], f: &mut [Vector3]| {
-        loaded.iter().for_each(|&i| f[i] += loading.loads[i] * loading.part(t));
-        prepared.following().iter().for_each(|pressure| pressure.add_force(u, loading.part(t), f));
+    let mut load = |t: f64, u: &[Vector3], v: &[Vector3], f: &mut [Vector3]| {
+        for (curve, forces) in &loading.loads {
+            let part = curve.value(t);
+            forces.iter().for_each(|(i, force)| f[*i] += force * part);
+        }
+        for (index, pressure) in prepared.following().iter().enumerate() {
+            pressure.add_force(u, loading.curves.following.of(index).value(t), f);
+        }
+        prepared.add_foundation_forces(u, v, f);
     };
     let loading = &loading;
     let motions = loading.motions();
@@ -118,20 +128,16 @@ fn motion(problem: &Problem, asked: &Explicit, counters: &mut Counters) -> Resul
     };
     let constrained: BTreeSet<usize> =
         loading.led.keys().map(|&(node, axis)| 3 * node as usize + axis as usize).collect();
-    let springs =
-        surface.as_ref().map(|surface| Springs { surface: surface.rows(), modulus: stiffest(setup) });
+    let springs = springs(setup, prepared, surface.as_ref());
     let first =
-        critical_step_touching(&mut force, &mass, &zeros, |k| !constrained.contains(&k), springs, LANCZOS)?;
+        critical_step_touching(&mut force, &mass, &zeros, |k| !constrained.contains(&k), &springs, LANCZOS)?;
     let interval = asked.ramp.duration / asked.ramp.steps as f64;
     let dt = first_step(asked, interval, first.dt)?;
     let params =
         DynamicsParams { dt, damping: asked.ramp.damping, critical: LANCZOS, recheck: 0, known: Some(first) };
     let motion =
         Dynamics::new(&mut force, &mass, &prescribed, params, zeros.clone(), zeros).and_then(|motion| {
-            match tools {
-                Some(tools) => motion.with_tools(tools),
-                None => Ok(motion),
-            }
+            tools.into_iter().try_fold(motion.on_ground(prepared.ground()), Dynamics::with_tools)
         });
     let mut states = States { critical: first.dt, ..States::default() };
     let mut made = 0;
@@ -165,6 +171,17 @@ fn motion(problem: &Problem, asked: &Explicit, counters: &mut Counters) -> Resul
         spurious_motion,
         ..Solution::default()
     })
+}
+
+/// Springs for the critical step: those of possible contact, and of surfaces on springs and dampers.
+fn springs<'a>(
+    setup: &Setup,
+    prepared: &'a Prepared,
+    surface: Option<&'a ContactSurface<'_>>,
+) -> Vec<Springs<'a>> {
+    let modulus = stiffest(setup);
+    let contact = surface.map(|surface| Springs { surface: surface.rows(), modulus, damping: 0.0 });
+    contact.into_iter().chain(prepared.ground()).collect()
 }
 
 fn precision(asked: &Explicit) -> Precision {
@@ -209,6 +226,7 @@ fn moving_tools<'a>(setup: &'a Setup, asked: &Explicit, mass: f64) -> Vec<Moving
         tool: &placed.tool,
         drive: placed.drive,
         over: placed.over.unwrap_or(asked.ramp.duration),
+        curve: placed.curve.as_deref(),
         mass,
         damping: asked.ramp.damping,
     });
@@ -220,10 +238,11 @@ fn stiffest(setup: &Setup) -> f64 {
     setup.tools.iter().map(|t| t.tool.law().penalty().max(t.tool.law().stick())).fold(0.0, f64::max)
 }
 
-/// Prescribed degrees of freedom with their displacement at the end, m. Supports at the same degree of
-/// freedom agree: `prepare` refuses others.
-pub(crate) fn led(prepared: &Prepared) -> BTreeMap<(u32, u8), f64> {
-    prepared.fixed().iter().map(|fixed| ((fixed.node, fixed.axis), fixed.value)).collect()
+/// Prescribed degrees of freedom with their full displacement, m, and the number of their condition. Supports
+/// at the same degree of freedom agree: `prepare` refuses others.
+pub(crate) fn led(prepared: &Prepared) -> BTreeMap<(u32, u8), (f64, usize)> {
+    let fixed = prepared.fixed().iter().enumerate();
+    fixed.map(|(index, fixed)| ((fixed.node, fixed.axis), (fixed.value, index))).collect()
 }
 
 /// Smallest volume ratio of all quadrature points.
@@ -412,7 +431,7 @@ impl Run<'_, '_> {
             smallest_j: smallest_j(self.prepared, u),
             iterations: 0,
             probes: Vec::new(),
-            points: Vec::new(),
+            points: self.prepared.foundation_forces(u, self.motion.velocities()),
             against: Vec::new(),
             more: more.map(|(entry, value)| Metric::new(entry, value)).to_vec(),
         }

@@ -4,9 +4,8 @@
 use cases::scene::Implicit;
 use catalogue::metric;
 use geometry::Vector3;
-use statics::{
-    Inertia, Mass, Ramp, Ramps, TimeError, TimeParams, TimePath, TimeProblem, TimeStep, solve_in_time,
-};
+use shape::Curve;
+use statics::{Curves, Inertia, Mass, TimeError, TimeParams, TimePath, TimeProblem, TimeStep, solve_in_time};
 
 use super::problem::Problem;
 use super::solution::{Solution, StepHistory};
@@ -51,16 +50,18 @@ pub(super) fn solve(problem: &Problem, asked: &Implicit, meters: &mut Meters) ->
 }
 
 /// Growth of loads, supports and tools over time.
-fn ramps(setup: &Setup, asked: &Implicit) -> Ramps {
+fn growth(setup: &Setup, asked: &Implicit) -> Curves<'static> {
     let over = asked.ramp.growth();
-    let loads = if over > 0.0 { Ramp::Linear { over } } else { Ramp::AtOnce };
+    let loads = if over > 0.0 { Curve::growth(over) } else { Curve::at_once() };
     // With inertia, prescribed displacements must start with zero velocity.
-    let supports = match (asked.inertia, loads) {
-        (true, Ramp::Linear { over }) => Ramp::Smooth { over },
-        _ => loads,
-    };
-    let tools = setup.tools.first().and_then(|tool| tool.over).unwrap_or(asked.ramp.duration);
-    Ramps { loads, supports, tools: Ramp::Linear { over: tools } }
+    let supports = if asked.inertia && over > 0.0 { Curve::smooth_growth(over) } else { loads.clone() };
+    let tools = setup
+        .tools
+        .iter()
+        .find(|tool| tool.curve.is_none())
+        .and_then(|tool| tool.over)
+        .unwrap_or(asked.ramp.duration);
+    Curves::new(loads, supports, Curve::growth(tools))
 }
 
 fn motion(problem: &Problem, asked: &Implicit, counters: &mut Counters) -> Result<Solution, Failure> {
@@ -76,11 +77,12 @@ fn motion(problem: &Problem, asked: &Implicit, counters: &mut Counters) -> Resul
     };
     let duration = asked.ramp.duration;
     let (mut steps, mut fields, mut supports) = (Vec::new(), Vec::new(), Vec::new());
-    let ramps = ramps(setup, asked);
-    let path = with_static_problem(method, setup, prepared, contact.as_ref(), |body| {
+    let mut points = Vec::new();
+    let usual = growth(setup, asked);
+    let path = with_static_problem(method, setup, prepared, contact.as_ref(), usual, |body| {
+        let timing = &body.curves.penalties;
         let problem = TimeProblem {
             body,
-            ramps,
             inertia: mass.as_ref().map(|mass| Inertia {
                 mass,
                 damping: asked.ramp.damping,
@@ -90,25 +92,26 @@ fn motion(problem: &Problem, asked: &Implicit, counters: &mut Counters) -> Resul
             relaxation: &setup.relaxation,
         };
         solve_in_time(&problem, &params(asked), |done, motion, _| {
-            let part = ramps.supports.value(done.step.time);
             supports = prepared.support_forces(&ConditionForces {
                 at: &|i| method.nodes()[i] + motion.u[i],
                 nodes: &motion.reaction,
                 rows: &[],
-                weak: &prepared.penalty_forces(&motion.u, part),
+                weak: &prepared.penalty_forces(&motion.u, timing, done.step.time),
             });
+            points = prepared.foundation_forces(&motion.u, &motion.v);
             if let Some(watch) = watch {
                 watch.step(&reported(done, setup, duration));
             }
             if done.step.wanted {
-                steps.push(LoadStep { supports: supports.clone(), ..reported(done, setup, duration) });
+                let (supports, points) = (supports.clone(), points.clone());
+                steps.push(LoadStep { supports, points, ..reported(done, setup, duration) });
                 fields.push(motion.u.clone());
             }
         })
     })?;
     let iterations = count(&path, counters);
     let last = match (path.steps.last(), path.failure.clone()) {
-        (Some(last), _) => LoadStep { supports, ..reported(last, setup, duration) },
+        (Some(last), _) => LoadStep { supports, points, ..reported(last, setup, duration) },
         (None, Some(TimeError::Stalled { cause, .. })) => return Err((*cause).into()),
         (None, Some(failure)) => return Err(failure.into()),
         (None, None) => return Err(Failure::Run("the motion has no step".into())),

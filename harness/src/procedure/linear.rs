@@ -16,7 +16,9 @@ use crate::scenario::setup::Setup;
 /// Stages of the linear procedure in the plan.
 pub(super) fn stages(method: &Discretisation, setup: &Setup, asked: LinearSolver) -> Stages {
     let (serves, why) = serves(method, setup, asked);
-    Stages { factorisation: (true, format!("{} ({why})", serves.meaning())), ..Stages::linear() }
+    let stiffness = (true, format!("linear static{}", setup.springs()));
+    let factorisation = (true, format!("{} ({why})", serves.meaning()));
+    Stages { stiffness, factorisation, ..Stages::linear() }
 }
 
 /// Assembles, factors and solves, each timed separately.

@@ -15,7 +15,7 @@ use crate::scenario::setup::Setup;
 pub(super) fn stages(setup: &Setup) -> Stages {
     Stages {
         mass: (true, setup.mass.map_or("none given", scene::Mass::name).into()),
-        stiffness: (true, "small vibrations".into()),
+        stiffness: (true, format!("small vibrations{}", setup.springs())),
         factorisation: (
             true,
             format!(

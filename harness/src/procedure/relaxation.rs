@@ -59,8 +59,14 @@ pub struct Relaxed {
 }
 
 /// Whether a method can continue by relaxation after its static path stalls, with the reason.
-pub(super) fn possible(method: &Discretisation) -> (bool, &'static str) {
+pub(super) fn possible(method: &Discretisation, setup: &Setup) -> (bool, &'static str) {
     match method.dilation {
+        _ if !setup.curved().is_empty() => {
+            (false, "not available with curves over time; the load path ends if the solver stalls")
+        }
+        _ if !setup.foundations.is_empty() => {
+            (false, "not available with springs on a surface; the load path ends if the solver stalls")
+        }
         _ if !method.interpolates && !matches!(method.essential, Essential::Coupling(_)) => (
             false,
             "not available for clouds without coupled elements: a support by penalty with lumped parameters has no \
@@ -108,7 +114,11 @@ pub(super) fn continue_from(
         if load <= from.load * (1.0 + 1e-12) {
             continue;
         }
-        let at = |(&(node, axis), value): (&(u32, u8), &f64)| FixedDof { node, axis, value: value * load };
+        let at = |(&(node, axis), (value, _)): (&(u32, u8), &(f64, usize))| FixedDof {
+            node,
+            axis,
+            value: value * load,
+        };
         let fixed: Vec<FixedDof> = constrained.iter().map(at).collect();
         let mut external = |u: &[Vector3], f: &mut [Vector3]| {
             f.iter_mut().zip(&loads).for_each(|(f, full)| *f += full * load);

@@ -6,10 +6,10 @@ use cases::scene::{Newton, OnStall, Static};
 use catalogue::metric;
 use contact::{ContactSurface, DrivenTool};
 use material::Material as _;
-use shape::Coarser;
+use shape::{Coarser, Resultant};
 use statics::{
-    LinearSystems, NewtonParams, Solid, SolidDilation, StaticError, StaticParams, StaticPath, StaticProblem,
-    Step, solve_static,
+    Active, Curves, LinearSystems, NewtonParams, Rest, Solid, SolidDilation, StaticError, StaticParams,
+    StaticPath, StaticProblem, Step, Timing, solve_static,
 };
 
 use super::linear_solver::tangents;
@@ -47,7 +47,7 @@ pub(super) fn newton_params(newton: &Newton) -> NewtonParams {
 pub(super) fn stages(method: &Discretisation, setup: &Setup, asked: &Static) -> Stages {
     let (relaxes, why) = match asked.on_stall {
         OnStall::Stop => (false, "the load path ends if the solver stalls (on_stall = \"stop\")"),
-        OnStall::Relax => relaxation::possible(method),
+        OnStall::Relax => relaxation::possible(method, setup),
     };
     let (iterates, tangents) = tangents(method, setup, asked);
     Stages {
@@ -82,7 +82,8 @@ pub(super) fn solve(problem: &Problem, asked: &Static, meters: &mut Meters) -> R
 fn path(problem: &Problem, asked: &Static, counters: &mut Counters) -> Result<(Solution, Limit), Failure> {
     let Problem { method, setup, prepared, plan, watch, .. } = *problem;
     let contact = prepared.contact();
-    let (mut steps, mut fields, mut supports) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut steps, mut fields) = (Vec::new(), Vec::new());
+    let (mut supports, mut points) = (Vec::new(), Vec::new());
     let start = Instant::now();
     let mut limit = Limit::default();
     let mut before = LoadStep::at_start(setup.tools.len());
@@ -92,16 +93,15 @@ fn path(problem: &Problem, asked: &Static, counters: &mut Counters) -> Result<(S
     // with 1331 nodes did.
     params.newton.loosest = method.interpolates.then_some(NewtonParams::LOOSEST);
     let tangents = Tangents::new(problem)?;
-    let path = with_static_problem(method, setup, prepared, contact.as_ref(), |problem| {
+    let usual = Curves::proportional();
+    let path = with_static_problem(method, setup, prepared, contact.as_ref(), usual, |problem| {
+        let timing = &problem.curves.penalties;
         let systems = tangents.systems();
         solve_static(&StaticProblem { systems, ..problem.clone() }, &params, |step, rest| {
-            supports = prepared.support_forces(&ConditionForces {
-                at: &|i| method.nodes()[i] + rest.u[i],
-                nodes: rest.reaction,
-                rows: &[],
-                weak: &prepared.penalty_forces(rest.u, step.time),
-            });
-            let reported = |step| LoadStep { supports: supports.clone(), ..reported(step, setup) };
+            supports = support_forces(method, prepared, &rest, timing, step.time);
+            points = prepared.foundation_forces(rest.u, &[]);
+            let (supports, points) = (&supports, &points);
+            let reported = |step| with_forces(reported(step, setup), supports, points);
             if let Some(watch) = watch {
                 watch.step(&reported(step));
             }
@@ -119,7 +119,7 @@ fn path(problem: &Problem, asked: &Static, counters: &mut Counters) -> Result<(S
     })?;
     let iterations = count(&path, counters);
     let relaxes = plan.runs(StageName::Relaxation);
-    let last = LoadStep { supports, ..last(&path, setup, relaxes)? };
+    let last = LoadStep { supports, points, ..last(&path, setup, relaxes)? };
     let residual = path.steps.last().and_then(|s| s.iterations.last()).map_or(0.0, |i| i.residual);
     let mut end = last.clone();
     let mut u = path.u;
@@ -158,6 +158,27 @@ fn path(problem: &Problem, asked: &Static, counters: &mut Counters) -> Result<(S
         ..Solution::default()
     };
     Ok((solution, limit))
+}
+
+/// Forces of the supports on the body at an equilibrium.
+fn support_forces(
+    method: &Discretisation,
+    prepared: &Prepared,
+    rest: &Rest,
+    timing: &Timing,
+    time: f64,
+) -> Vec<Resultant> {
+    prepared.support_forces(&ConditionForces {
+        at: &|i| method.nodes()[i] + rest.u[i],
+        nodes: rest.reaction,
+        rows: &[],
+        weak: &prepared.penalty_forces(rest.u, timing, time),
+    })
+}
+
+/// Adds the forces of supports and of springs to a step.
+fn with_forces(step: LoadStep, supports: &[Resultant], points: &[Metric]) -> LoadStep {
+    LoadStep { supports: supports.to_vec(), points: points.to_vec(), ..step }
 }
 
 /// Solver of the tangents.
@@ -235,12 +256,14 @@ fn metrics(
     metrics
 }
 
-/// Builds the static problem from borrowed tables and loads, and calls `solve` with it.
+/// Builds the static problem from borrowed tables and loads, with the curves `usual` of conditions without
+/// their own, and calls `solve` with it.
 pub(crate) fn with_static_problem<T>(
     method: &Discretisation,
     setup: &Setup,
     prepared: &Prepared,
     contact: Option<&ContactSurface>,
+    usual: Curves<'static>,
     solve: impl FnOnce(&StaticProblem) -> T,
 ) -> T {
     let volume = &prepared.volume;
@@ -258,8 +281,7 @@ pub(crate) fn with_static_problem<T>(
             laws: &setup.laws,
             region: &volume.region,
             axes: &volume.axes,
-            active: &setup.active,
-            activation: 1.0,
+            active: Active::new(&setup.active),
             dilation,
         },
         loads: &prepared.loads(),
@@ -268,6 +290,7 @@ pub(crate) fn with_static_problem<T>(
         penalties: &prepared.penalties(),
         contact,
         tools: &tools,
+        curves: prepared.curves(usual),
         systems: LinearSystems::Factored,
     })
 }
@@ -297,9 +320,11 @@ fn reported(step: &Step, setup: &Setup) -> LoadStep {
 /// Reason in the plan why Newton's method iterates.
 pub(super) fn newton_reason(setup: &Setup, steps: usize, kind: &str) -> String {
     let steps = if steps == 1 { format!("1 {kind} step") } else { format!("{steps} {kind} steps") };
-    let pressures = setup.pressures();
+    let pressures = setup.pressures() + &setup.springs() + &setup.curves();
     match (setup.laws.iter().all(|law| law.is_small_strain()), setup.tools.is_empty()) {
-        (true, true) => format!("{steps}; law and loads are linear, so one iteration per step would suffice"),
+        (true, true) => {
+            format!("{steps}; law and loads are linear, so one iteration per step would suffice{pressures}")
+        }
         (false, true) => format!("{steps} with a law of large strain{pressures}"),
         (_, false) => format!("{steps} with contact{pressures}"),
     }

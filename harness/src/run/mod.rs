@@ -19,9 +19,9 @@ use records::{Record, SurfaceField};
 use crate::discretise::Discretisation;
 use crate::error::Failure;
 use crate::measure::{
-    self, Field, OwnError, Recovered, Reference, Request, check_points, check_probes, displacement, measure,
-    of_tables, over_time, picture, places, points, probe_errors, probe_history, probes, report_modes,
-    report_steps, states, surface, transfers, warnings,
+    self, Field, OwnError, Recovered, Reference, Request, check_points, check_probes, displacement, energies,
+    measure, of_tables, over_time, picture, places, points, probe_errors, probe_history, probes,
+    report_modes, report_steps, states, surface, transfers, warnings,
 };
 use crate::outcome::timing::{Meters, Timed, Timings};
 use crate::outcome::{Counters, Identity, Outcome, Plan, Size, StageName};
@@ -221,6 +221,7 @@ fn loaded(
     outcome.metrics.extend(over_time);
     outcome.probes = probes(run, recovered.as_ref(), request.probes)?;
     points(outcome, run, request.probes)?;
+    energies(outcome, run)?;
     if let Some(exact) = &setup.exact {
         probe_errors(&mut outcome.metrics, &outcome.probes, exact.as_ref(), &solution.u);
     }

@@ -8,7 +8,7 @@ use cases::scene::{Procedure, Repeated};
 use catalogue::metric;
 use geometry::{Point3, Vector3};
 use shape::{Rows, Unity};
-use statics::{Factored, Frames, Load, NewtonParams, StaticParams, assemble, nodal_forces};
+use statics::{Curves, Factored, Frames, Load, NewtonParams, StaticParams, assemble, nodal_forces};
 
 use crate::discretise::Discretisation;
 use crate::error::Failure;
@@ -155,7 +155,8 @@ fn nonlinear(ask: &Repeated, run: &Solved, params: &StaticParams) -> Result<Vec<
     let Solved { method, setup, prepared, solution } = *run;
     let end = solution.history.as_ref().and_then(|history| history.last.tools.first());
     let contact = prepared.contact();
-    with_static_problem(method, setup, prepared, contact.as_ref(), |problem| {
+    let usual = Curves::proportional();
+    with_static_problem(method, setup, prepared, contact.as_ref(), usual, |problem| {
         let tolerance = ask.tolerance.unwrap_or(params.newton.tolerance);
         // Factors are reused only for elements, as on a load path.
         let keeps = if method.interpolates { NewtonParams::KEEPS_FRAMES } else { params.newton.keeps };

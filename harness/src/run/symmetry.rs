@@ -108,6 +108,8 @@ impl Plane {
             LoadKind::Points { .. } => true,
             LoadKind::Traction(_) | LoadKind::Pressure(_) | LoadKind::Force(_) => false,
         });
+        // Springs need not be symmetric.
+        let is_forced = is_forced || !scene.foundations.is_empty();
         !face.is_empty() && normal_alone && !is_forced && !holding.iter().any(|support| support.moves())
     }
 }

@@ -65,7 +65,14 @@ fn witnesses(reference: &Method, nodes: usize) -> Result<Vec<Method>, String> {
         None => CellKind::Tet10.into(),
     });
     let of_second = |element: Element, size: Size| {
-        let fem = Fem { element, dilation: Dilation::Standard, reduced: false, size, jitter: None };
+        let fem = Fem {
+            element,
+            dilation: Dilation::Standard,
+            reduced: false,
+            hourglass: None,
+            size,
+            jitter: None,
+        };
         let id = element.name().to_string();
         let family = Family::Fem(fem);
         Method { series: id.clone(), id, family, mass: reference.mass }

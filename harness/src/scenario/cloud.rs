@@ -9,7 +9,7 @@ use geometry::{CellKind, Cloud, CloudError, Mesh, cloud, cloud_from_mesh, locate
 use shape::{length, position};
 
 use super::{Scenario, body, body_mesh, cloud_file, file_body, grading};
-use crate::discretise::{Coupled, Discretisation, Essential, InnerPoints, Refine, place};
+use crate::discretise::{Coupled, Discretisation, Essential, InnerPoints, Refine, node_set, place};
 use crate::error::{Failure, Key};
 
 /// Default stabilisation of Nitsche's method with smoothed gradients, times (lambda + 2 mu) / h with h from
@@ -181,7 +181,7 @@ impl Scenario<'_> {
         for (index, support) in self.scene.supports.iter().enumerate() {
             let key = format!("support[{index}]");
             place::whole(&key, &support.place, background)?;
-            vertices.extend(place::nodes(&key, &support.place, background)?);
+            vertices.extend(node_set::nodes(&key, &support.place, background)?);
         }
         vertices.sort_unstable();
         vertices.dedup();

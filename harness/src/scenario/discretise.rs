@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use cases::scene::{self, Family};
 use geometry::{Mesh, Point3, Vector3};
+use shape::HourglassModulus;
 
 use super::{Scenario, body_mesh};
 use crate::discretise::Discretisation;
@@ -28,7 +29,17 @@ impl Scenario<'_> {
     pub(super) fn elements(&self, fem: &scene::Fem) -> Result<Discretisation, Failure> {
         let mesh = body_mesh::mesh_of(&self.scene.body, fem.element, &fem.size, fem.jitter)?;
         let mesh = Arc::new(self.with_regions(mesh)?);
-        Ok(Discretisation::of_elements(mesh, fem.element.order(), fem.reduced, fem.dilation))
+        let elements = Discretisation::of_elements(mesh, fem.element.order(), fem.reduced, fem.dilation);
+        Ok(match fem.hourglass {
+            Some(scene::Hourglass { coefficient, modulus }) => {
+                let modulus = match modulus {
+                    scene::HourglassModulus::PWave => HourglassModulus::PWave,
+                    scene::HourglassModulus::Shear => HourglassModulus::Shear,
+                };
+                elements.controlled(coefficient, modulus)
+            }
+            None => elements,
+        })
     }
 
     /// Numbers the cells by material: 0 for the scene's material, k + 1 for its k-th region.

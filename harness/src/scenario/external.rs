@@ -99,6 +99,9 @@ impl Scenario<'_> {
             let what = "a pressure on the deformed surface";
             add(key, what, "add dead = true for a pressure on the undeformed surface");
         }
+        for index in 0..self.scene.foundations.len() {
+            add(format!("foundation[{index}]"), "springs and dampers on a surface", "leave them out");
+        }
         for (key, material) in self.scene.materials() {
             if material.has_other_volumetric() {
                 let what = "another volumetric energy than that of the law";
@@ -108,6 +111,9 @@ impl Scenario<'_> {
                 let what = "a material with directions";
                 add(format!("{key}.fibers"), what, "take a law without fibres");
             }
+        }
+        if let Some((key, _)) = self.scene.curved().next() {
+            add(key, "a curve over time", "leave it out: everything grows in proportion to the load");
         }
         for (index, tool) in self.scene.tools.iter().enumerate() {
             if !tool.path.is_empty() {

@@ -53,10 +53,19 @@ fn of_elements(fem: &scene::Fem, identity: Identity) -> Identity {
         family: records::Family::Fem,
         variant: fem.element.name().into(),
         dilation: Some(fem.dilation.name().into()),
-        integration: fem.element.reduced().filter(|_| fem.reduced).map(Into::into),
+        integration: integration(fem),
         seed: fem.jitter.map_or(0, |j| j.seed),
         ..identity
     }
+}
+
+/// Names the reduced integration of elements in records, with its hourglass control.
+fn integration(fem: &scene::Fem) -> Option<String> {
+    let points = fem.element.reduced().filter(|_| fem.reduced)?;
+    Some(match fem.hourglass {
+        Some(control) => format!("{points}-hourglass-{}-{}", control.coefficient, control.modulus.name()),
+        None => points.into(),
+    })
 }
 
 fn of_cloud(efg: &scene::Efg, identity: Identity) -> Identity {

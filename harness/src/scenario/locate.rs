@@ -125,7 +125,10 @@ impl Scenario<'_> {
     /// Returns the help for a static procedure that ended early.
     fn more_steps(&self) -> &'static str {
         match &self.method.family {
-            Family::Fem(fem) if fem.reduced => {
+            Family::Fem(fem) if fem.hourglass.is_some_and(|control| control.coefficient == 0.0) => {
+                "one point without hourglass control leaves motions without energy: leave out hourglass, or take reduced = false"
+            }
+            Family::Fem(fem) if fem.reduced && fem.hourglass.is_none() => {
                 "reduced integration leaves motions without energy, which a single row of elements can follow: take \
                  two or more cells across, or reduced = false"
             }

@@ -34,7 +34,7 @@ use geometry::{Point3, Vector3};
 use material::{Law, LinearElastic, Material as _, Prony};
 
 use crate::error::{Failure, Key};
-use setup::{Applied, Directions, Load, Setup, Support, SurfaceLoad};
+use setup::{Applied, Directions, Foundation, Load, Setup, Support, SurfaceLoad};
 
 /// A scene's method with the changes of a study.
 #[derive(Clone, Debug)]
@@ -88,8 +88,10 @@ impl Scenario<'_> {
             densities: self.scene.materials().map(|(_, material)| material.density).collect(),
             directions: self.directions(),
             active: self.active(),
+            active_curves: self.scene.materials().map(|(_, m)| m.active_curve.clone()).collect(),
             supports: self.supports(e)?,
             loads,
+            foundations: self.foundations(),
             relaxation: self.relaxation()?,
             output: self.scene.output.clone(),
             tools: tools(self.scene)?,
@@ -112,6 +114,7 @@ impl Scenario<'_> {
                 Ok(Support {
                     key: format!("support[{index}]"),
                     place: support.place.clone(),
+                    curve: support.curve.clone(),
                     axes: std::array::from_fn(|a| support.motion[a].is_some()),
                     value: Box::new(move |x| {
                         let known = exact.as_ref().map(|e| e.displacement(x));
@@ -128,6 +131,18 @@ impl Scenario<'_> {
                 })
             })
             .collect()
+    }
+
+    fn foundations(&self) -> Vec<Foundation> {
+        let each = self.scene.foundations.iter().enumerate();
+        each.map(|(index, foundation)| Foundation {
+            key: format!("foundation[{index}]"),
+            place: foundation.place.clone(),
+            stiffness: foundation.stiffness,
+            damping: foundation.damping,
+            along_normal: foundation.along_normal,
+        })
+        .collect()
     }
 
     fn loads(&self, e: &Medium, laws: &[Law]) -> Result<Vec<Load>, Failure> {
@@ -171,6 +186,7 @@ impl Scenario<'_> {
                     varies,
                     along_normal,
                     follows: self.follows(load, laws),
+                    curve: load.curve.clone(),
                 })
             })
             .collect()

@@ -1,9 +1,12 @@
 //! The problem on a body independent of the method: materials, supports and loads as functions of position.
 
+use std::sync::Arc;
+
 use cases::exact::{Contact, Exact};
 use cases::scene::{Mass, Output, Place, Procedure};
 use geometry::{Point3, Vector3};
 use material::{Law, LinearElastic, Prony};
+use shape::Curve;
 
 use super::tools::PlacedTool;
 use crate::error::{Failure, Key};
@@ -25,6 +28,22 @@ pub struct Support {
     pub axes: [bool; 3],
     /// The displacement, m.
     pub value: VectorField,
+    /// Factor of the displacement over time; `None` for the common growth.
+    pub curve: Option<Arc<Curve>>,
+}
+
+/// Springs and dampers between a part of the surface and the ground.
+pub struct Foundation {
+    /// The key in the scene, such as `foundation[0]`.
+    pub key: String,
+    /// Part of the surface.
+    pub place: Place,
+    /// Stiffness per undeformed area, Pa/m.
+    pub stiffness: f64,
+    /// Damping per undeformed area, Pa s/m.
+    pub damping: f64,
+    /// Whether springs and dampers act along the undeformed normal only.
+    pub along_normal: bool,
 }
 
 /// Directions of a material.
@@ -76,6 +95,8 @@ pub struct Load {
     pub along_normal: bool,
     /// Whether a pressure acts on the deformed surface.
     pub follows: bool,
+    /// Factor of the load over time; `None` for the common growth.
+    pub curve: Option<Arc<Curve>>,
 }
 
 /// A problem without its method: materials, supports, loads, tools and known solutions.
@@ -92,10 +113,14 @@ pub struct Setup {
     pub directions: Vec<Option<Directions>>,
     /// Active stress along the fibre by region, Pa; empty if no region contracts.
     pub active: Vec<f64>,
+    /// Factor of the active stress over time by region; `None` for the common growth.
+    pub active_curves: Vec<Option<Arc<Curve>>>,
     /// Essential conditions.
     pub supports: Vec<Support>,
     /// Loads.
     pub loads: Vec<Load>,
+    /// Springs and dampers.
+    pub foundations: Vec<Foundation>,
     /// Points and surfaces of which results are reported.
     pub output: Output,
     /// Rigid tools.
@@ -161,9 +186,31 @@ impl Setup {
         text
     }
 
+    /// Names in the plan the springs and dampers on surfaces; empty without any.
+    pub fn springs(&self) -> String {
+        let keys: Vec<&str> = self.foundations.iter().map(|foundation| foundation.key.as_str()).collect();
+        if keys.is_empty() { String::new() } else { format!("; springs and dampers: {}", keys.join(", ")) }
+    }
+
     /// Whether the stress depends on the strain history.
     pub fn relaxes(&self) -> bool {
         self.relaxation.iter().any(Option::is_some)
+    }
+
+    /// Keys of the supports, loads, tools and materials that follow a curve of their own.
+    pub fn curved(&self) -> Vec<String> {
+        let supports = self.supports.iter().map(|support| (support.key.clone(), &support.curve));
+        let loads = self.loads.iter().map(|load| (load.key.clone(), &load.curve));
+        let tools = self.tools.iter().map(|tool| (tool.name.clone(), &tool.curve));
+        let active = self.active_curves.iter().map(|curve| ("active stress".to_string(), curve));
+        let all = supports.chain(loads).chain(tools).chain(active);
+        all.filter(|(_, curve)| curve.is_some()).map(|(key, _)| key).collect()
+    }
+
+    /// Describes in the plan what follows curves; empty without any.
+    pub fn curves(&self) -> String {
+        let curved = self.curved();
+        if curved.is_empty() { String::new() } else { format!("; along curves: {}", curved.join(", ")) }
     }
 
     /// Whether any tool has friction.

@@ -1,9 +1,11 @@
 //! Converts a scene's tools to those of the solver.
 
+use std::sync::Arc;
+
 use cases::scene::{self, ErrorKind};
 use contact::{ContactError, ContactLaw, Drive, Tool};
 use geometry::{Point3, Vector3};
-use shape::Matrix3;
+use shape::{Curve, Matrix3};
 
 use crate::error::{Failure, Key};
 
@@ -19,6 +21,8 @@ pub struct PlacedTool {
     pub drive: Drive,
     /// Time over which the drive grows, s; `None` for the duration of the loading.
     pub over: Option<f64>,
+    /// Factor of the drive over time; `None` for the common growth.
+    pub curve: Option<Arc<Curve>>,
 }
 
 /// Returns the scene's tools in order.
@@ -63,5 +67,12 @@ fn placed(tool: &scene::Tool, index: usize) -> Result<PlacedTool, Failure> {
         path?.then(before.norm(), after.normalize())
     });
     let solver = solver.map_err(wrong)?;
-    Ok(PlacedTool { name: tool.name.clone(), tool: solver, turned, drive, over: tool.over })
+    Ok(PlacedTool {
+        name: tool.name.clone(),
+        tool: solver,
+        turned,
+        drive,
+        over: tool.over,
+        curve: tool.curve.clone(),
+    })
 }

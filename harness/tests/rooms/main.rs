@@ -51,9 +51,11 @@ const SCENE: House<'_> = House {
         "axis",
         "load",
         "shared",
+        "tissue",
         "set",
         "available",
         "demands",
+        "timing",
         "scene",
         "output",
         "reference",
@@ -69,8 +71,11 @@ const SCENE: House<'_> = House {
         "method::essential",
         "method::common",
         "tool",
+        "touch",
         "condition",
+        "foundation",
         "material",
+        "curve",
         "field",
         "body",
         "procedure",
@@ -189,10 +194,10 @@ fn an_arrow_back_would_be_seen() {
         BTreeSet::from([0, 2])
     );
     let used = |text: &str| SCENE.used("crate::scene::method::fem", text);
-    assert_eq!(used("use super::{Method, common::{Size, Mass}};"), [12, 21].into());
+    assert_eq!(used("use super::{Method, common::{Size, Mass}};"), [14, 23].into());
     assert_eq!(
         used("use crate::exact::Exact; use crate::scene::{tool::Tool, words::words};"),
-        [22, 42].into()
+        [24, 47].into()
     );
 }
 

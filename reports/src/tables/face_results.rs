@@ -60,6 +60,23 @@ pub(super) fn supports(runs: &[Run]) -> Table {
     )
 }
 
+/// Table of the force of every foundation.
+pub(super) fn foundations(runs: &[Run]) -> Table {
+    let header = [
+        ("case", Words),
+        ("method", Words),
+        ("nodes", Number),
+        ("foundation", Number),
+        ("x [N]", Number),
+        ("y [N]", Number),
+        ("z [N]", Number),
+    ];
+    let caption = "Force of the springs and dampers of each foundation on the body at the end, for the finest run of \
+                   each method; foundations are numbered as in the scene";
+    let table = Table::new("foundation-forces", "Forces of springs and dampers", caption, &header);
+    of_places(table, runs, metric::FOUNDATION_FORCE.components(), 1.0)
+}
+
 /// Table of the mean displacement of every requested face.
 pub(super) fn means(runs: &[Run]) -> Table {
     let header = [
@@ -180,6 +197,16 @@ pub(super) fn volumes(runs: &[Run]) -> Table {
                    surfaces are numbered as in the scene";
     let table = Table::new("enclosed-volumes", "Enclosed volumes", caption, &header);
     of_places(table, runs, [metric::ENCLOSED_VOLUME.whole()], 1e6)
+}
+
+/// Table of every requested strain energy.
+pub(super) fn energies(runs: &[Run]) -> Table {
+    let header =
+        [("case", Words), ("method", Words), ("nodes", Number), ("region", Number), ("energy [mJ]", Number)];
+    let caption = "Strain energy of the regions in output.energies at the end, for the finest run of each method; regions \
+                   are numbered as in the scene's list";
+    let table = Table::new("region-energies", "Strain energies of regions", caption, &header);
+    of_places(table, runs, [metric::REGION_ENERGY.whole()], 1e3)
 }
 
 /// Table of the frequency of every mode.

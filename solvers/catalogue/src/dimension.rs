@@ -22,6 +22,8 @@ pub enum Dimension {
     BodyForce,
     /// Pascals per metre: contact slopes. The units are those of a force per volume, the meaning is not.
     ContactSlope,
+    /// Pascal seconds per metre: damping per area.
+    SurfaceDamping,
     /// One per metre.
     Curvature,
     /// One per second.
@@ -57,6 +59,7 @@ impl Dimension {
         Dimension::Time,
         Dimension::BodyForce,
         Dimension::ContactSlope,
+        Dimension::SurfaceDamping,
         Dimension::Curvature,
         Dimension::Rate,
         Dimension::Angle,
@@ -80,6 +83,7 @@ impl Dimension {
             Dimension::LineForce => [0, 1, -2, 0, 0],
             Dimension::Time => [0, 0, 1, 0, 0],
             Dimension::BodyForce | Dimension::ContactSlope => [-2, 1, -2, 0, 0],
+            Dimension::SurfaceDamping => [-2, 1, -1, 0, 0],
             Dimension::Curvature => [-1, 0, 0, 0, 0],
             Dimension::Rate | Dimension::Frequency => [0, 0, -1, 0, 0],
             Dimension::Angle => [0, 0, 0, 1, 0],
@@ -103,6 +107,7 @@ impl Dimension {
             Dimension::Time => "time",
             Dimension::BodyForce => "force per volume",
             Dimension::ContactSlope => "pressure per length",
+            Dimension::SurfaceDamping => "damping per area",
             Dimension::Curvature => "curvature",
             Dimension::Rate => "rate",
             Dimension::Angle => "angle",
@@ -128,6 +133,7 @@ impl Dimension {
             Dimension::Time => "s",
             Dimension::BodyForce => "N/m^3",
             Dimension::ContactSlope => "Pa/m",
+            Dimension::SurfaceDamping => "Pa s/m",
             Dimension::Curvature => "1/m",
             Dimension::Rate => "1/s",
             Dimension::Angle => "rad",
@@ -153,6 +159,7 @@ impl Dimension {
             Dimension::Time => &["s", "ms", "us", "min", "h"],
             Dimension::BodyForce => &["N/m^3", "kN/m^3", "N/mm^3"],
             Dimension::ContactSlope => &["MPa/mm", "kPa/mm", "Pa/m", "N/mm^3"],
+            Dimension::SurfaceDamping => &["kPa s/mm", "Pa s/m", "N s/mm^3"],
             Dimension::Curvature => &["/m", "1/m", "/mm", "/cm"],
             Dimension::Rate => &["/s", "1/s", "/ms"],
             Dimension::Angle => &["deg", "rad", "mrad"],

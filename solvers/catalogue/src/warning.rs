@@ -129,6 +129,8 @@ warnings! {
     HOURGLASSING: "hourglassing", None,
         "means over nodes ignore strain that alternates from cell to cell, which makes the body too soft; value: the energy of this strain \
          divided by the strain energy";
+    HOURGLASS_CONTROL: "hourglass-control", None,
+        "much of the strain energy is that of hourglass control, an artificial stiffness; value: this energy divided by the strain energy";
     GAP_BRIDGED: "gap-bridged", None,
         "a transfer scheme takes displacements from nodes across a slit or another gap of the body; value: the largest difference from \
          the cloud's own displacement there, divided by the largest displacement";

@@ -1,6 +1,6 @@
 //! Body for explicit computation.
 
-use material::{AtPoint, Law};
+use material::{AtPoint, Law, Material as _};
 use shape::{DilationGroups, Matrix3, Vector3, VolumeRows};
 
 use super::error::ExplicitError;
@@ -28,6 +28,12 @@ impl ExplicitBody<'_> {
 
     pub(super) fn law(&self, q: usize) -> AtPoint<'_> {
         AtPoint::new(&self.laws[self.region(q) as usize], self.axes.get(q))
+    }
+
+    /// Returns the Lame moduli `lambda` and `mu` of the undeformed material at a point, Pa.
+    pub(super) fn moduli(&self, q: usize) -> [f64; 2] {
+        let law = self.law(q);
+        [law.lambda(), law.mu()]
     }
 
     /// Returns a length of the order of the smallest spacing: the inverse of the largest shape gradient, m.

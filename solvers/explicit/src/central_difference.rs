@@ -2,7 +2,7 @@
 
 use shape::{Matrix3, Vector3};
 
-use super::critical_step::{CriticalStep, Estimate, LanczosParams, critical_step_touching};
+use super::critical_step::{CriticalStep, Estimate, LanczosParams, Springs, critical_step_touching};
 use super::step_lanes::{Forces, Inertia, accelerate, advance};
 use crate::error::ExplicitError;
 use crate::force::InternalForce;
@@ -78,6 +78,7 @@ pub struct Dynamics<'a, 'b> {
     constrained: Vec<bool>,
     inertia: Inertia,
     tools: Option<Tools<'b>>,
+    ground: Vec<Springs<'b>>,
     step: usize,
     /// Step and time of the last change of the time step.
     since: (usize, f64),
@@ -141,6 +142,7 @@ impl<'a, 'b> Dynamics<'a, 'b> {
             inertia: Inertia::new(mass, &constrained),
             constrained,
             tools: None,
+            ground: Vec::new(),
             step: 0,
             since: (0, 0.0),
             before: params.dt,
@@ -177,6 +179,13 @@ impl<'a, 'b> Dynamics<'a, 'b> {
         }
         self.check_step()?;
         Ok(self)
+    }
+
+    /// Adds springs and dampers to the ground, whose forces are among the external ones, to the estimates of the
+    /// critical step.
+    pub fn on_ground(mut self, springs: Vec<Springs<'b>>) -> Dynamics<'a, 'b> {
+        self.ground = springs;
+        self
     }
 
     /// Tools in the state of the last recorded or completed step.
@@ -229,7 +238,8 @@ impl<'a, 'b> Dynamics<'a, 'b> {
 
     fn estimated(&mut self) -> Result<CriticalStep, ExplicitError> {
         let constrained = &self.constrained;
-        let springs = self.tools.as_ref().and_then(Tools::springs);
+        let contact = self.tools.as_ref().and_then(Tools::springs);
+        let springs: Vec<Springs> = contact.into_iter().chain(self.ground.iter().copied()).collect();
         let step = self.step;
         let time = self.time();
         critical_step_touching(
@@ -237,7 +247,7 @@ impl<'a, 'b> Dynamics<'a, 'b> {
             self.mass,
             &self.u,
             |k| !constrained[k],
-            springs,
+            &springs,
             self.params.critical,
         )
         .map_err(|error| match error {

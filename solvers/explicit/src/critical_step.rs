@@ -47,18 +47,32 @@ impl Estimate {
     }
 }
 
-/// Ground springs on a whole surface, equal in every direction: `sum_q w k N_I N_J 1`. With the penalty of
-/// tools as modulus, the springs are at least as stiff as the contact tangent, whichever points touch. A step
-/// that is stable with them stays stable in contact.
+/// Ground springs and dampers on a whole surface, equal in every direction: `sum_q w k N_I N_J 1`. With the
+/// penalty of tools as modulus, the springs are at least as stiff as the contact tangent, whichever points touch. A
+/// step that is stable with them stays stable in contact. They bound springs along the normal in the same way.
 #[derive(Clone, Copy, Debug)]
 pub struct Springs<'a> {
     /// Surface that carries the springs.
     pub surface: &'a SurfaceRows,
     /// Stiffness per undeformed area, Pa/m.
     pub modulus: f64,
+    /// Damping per undeformed area, Pa s/m.
+    pub damping: f64,
 }
 
 impl Springs<'_> {
+    /// Adds the largest sum of a row of `C` (N s/m), an upper bound of its forces, to each node.
+    fn add_damping(&self, sums: &mut [f64]) {
+        let rows = self.surface.rows();
+        for (q, weight) in self.surface.weights().iter().enumerate() {
+            let (nodes, values) = rows.row(q);
+            let all: f64 = values.iter().map(|n| n.abs()).sum();
+            for (&i, n) in nodes.iter().zip(values) {
+                sums[i as usize] += weight * self.damping * n.abs() * all;
+            }
+        }
+    }
+
     fn add(&self, v: &[f64], w: &mut [f64]) {
         let rows = self.surface.rows();
         for (q, weight) in self.surface.weights().iter().enumerate() {
@@ -90,11 +104,15 @@ pub fn critical_step(
     free: impl Fn(usize) -> bool,
     params: LanczosParams,
 ) -> Result<CriticalStep, ExplicitError> {
-    critical_step_touching(force, mass, u, free, None, params)
+    critical_step_touching(force, mass, u, free, &[], params)
 }
 
 /// Estimates the critical step as [`critical_step`], for the body with ground `springs` on its surface, which
-/// stand for possible contact; `None` for the body alone.
+/// stand for possible contact or for a foundation.
+///
+/// Forces of dampers lag by half a step, so a mode of frequency `omega` and damping `gamma` of `M^-1 C` is stable
+/// for `omega^2 dt^2 + 2 gamma dt <= 4`. The largest `omega` and the largest sum of a row of `M^-1 C` give a lower
+/// bound of this step: `4 / (gamma + sqrt(gamma^2 + 4 omega^2))`.
 ///
 /// # Errors
 ///
@@ -104,7 +122,7 @@ pub fn critical_step_touching(
     mass: &[f64],
     u: &[Vector3],
     free: impl Fn(usize) -> bool,
-    springs: Option<Springs>,
+    springs: &[Springs],
     params: LanczosParams,
 ) -> Result<CriticalStep, ExplicitError> {
     let LanczosParams { steps, safety } = params;
@@ -132,9 +150,7 @@ pub fn critical_step_touching(
         let v = &basis[k];
         let scaled: Vec<f64> = v.iter().zip(&root).map(|(v, m)| v / m).collect();
         let mut w = product.stiffness(&scaled)?;
-        if let Some(springs) = &springs {
-            springs.add(&scaled, &mut w);
-        }
+        springs.iter().for_each(|springs| springs.add(&scaled, &mut w));
         for i in 0..n {
             w[i] = if constrained[i] { 0.0 } else { w[i] / root[i] };
         }
@@ -156,7 +172,17 @@ pub fn critical_step_touching(
         basis.push(w);
     }
     let omega_max = largest_eigenvalue(&alpha, &beta).max(0.0).sqrt();
-    Ok(CriticalStep { dt: safety * 2.0 / omega_max, omega_max, steps: alpha.len() })
+    let mut rates = vec![0.0; mass.len()];
+    springs
+        .iter()
+        .filter(|springs| springs.damping > 0.0)
+        .for_each(|springs| springs.add_damping(&mut rates));
+    let gamma = rates.iter().zip(mass).map(|(rate, mass)| rate / mass).fold(0.0, f64::max);
+    let dt = match gamma > 0.0 {
+        true => safety * 4.0 / (gamma + (gamma * gamma + 4.0 * omega_max * omega_max).sqrt()),
+        false => safety * 2.0 / omega_max,
+    };
+    Ok(CriticalStep { dt, omega_max, steps: alpha.len() })
 }
 
 /// Product `K v` by `(f(u + h v) - f(u - h v)) / 2 h`.

@@ -7,6 +7,7 @@ use shape::{Layout, Matrix3, Vector3};
 use super::body::ExplicitBody;
 use super::cells::Cells;
 use super::moduli::LaneLaw;
+use super::one_point::OnePoint;
 use super::quadratic::{Quadratic, Sums};
 use super::rows::Ragged;
 use super::tet4::Tet4;
@@ -52,8 +53,10 @@ impl<'a> InternalForce<'a> {
         let engine = match precision {
             Precision::Single => Some(elements::<f32>(&body).ok_or(ExplicitError::NoSinglePrecision)?),
             Precision::Double => elements::<f64>(&body).or_else(|| match body.groups {
-                None => Ragged::new(&body, LaneLaw::of_regions(&body)?).map(boxed),
-                Some(_) => None,
+                None if body.volume.hourglass().is_none() => {
+                    Ragged::new(&body, LaneLaw::of_regions(&body)?).map(boxed)
+                }
+                _ => None,
             }),
         };
         Ok(InternalForce { body, engine, path, precision })
@@ -137,10 +140,12 @@ impl<'a> InternalForce<'a> {
     /// [`InvertedPoint`] if `J` is not positive at a point.
     pub fn energy(&self, u: &[Vector3]) -> Result<f64, InvertedPoint> {
         let density = |q: usize, h: &Matrix3| self.body.law(q).energy(h);
-        match self.body.groups {
-            None => plain::energy(self.body.volume, density, u),
-            Some(groups) => plain::dilated_energy(self.body.volume, groups, density, u),
-        }
+        let volume = self.body.volume;
+        let seen = match self.body.groups {
+            None => plain::energy(volume, density, u),
+            Some(groups) => plain::dilated_energy(volume, groups, density, u),
+        }?;
+        Ok(seen + volume.hourglass_energy(|q| self.body.moduli(q), u))
     }
 }
 
@@ -149,6 +154,7 @@ fn elements<T: Sums>(body: &ExplicitBody) -> Option<Box<dyn Engine>> {
     let laws = LaneLaw::of_regions(body)?;
     match body.volume.layout() {
         Layout::LinearTetrahedra => Tet4::<T>::new(body, laws).map(boxed),
+        Layout::Cells { nodes: 8, points: 1 } => OnePoint::<T>::new(body, laws).map(boxed),
         Layout::Cells { nodes: 8, points: 8 } => Cells::<T, Trilinear, 8, 8>::new(body, laws).map(boxed),
         Layout::Cells { nodes: 10, points: 4 } => quadratic::<T, 10, 4>(body, laws),
         Layout::Cells { nodes: 20, points: 27 } => quadratic::<T, 20, 27>(body, laws),
@@ -169,5 +175,7 @@ fn plain_forces(body: &ExplicitBody, u: &[Vector3], f: &mut [Vector3]) -> Result
     match body.groups {
         None => plain::forces(body.volume, stress, u, f),
         Some(groups) => plain::dilated_forces(body.volume, groups, stress, u, f),
-    }
+    }?;
+    body.volume.add_hourglass_forces(|q| body.moduli(q), u, f);
+    Ok(())
 }

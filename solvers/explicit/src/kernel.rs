@@ -14,6 +14,8 @@ pub enum Kernel {
     Hex8,
     /// Trilinear hexahedra with one mean dilation per element, eight at a time.
     Hex8MeanDilation,
+    /// Trilinear hexahedra with one point and hourglass control, eight elements at a time.
+    Hex8OnePoint,
     /// Quadratic tetrahedra with four points, eight elements at a time.
     Tet10,
     /// Quadratic tetrahedra with one mean dilation per element, eight at a time.
@@ -32,11 +34,12 @@ pub enum Kernel {
 
 impl Kernel {
     /// All kernels.
-    pub const ALL: [Kernel; 10] = [
+    pub const ALL: [Kernel; 11] = [
         Kernel::Tet4,
         Kernel::Tet4NodalDilation,
         Kernel::Hex8,
         Kernel::Hex8MeanDilation,
+        Kernel::Hex8OnePoint,
         Kernel::Tet10,
         Kernel::Tet10MeanDilation,
         Kernel::Hex20,
@@ -52,6 +55,7 @@ impl Kernel {
             Kernel::Tet4NodalDilation => "tet4 nodal dilation",
             Kernel::Hex8 => "hex8",
             Kernel::Hex8MeanDilation => "hex8 mean dilation",
+            Kernel::Hex8OnePoint => "hex8 one point",
             Kernel::Tet10 => "tet10",
             Kernel::Tet10MeanDilation => "tet10 mean dilation",
             Kernel::Hex20 => "hex20",

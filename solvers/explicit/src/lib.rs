@@ -39,6 +39,8 @@ mod kernel;
 mod mass;
 mod moduli;
 mod nodal;
+mod one_point;
+mod one_point_lanes;
 mod plain;
 mod pressing;
 mod quad;

@@ -90,7 +90,7 @@ impl<'a> Pressing<'a> {
     pub(super) fn springs(&self) -> Option<Springs<'a>> {
         let stiffest = |tool: &PressingTool| tool.tool.law().penalty().max(tool.tool.law().stick());
         let modulus = self.tools.iter().map(stiffest).reduce(f64::max)?;
-        Some(Springs { surface: self.surface.rows(), modulus })
+        Some(Springs { surface: self.surface.rows(), modulus, damping: 0.0 })
     }
 
     /// Adds the contact forces (N) in the state `u` (m) to `force` and commits the contact. An error has the

@@ -106,8 +106,15 @@ pub fn relax_under(
     let mut trajectory = Trajectory::new(force, mass, fixed, start)?;
     let limit = |trajectory: &mut Trajectory| {
         let (constrained, u) = (&trajectory.constrained, &trajectory.u);
-        critical_step_touching(trajectory.force, mass, u, |k| !constrained[k], springs, params.critical)
-            .map(|found| found.dt)
+        critical_step_touching(
+            trajectory.force,
+            mass,
+            u,
+            |k| !constrained[k],
+            springs.as_slice(),
+            params.critical,
+        )
+        .map(|found| found.dt)
     };
     let mut dt = limit(&mut trajectory)?;
     let mut confirmed = 0;

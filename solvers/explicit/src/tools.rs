@@ -4,7 +4,7 @@ use contact::{
     ContactCounts, ContactError, ContactHistory, ContactSearch, ContactSurface, Contacts, Drive, Stand, Tool,
     ToolState,
 };
-use shape::{Point3, Vector3};
+use shape::{Curve, Point3, Vector3};
 
 use crate::critical_step::Springs;
 use crate::error::ExplicitError;
@@ -30,6 +30,9 @@ pub struct MovingTool<'a> {
     pub drive: Drive,
     /// Length of the ramp, s; the drive is constant afterwards.
     pub over: f64,
+    /// Curve of the drive over time (s) in place of the ramp. The tool then starts where it stands, not at
+    /// first contact.
+    pub curve: Option<&'a Curve>,
     /// Mass of a force-driven tool, kg.
     pub mass: f64,
     /// Mass-proportional damping of a force-driven tool, 1/s.
@@ -196,7 +199,7 @@ impl<'a> Tools<'a> {
     pub(super) fn springs(&self) -> Option<Springs<'a>> {
         let stiffest = |tool: &Moving| tool.of.tool.law().penalty().max(tool.of.tool.law().stick());
         let modulus = self.each.iter().map(stiffest).reduce(f64::max)?;
-        Some(Springs { surface: self.surface.rows(), modulus })
+        Some(Springs { surface: self.surface.rows(), modulus, damping: 0.0 })
     }
 
     /// Iterates over the nodes with a contact force on the tissue at the last step, each once, with that
@@ -266,13 +269,8 @@ impl<'a> Moving<'a> {
         moving.closure = match of.drive {
             Drive::Closure(_) => moving.led(0.0),
             // A force on a tool that never touches moves the tool from its initial position.
-            Drive::Force(_) => {
-                if touch.is_finite() {
-                    touch
-                } else {
-                    0.0
-                }
-            }
+            Drive::Force(_) if of.curve.is_none() && touch.is_finite() => touch,
+            Drive::Force(_) => 0.0,
         };
         moving.before = moving.closure;
         moving.motion.state.closure = moving.closure;
@@ -280,13 +278,16 @@ impl<'a> Moving<'a> {
     }
 
     fn ramp(&self, time: f64) -> f64 {
+        if let Some(curve) = self.of.curve {
+            return curve.value(time);
+        }
         if self.of.over > 0.0 { (time / self.of.over).clamp(0.0, 1.0) } else { 1.0 }
     }
 
     /// Returns the displacement of a displacement-driven tool, m.
     fn led(&self, time: f64) -> f64 {
         let Drive::Closure(full) = self.of.drive else { return self.closure };
-        let start = if self.touch < full { self.touch } else { 0.0 };
+        let start = if self.touch < full && self.of.curve.is_none() { self.touch } else { 0.0 };
         start + (full - start) * self.ramp(time)
     }
 

@@ -33,6 +33,7 @@ mod points;
 mod rule;
 mod source;
 mod surface;
+mod uniform;
 mod volume;
 
 pub use error::FemError;
@@ -41,4 +42,5 @@ pub use points::{Outside, grad_rows, nearest_cells, nearest_grad_rows, nearest_p
 pub use rule::{SurfaceRule, VolumeRule};
 pub use source::Elements;
 pub use surface::{divided_surface_rows, flux_rows, outline_rows, surface_rows};
+pub use uniform::uniform_rows;
 pub use volume::{cell_of_point, element_dilation, pressure_rows, regions, volume_rows};

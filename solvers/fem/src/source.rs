@@ -5,26 +5,35 @@ use std::sync::Arc;
 use geometry::quadrature::Parts;
 use geometry::{FaceKind, Facet, Mesh};
 use shape::{
-    Coarser, DilationGroups, FluxRows, GradRows, Point3, PointRows, Quadrature, RowSource, Rows, SourceError,
-    SurfaceRows, VolumeRows,
+    Coarser, DilationGroups, FluxRows, GradRows, HourglassModulus, Point3, PointRows, Quadrature, RowSource,
+    Rows, SourceError, SurfaceRows, VolumeRows,
 };
 
 use crate::linear::linear_nodes;
 use crate::points::{nearest_grad_rows, nearest_point_rows};
 use crate::rule::{SurfaceRule, VolumeRule};
 use crate::surface::{divided_surface_rows, flux_rows, outline_rows, surface_rows};
+use crate::uniform::uniform_rows;
 use crate::volume::{element_dilation, pressure_rows, regions, volume_blocks, volume_rows};
 
 /// Finite elements of a mesh as a source of tables. The nodes of the mesh are the nodes of the method.
 pub struct Elements {
     mesh: Arc<Mesh>,
     rule: VolumeRule,
+    /// Coefficient and modulus of the hourglass control of hexahedra with one point.
+    hourglass: Option<(f64, HourglassModulus)>,
 }
 
 impl Elements {
     /// Builds a source from a mesh and the quadrature of its cells.
     pub fn new(mesh: Arc<Mesh>, rule: VolumeRule) -> Elements {
-        Elements { mesh, rule }
+        Elements { mesh, rule, hourglass: None }
+    }
+
+    /// Gives hexahedra with one point their mean gradients and hourglass control with this coefficient
+    /// (dimensionless) and modulus; see [`uniform_rows`].
+    pub fn controlled(self, coefficient: f64, modulus: HourglassModulus) -> Elements {
+        Elements { hourglass: Some((coefficient, modulus)), ..self }
     }
 }
 
@@ -45,7 +54,10 @@ impl RowSource for Elements {
     }
 
     fn volume(&self) -> Result<Quadrature, SourceError> {
-        Ok(volume_rows(&self.mesh, &self.rule)?.into())
+        Ok(match self.hourglass {
+            Some((coefficient, modulus)) => uniform_rows(&self.mesh, coefficient, modulus)?.into(),
+            None => volume_rows(&self.mesh, &self.rule)?.into(),
+        })
     }
 
     fn regions(&self) -> Vec<u16> {

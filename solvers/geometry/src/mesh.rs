@@ -1,5 +1,5 @@
-//! A mixed mesh in flat arrays, with named regions, further named groups of cells and named groups of
-//! boundary facets.
+//! A mixed mesh in flat arrays, with named regions, further named groups of cells, and named groups of
+//! boundary facets and of nodes.
 
 use std::collections::BTreeMap;
 use std::sync::OnceLock;
@@ -75,6 +75,7 @@ pub struct Mesh {
     region_names: Vec<String>,
     cell_groups: BTreeMap<String, Vec<u32>>,
     groups: BTreeMap<String, Vec<Facet>>,
+    node_groups: BTreeMap<String, Vec<u32>>,
     boundary: Boundary,
 }
 
@@ -156,6 +157,7 @@ impl Mesh {
             region_names: vec!["body".into()],
             cell_groups: BTreeMap::new(),
             groups: BTreeMap::new(),
+            node_groups: BTreeMap::new(),
             boundary: Boundary::default(),
         })
     }
@@ -194,6 +196,18 @@ impl Mesh {
         }
         self.groups.insert(name.into(), facets);
         Ok(self)
+    }
+
+    /// Adds (or replaces) a named group of nodes, such as those of a curve.
+    ///
+    /// # Panics
+    /// A node that does not exist.
+    pub fn with_node_group(mut self, name: &str, mut nodes: Vec<u32>) -> Mesh {
+        assert!(nodes.iter().all(|&node| (node as usize) < self.points.len()), "nodes of the mesh");
+        nodes.sort_unstable();
+        nodes.dedup();
+        self.node_groups.insert(name.into(), nodes);
+        self
     }
 
     /// Node positions, in metres.
@@ -251,6 +265,16 @@ impl Mesh {
     /// A named facet group.
     pub fn group(&self, name: &str) -> Option<&[Facet]> {
         self.groups.get(name).map(Vec::as_slice)
+    }
+
+    /// A named group of nodes, sorted.
+    pub fn node_group(&self, name: &str) -> Option<&[u32]> {
+        self.node_groups.get(name).map(Vec::as_slice)
+    }
+
+    /// All groups of nodes, sorted by name.
+    pub fn node_groups(&self) -> impl Iterator<Item = (&str, &[u32])> {
+        self.node_groups.iter().map(|(name, nodes)| (name.as_str(), nodes.as_slice()))
     }
 
     /// Names of all facet groups, sorted.
@@ -332,7 +356,14 @@ impl Mesh {
     /// The same cells, regions and groups over other nodes; `number` maps an old node index to the new index.
     pub(crate) fn renumbered(&self, points: Vec<Point3>, number: impl Fn(u32) -> u32) -> Mesh {
         let nodes = self.nodes.iter().map(|&node| number(node)).collect();
-        Mesh { points, nodes, boundary: Default::default(), ..self.clone() }
+        let moved = |group: &Vec<u32>| -> Vec<u32> {
+            let mut group: Vec<u32> = group.iter().map(|&node| number(node)).collect();
+            group.sort_unstable();
+            group.dedup();
+            group
+        };
+        let node_groups = self.node_groups.iter().map(|(name, group)| (name.clone(), moved(group))).collect();
+        Mesh { points, nodes, node_groups, boundary: Default::default(), ..self.clone() }
     }
 
     /// The same topology with every position mapped by `map`.

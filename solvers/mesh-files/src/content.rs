@@ -1,12 +1,14 @@
 //! Content of a mesh file as collected by the readers, and its conversion to a mesh.
 
 mod groups;
+mod node_groups;
 
 use std::collections::{BTreeMap, HashMap};
 use std::path::Path;
 
 use geometry::{CellKind, Facet, Mesh, Point3};
 
+use self::node_groups::{faces_of, of_cell, with_further_nodes, within};
 use crate::error::{FileError, Parsed, Place, Problem};
 use crate::left_out::LeftOut;
 use crate::middles::turn_if_inverted;
@@ -35,6 +37,8 @@ pub(super) struct Content {
     facets: Vec<(usize, Facet)>,
     free: Vec<Free>,
     node_sets: Vec<(String, Vec<u32>)>,
+    /// Nodes of named points and curves.
+    curves: BTreeMap<String, Vec<u32>>,
     /// Whether unused nodes are dropped, because elements of the file have interior nodes.
     leaves_unused_out: bool,
     /// Cells in additional regions, which become groups of cells.
@@ -284,7 +288,8 @@ impl Content {
         self.node_numbers.get(number)
     }
 
-    /// Adds a node set, which names the boundary faces that have all their corners in it.
+    /// Adds a node set, which names the boundary faces that have all their corners in it, and its nodes if these
+    /// faces do not have all of them.
     pub(super) fn node_set(&mut self, name: &str, nodes: Vec<u32>) {
         self.node_sets.push((name.into(), nodes));
     }
@@ -389,11 +394,16 @@ impl Content {
             groups.entry(self.group_names.list[group].clone()).or_default().push(facet);
         }
         for (name, nodes) in &self.node_sets {
-            let facets = faces_of(&mesh, nodes.iter().map(|&node| used[node as usize]));
+            let nodes = within(&used, nodes);
+            let facets = faces_of(&mesh, &nodes);
+            mesh = with_further_nodes(mesh, name, nodes, &facets);
             // A set of a few nodes has no face and is not a surface.
             if !facets.is_empty() {
                 groups.entry(name.clone()).or_default().extend(facets);
             }
+        }
+        for (name, nodes) in self.curves.iter().filter(|(name, _)| !groups.contains_key(*name)) {
+            mesh = with_further_nodes(mesh, name, within(&used, nodes), &[]);
         }
         let boundary = if self.free.is_empty() { Vec::new() } else { mesh.boundary() };
         for Free { place, group, cells } in self.free {
@@ -477,20 +487,6 @@ impl Content {
         }
         Ok(())
     }
-}
-
-/// Boundary faces with all corners among the given nodes.
-fn faces_of(mesh: &Mesh, nodes: impl Iterator<Item = u32>) -> Vec<Facet> {
-    let mut within = vec![false; mesh.points().len()];
-    nodes.filter(|&node| node != u32::MAX).for_each(|node| within[node as usize] = true);
-    let all = |facet: &Facet| mesh.facet_corners(*facet).all(|node| within[node as usize]);
-    mesh.boundary().iter().copied().filter(all).collect()
-}
-
-/// Boundary faces of a cell; `boundary` is sorted by cell.
-fn of_cell(boundary: &[Facet], cell: u32) -> impl Iterator<Item = Facet> {
-    let start = boundary.partition_point(|facet| facet.cell < cell);
-    boundary[start..].iter().take_while(move |facet| facet.cell == cell).copied()
 }
 
 fn index(place: Place, what: &'static str, count: usize) -> Parsed<u32> {

@@ -25,8 +25,11 @@
 
 mod blocks;
 mod coarser;
+mod controlled;
+mod curve;
 mod dilation;
 mod fixed;
+mod hourglass;
 mod order;
 mod position;
 mod resultant;
@@ -37,8 +40,10 @@ mod trace;
 
 pub use blocks::RowBlocks;
 pub use coarser::Coarser;
+pub use curve::{Curve, CurveError};
 pub use dilation::DilationGroups;
 pub use fixed::FixedDof;
+pub use hourglass::{HOURGLASS, HOURGLASS_MODES, Hourglass, HourglassModulus};
 pub use order::locality_order;
 pub use position::{length, position, position_alone};
 pub use resultant::Resultant;

@@ -2,6 +2,7 @@
 
 use rayon::prelude::*;
 
+use crate::hourglass::Hourglass;
 use crate::rows::{Rows, ShapeError};
 use crate::{Matrix3, Point3, Vector3};
 
@@ -179,6 +180,7 @@ pub struct VolumeRows {
     at: GradRows,
     weights: Vec<f64>,
     layout: Layout,
+    hourglass: Option<Hourglass>,
 }
 
 impl VolumeRows {
@@ -189,7 +191,7 @@ impl VolumeRows {
     pub fn new(at: GradRows, weights: Vec<f64>) -> Result<VolumeRows, ShapeError> {
         check_len("weights", weights.len(), at.rows.len())?;
         check_weights(&weights)?;
-        Ok(VolumeRows { at, weights, layout: Layout::General })
+        Ok(VolumeRows { at, weights, layout: Layout::General, hourglass: None })
     }
 
     /// Declares the known structure of the rows. Only their lengths and number are checked.
@@ -209,6 +211,22 @@ impl VolumeRows {
         let count = self.weights.len();
         check_len("points of whole cells", count, count.next_multiple_of(points))?;
         Ok(VolumeRows { layout, ..self })
+    }
+
+    /// Adds hourglass control to hexahedra with one point each.
+    ///
+    /// # Errors
+    /// Rows of another number of nodes than eight, or a number of cells that is not that of the rows.
+    pub fn controlled(self, hourglass: Hourglass) -> Result<VolumeRows, ShapeError> {
+        let rows = self.laid_out(Layout::Cells { nodes: 8, points: 1 })?;
+        check_len("cells with hourglass control", hourglass.len(), rows.weights.len())?;
+        Ok(VolumeRows { hourglass: Some(hourglass), ..rows })
+    }
+
+    /// Hourglass control, whose energy is part of the strain energy; `None` for all but hexahedra with one
+    /// point.
+    pub fn hourglass(&self) -> Option<&Hourglass> {
+        self.hourglass.as_ref()
     }
 
     /// Known structure of the rows.

@@ -7,7 +7,8 @@ use criterion::{Criterion, criterion_group, criterion_main};
 use geometry::CellKind;
 use material::{Law, NeoHookean};
 use tissuebench_statics::{
-    LinearSystems, NewtonParams, Solid, SolidDilation, StaticParams, StaticProblem, solve_static,
+    Active, Curves, LinearSystems, NewtonParams, Solid, SolidDilation, StaticParams, StaticProblem,
+    solve_static,
 };
 
 fn benches(c: &mut Criterion) {
@@ -39,8 +40,7 @@ fn benches(c: &mut Criterion) {
                     laws: &laws,
                     region: &[],
                     axes: &[],
-                    active: &[],
-                    activation: 1.0,
+                    active: Active::default(),
                     dilation,
                 },
                 loads: &loads,
@@ -49,6 +49,7 @@ fn benches(c: &mut Criterion) {
                 penalties: &[],
                 contact: None,
                 tools: &[],
+                curves: Curves::proportional(),
                 systems,
             };
             group.bench_function(format!("{name} {} dofs, {how}", 3 * pressed.mesh.points().len()), |b| {

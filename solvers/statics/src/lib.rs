@@ -66,6 +66,7 @@ mod dilation;
 mod eliminate;
 mod error;
 mod grad_table;
+mod hourglass;
 mod implicit;
 mod load;
 mod modes;
@@ -86,15 +87,14 @@ pub use condense::Condensed;
 pub use constraint::{ConstraintRow, multiplier_rows};
 pub use error::SolveError;
 pub use implicit::{
-    Energy, Inertia, Mass, Motion, Ramp, Ramps, TimeError, TimeParams, TimePath, TimeProblem, TimeStep,
-    solve_in_time,
+    Energy, Inertia, Mass, Motion, TimeError, TimeParams, TimePath, TimeProblem, TimeStep, solve_in_time,
 };
-pub use load::{Load, nodal_forces};
+pub use load::{Load, nodal_forces, nodal_forces_by_curve};
 pub use modes::{ALL_MODES_LIMIT, Modes, lowest_modes, modes};
 pub use nonlinear::{
-    FollowingPressure, Frames, Inverted, Iteration, LinearSystems, NewtonParams, PenaltySurface, Rest, Solid,
-    SolidDilation, StaticError, StaticParams, StaticPath, StaticProblem, StaticWork, Step, Worst,
-    solve_static,
+    Active, Curves, FollowingPressure, Frames, Inverted, Iteration, LinearSystems, NewtonParams,
+    PenaltySurface, Rest, Solid, SolidDilation, StaticError, StaticParams, StaticPath, StaticProblem,
+    StaticWork, Step, Timing, Worst, solve_static,
 };
 pub use problem::{Assembled, LinearProblem, assemble};
 pub use recover::{body_stress, mean_pressure, strain_energy, stress};

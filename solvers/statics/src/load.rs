@@ -1,9 +1,10 @@
 //! Dead loads: tractions, pressure and body force, integrated into nodal forces (N).
 
-use shape::{Rows, SurfaceRows, Vector3, VolumeRows};
+use shape::{Curve, Rows, SurfaceRows, Vector3, VolumeRows};
 
 use crate::body::check_len;
 use crate::error::SolveError;
+use crate::nonlinear::Timing;
 
 /// A load with one value per quadrature point. The caller evaluates a field at the points.
 #[derive(Clone, Debug)]
@@ -35,7 +36,10 @@ pub enum Load<'a> {
 }
 
 /// Returns the nodal forces `f_I = sum_q w N_I(x_q) t_q` of all loads, N.
-pub fn nodal_forces(volume: &VolumeRows, loads: &[Load]) -> Result<Vec<Vector3>, SolveError> {
+pub fn nodal_forces<'a>(
+    volume: &VolumeRows,
+    loads: impl IntoIterator<Item = &'a Load<'a>>,
+) -> Result<Vec<Vector3>, SolveError> {
     let nodes = volume.rows().node_count();
     let mut force = vec![Vector3::zeros(); nodes];
     for load in loads {
@@ -62,6 +66,26 @@ pub fn nodal_forces(volume: &VolumeRows, loads: &[Load]) -> Result<Vec<Vector3>,
         }
     }
     Ok(force)
+}
+
+/// Returns the nodal forces (N) of the loads of each curve. The first is the usual curve, even if no load
+/// follows it.
+pub fn nodal_forces_by_curve(
+    volume: &VolumeRows,
+    loads: &[Load],
+    timing: &Timing,
+) -> Result<Vec<(Curve, Vec<Vector3>)>, SolveError> {
+    let mut curves = vec![&timing.usual];
+    for curve in (0..loads.len()).map(|index| timing.of(index)) {
+        if !curves.contains(&curve) {
+            curves.push(curve);
+        }
+    }
+    let each = curves.into_iter().map(|curve| {
+        let of_curve = loads.iter().enumerate().filter(|(index, _)| timing.of(*index) == curve);
+        Ok((curve.clone(), nodal_forces(volume, of_curve.map(|(_, load)| load))?))
+    });
+    each.collect()
 }
 
 fn add(

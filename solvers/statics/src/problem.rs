@@ -9,7 +9,9 @@ use crate::constraint::{self, ConstraintRow};
 use crate::dilation::Projected;
 use crate::error::SolveError;
 use crate::grad_table::GradTable;
+use crate::hourglass::springs;
 use crate::load::{Load, nodal_forces};
+use crate::nonlinear::SurfaceTable;
 use crate::rigid;
 use crate::support::prescribed;
 use crate::weak::{Weak, WeakSupport, WeakTable};
@@ -56,6 +58,7 @@ pub struct Assembled<'a> {
 /// this error by the ratio of displacement to strain times support radius.
 pub(crate) struct Pointwise {
     volume: Vec<GradTable>,
+    springs: Option<SurfaceTable>,
     weak: Vec<(WeakTable, Incidence)>,
 }
 
@@ -72,6 +75,10 @@ impl Pointwise {
     pub fn subtract(&self, u: &[Vector3], factor: f64, residual: &mut [Vector3]) {
         for table in &self.volume {
             table.subtract_force(u, residual);
+        }
+        if let Some(springs) = &self.springs {
+            let (forces, _) = springs.spring_forces(u);
+            residual.iter_mut().zip(&forces).for_each(|(residual, force)| *residual -= force);
         }
         for (table, of) in &self.weak {
             table.subtract_residual(of, u, factor, residual);
@@ -164,6 +171,10 @@ fn assemble_if<'a>(problem: &LinearProblem<'a>, holds: SupportCheck) -> Result<A
     if let (Some(table), Some(of)) = (&groups, &groups_of) {
         add_volume(&mut stiffness, table, of);
     }
+    let springs = springs(body.volume, |q| [body.material(q).lambda(), body.material(q).mu()]);
+    if let Some(springs) = &springs {
+        stiffness.for_each_row(|i, slot, row| springs.add_springs(i, slot, row));
+    }
     let mut weak_load = vec![Vector3::zeros(); nodes];
     for (table, of) in &weak {
         table.add_stiffness(&mut stiffness, of);
@@ -171,12 +182,12 @@ fn assemble_if<'a>(problem: &LinearProblem<'a>, holds: SupportCheck) -> Result<A
     }
     let gammas = problem.weak.iter().filter_map(|s| match s.method {
         Weak::Nitsche { gamma } => Some(gamma),
-        Weak::Penalty { .. } => None,
+        Weak::Penalty { .. } | Weak::Spring { .. } => None,
     });
     let gamma = gammas.reduce(f64::min);
     let pointwise = (!weak.is_empty() || !rows.is_empty()).then(|| {
         let volume = std::iter::once(points).chain(groups).collect();
-        Pointwise { volume, weak }
+        Pointwise { volume, springs, weak }
     });
     Ok(Assembled { body, stiffness, load, weak_load, prescribed, rows, gamma, pointwise })
 }

@@ -38,8 +38,8 @@ pub fn mean_pressure(body: &LinearBody, u: &[Vector3]) -> Result<Vec<f64>, Solve
 }
 
 /// Returns the strain energy, J: `sum_q w psi(H_q)`, or with a projection
-/// `sum_q w mu |dev eps|^2 + sum_a V_a kappa theta_a^2 / 2`. Without weak supports the energy equals
-/// `u . K u / 2`.
+/// `sum_q w mu |dev eps|^2 + sum_a V_a kappa theta_a^2 / 2`. It includes the energy of hourglass
+/// control. Without weak supports the energy equals `u . K u / 2`.
 pub fn strain_energy(body: &LinearBody, u: &[Vector3]) -> Result<f64, SolveError> {
     body.check()?;
     check_len("nodal parameters", u.len(), body.nodes.len())?;
@@ -54,7 +54,8 @@ pub fn strain_energy(body: &LinearBody, u: &[Vector3]) -> Result<f64, SolveError
     for (a, (volume, theta)) in group_dilations(body, &gradients).into_iter().enumerate() {
         energy += 0.5 * volume * group_bulk(body, a) * theta * theta;
     }
-    Ok(energy)
+    let moduli = |q: usize| [body.material(q).lambda(), body.material(q).mu()];
+    Ok(energy + body.volume.hourglass_energy(moduli, u))
 }
 
 /// Returns volume (m^3) and mean dilation of each group; empty without groups.

@@ -13,7 +13,7 @@ use crate::body::LinearBody;
 use crate::constraint::Row;
 use crate::error::SolveError;
 use crate::rigid_mode::RigidMode;
-use crate::weak::WeakSupport;
+use crate::weak::{Weak, WeakSupport};
 
 /// Squared relative size below which a motion counts as free: supports resist motions from 1e-6 of their
 /// size.
@@ -92,6 +92,15 @@ pub(crate) fn add_surface(table: &Rows, axes: [bool; 3], add: AddRow) {
     }
 }
 
+/// Adds the rows of displacements along the normals at the points of a table.
+pub(crate) fn add_normals(table: &Rows, normals: &[Vector3], add: AddRow) {
+    for (q, normal) in normals.iter().enumerate() {
+        let (nodes, values) = table.row(q);
+        let along = |(&n, &v): (&u32, &f64)| (0..3).map(move |axis| (n as usize, axis, v * normal[axis]));
+        add(&mut nodes.iter().zip(values).flat_map(along));
+    }
+}
+
 /// Checks as [`check`] does, with the rows that `supports` adds; `joints` join pieces into clusters.
 pub(crate) fn check_rows(
     positions: &[Point3],
@@ -129,7 +138,12 @@ fn add_all(prescribed: &[Option<f64>], rows: &[Row], weak: &[WeakSupport], add: 
         add(&mut r.terms.iter().map(|&(dof, c)| (dof / 3, dof % 3, c)));
     }
     for support in weak {
-        add_surface(support.flux.at().rows(), support.axes, add);
+        match support.method {
+            Weak::Spring { along_normal: true, .. } => {
+                add_normals(support.flux.at().rows(), support.flux.normals(), add);
+            }
+            _ => add_surface(support.flux.at().rows(), support.axes, add),
+        }
     }
 }
 

@@ -25,6 +25,13 @@ pub enum Weak {
         /// Penalty factor, dimensionless.
         factor: f64,
     },
+    /// Springs to the prescribed position, `beta = stiffness` (an elastic foundation).
+    Spring {
+        /// Stiffness per area, Pa/m.
+        stiffness: f64,
+        /// Whether the springs resist displacements along the surface normal only.
+        along_normal: bool,
+    },
 }
 
 /// A weakly constrained surface.
@@ -68,6 +75,7 @@ impl WeakSupport<'_> {
         let (what, value) = match self.method {
             Weak::Nitsche { gamma } => ("gamma", gamma),
             Weak::Penalty { factor } => ("factor", factor),
+            Weak::Spring { stiffness, .. } => ("stiffness", stiffness),
         };
         for (what, value) in [(what, value), ("h", self.h)] {
             if !(value > 0.0 && value.is_finite()) {
@@ -79,6 +87,18 @@ impl WeakSupport<'_> {
                 Err(SolveError::NotFinite { what: "displacement of weak support at point", index })
             }
             None => Ok(()),
+        }
+    }
+
+    /// Returns the projection on the constrained directions at each point.
+    fn projections(&self) -> Vec<Matrix3> {
+        let normals = self.flux.normals();
+        match self.method {
+            Weak::Spring { along_normal: true, .. } => normals.iter().map(|n| n * n.transpose()).collect(),
+            _ => {
+                let along = Vector3::from_fn(|a, _| f64::from(u8::from(self.axes[a])));
+                vec![Matrix3::from_diagonal(&along); normals.len()]
+            }
         }
     }
 }
@@ -97,8 +117,8 @@ pub(crate) struct WeakTable {
     beta: Vec<f64>,
     /// Prescribed displacement, m; zero along unconstrained axes.
     target: Vec<Vector3>,
-    /// `P = diag(axes)`.
-    constrained: Matrix3,
+    /// `P` of each point: `diag(axes)`, or `n n^T` for springs along the normal.
+    constrained: Vec<Matrix3>,
 }
 
 /// Contribution of a node at a surface point.
@@ -115,8 +135,7 @@ impl WeakTable {
     pub fn new(support: &WeakSupport, body: &LinearBody, projected: Option<&Projected>) -> WeakTable {
         let at = support.flux.at();
         let points = support.flux.weights().len();
-        let constrained =
-            Matrix3::from_diagonal(&Vector3::from_fn(|a, _| f64::from(u8::from(support.axes[a]))));
+        let constrained = support.projections();
         let nitsche = matches!(support.method, Weak::Nitsche { .. });
         let trace = support.trace.filter(|_| nitsche);
         let mut offsets = vec![0];
@@ -164,7 +183,7 @@ impl WeakTable {
                 phi.push(value);
                 // t_a for a unit displacement along c: lambda n_a g_c + mu (g . n delta_ac + g_a n_c).
                 traction.push(if nitsche {
-                    constrained
+                    constrained[q]
                         * (n * (g * shear + b * bulk).transpose()
                             + (Matrix3::identity() * g.dot(&n) + g * n.transpose()) * mu)
                 } else {
@@ -178,6 +197,7 @@ impl WeakTable {
                     gamma * (lambda + 2.0 * mu) / trace.map_or(support.h, |t| t.lengths()[q])
                 }
                 Weak::Penalty { factor } => factor * law.young() / support.h,
+                Weak::Spring { stiffness, .. } => stiffness,
             });
         }
         // Components are selected because `constrained * v` would spread an ignored NaN.
@@ -204,7 +224,7 @@ impl WeakTable {
                 let (q, k) = (q as usize, k as usize);
                 let w = self.weights[q];
                 let (Ni, ti) = (self.phi[k], self.traction[k].transpose());
-                let stabilised = self.constrained * (self.beta[q] * Ni);
+                let stabilised = self.constrained[q] * (self.beta[q] * Ni);
                 for j in self.offsets[q]..=k {
                     let (Nj, tj) = (self.phi[j], &self.traction[j]);
                     row[slot[self.nodes[j] as usize] as usize] += (stabilised * Nj - tj * Ni - ti * Nj) * w;
@@ -216,7 +236,7 @@ impl WeakTable {
     /// Adds the trace of `integral of beta u_a v_a` over the constrained axes at each node, N/m.
     pub fn add_penalties(&self, sums: &mut [f64]) {
         for (q, range) in self.offsets.windows(2).enumerate() {
-            let spring = self.constrained.trace() * self.weights[q] * self.beta[q];
+            let spring = self.constrained[q].trace() * self.weights[q] * self.beta[q];
             for k in range[0]..range[1] {
                 sums[self.nodes[k] as usize] += spring * self.phi[k].powi(2);
             }
@@ -243,7 +263,7 @@ impl WeakTable {
             let range = self.offsets[q]..self.offsets[q + 1];
             range.fold((Vector3::zeros(), Vector3::zeros()), |(value, traction), k| {
                 let u = u[self.nodes[k] as usize];
-                (value + self.constrained * u * self.phi[k], traction + self.traction[k] * u)
+                (value + self.constrained[q] * u * self.phi[k], traction + self.traction[k] * u)
             })
         };
         let at_points: Vec<(Vector3, Vector3)> = (0..self.weights.len()).map(at).collect();
@@ -272,10 +292,10 @@ impl WeakTable {
                 let range = self.offsets[q]..self.offsets[q + 1];
                 let base = u[self.nodes[range.start] as usize];
                 let (mut gap, mut traction) =
-                    (self.constrained * base - self.target[q] * factor, Vector3::zeros());
+                    (self.constrained[q] * base - self.target[q] * factor, Vector3::zeros());
                 for k in range {
                     let difference = u[self.nodes[k] as usize] - base;
-                    gap += self.constrained * difference * self.phi[k];
+                    gap += self.constrained[q] * difference * self.phi[k];
                     traction += self.traction[k] * difference;
                 }
                 (gap, traction)

@@ -1,20 +1,77 @@
 //! Finite elements.
 
 use catalogue::Problem;
+use geometry::CellKind;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::common::{Dilation, Jitter, JitterKeys, Mass, Size, SizeKeys};
 use super::element::Element;
 use crate::scene::report::Report;
+use crate::scene::words::words;
+
+words! {
+    /// Modulus that the stiffness of hourglass control is proportional to.
+    pub enum HourglassModulus {
+        /// The P-wave modulus `lambda + 2 mu`.
+        PWave = "p-wave",
+        /// The shear modulus `mu`, which does not grow with the bulk modulus.
+        Shear = "shear",
+    }
+}
+
+/// Hourglass control: artificial stiffness of the motions that the single point of a cell does not see
+#[derive(Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+struct HourglassKeys {
+    /// Stiffness of the motions that the point does not see, divided by the largest stiffness of a cell with
+    /// this modulus, from 0 to 1; unless given, 0.05 with the P-wave modulus and 0.3 with the shear modulus
+    coefficient: Option<f64>,
+    /// Modulus of the material that the stiffness is proportional to; p-wave unless given
+    modulus: Option<HourglassModulus>,
+}
+
+/// Hourglass control of hexahedra with one point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hourglass {
+    /// Coefficient, from 0 to 1.
+    pub coefficient: f64,
+    /// Modulus of the stiffness.
+    pub modulus: HourglassModulus,
+}
+
+impl HourglassKeys {
+    fn read(self, report: &Report) -> Hourglass {
+        let modulus = self.modulus.unwrap_or(HourglassModulus::PWave);
+        let coefficient = self.coefficient.unwrap_or(modulus.usual());
+        let sound = (0.0..=1.0).contains(&coefficient);
+        let help = format!("{} is usual with the modulus \"{}\"", modulus.usual(), modulus.name());
+        report.require(sound, "coefficient", "is not between 0 and 1", &help);
+        Hourglass { coefficient, modulus }
+    }
+}
+
+impl HourglassModulus {
+    /// Usual coefficient. That of the P-wave modulus is in most models of NiftySim (Johnsen et al., Int. J.
+    /// Comput. Assist. Radiol. Surg. 10 (2015) 1077-1095), whose hexahedron this is. That of the shear modulus
+    /// gives a cube the energy of pure bending, whose coefficient is `2 (1 + nu) / 9`.
+    fn usual(self) -> f64 {
+        match self {
+            HourglassModulus::PWave => 0.05,
+            HourglassModulus::Shear => 0.3,
+        }
+    }
+}
 
 #[derive(Deserialize, JsonSchema)]
 pub(crate) struct FemKeys {
     element: Element,
     dilation: Option<Dilation>,
-    /// Reduced integration: 2 x 2 x 2 points in hex20, 3 x 3 in wedge15
+    /// Reduced integration: one point in hex8, 2 x 2 x 2 in hex20, 3 x 3 in wedge15
     #[serde(default)]
     reduced: bool,
+    /// Hourglass control of hex8 with reduced = true
+    hourglass: Option<HourglassKeys>,
     size: SizeKeys,
     jitter: Option<JitterKeys>,
     /// Mass matrix for vibrations; kind = "modes" only
@@ -31,6 +88,8 @@ pub struct Fem {
     /// Whether the element's reduced integration is used: avoids locking in combined bending and
     /// compression.
     pub reduced: bool,
+    /// Hourglass control; `None` for elements without it.
+    pub hourglass: Option<Hourglass>,
     /// Size of the mesh.
     pub size: Size,
     /// Random displacement of inner nodes.
@@ -49,9 +108,15 @@ impl FemKeys {
             &problem,
             "leave it out, or take another element",
         );
+        let controlled = reduced && element.kind() == Some(CellKind::Hex8);
+        let help = "leave it out, or take element = \"hex8\" with reduced = true";
+        let unused = self.hourglass.is_none() || controlled;
+        report.require(unused, "hourglass", "applies to hex8 with one point only", help);
+        let hourglass = self.hourglass.unwrap_or_default().read(&report.at("hourglass"));
+        let hourglass = controlled.then_some(hourglass);
         let jitter = self.jitter.map(|jitter| jitter.read(report));
         let dilation = self.dilation.unwrap_or(Dilation::Standard);
-        Some(Fem { element, dilation, reduced, size: size?, jitter })
+        Some(Fem { element, dilation, reduced, hourglass, size: size?, jitter })
     }
 }
 
@@ -63,6 +128,11 @@ impl Fem {
         let name = self.element.name();
         let linear = self.element.order() == 1;
         let (found, problem, help) = match self.dilation {
+            dilation if self.hourglass.is_some() && dilation != Dilation::Standard => (
+                dilation.name(),
+                format!("does not apply to {name} with one point, which has one dilation already"),
+                "leave it out, or take reduced = false".into(),
+            ),
             Dilation::Mixed if linear => (
                 "mixed",
                 format!("has no stable pressure field with {name}"),

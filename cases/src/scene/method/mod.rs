@@ -25,7 +25,7 @@ pub(crate) use essential::EssentialKeys;
 pub use essential::{ConstraintRows, Essential, EssentialKind};
 pub(crate) use external::{ADAPTERS, NO_ADAPTER, is_adapter};
 pub use external::{External, Setting};
-pub use fem::Fem;
+pub use fem::{Fem, Hourglass, HourglassModulus};
 pub use functions::{Basis, Functions, SupportRule, SupportShape};
 pub use integration::Integration;
 pub(crate) use integration::IntegrationKeys;
@@ -41,7 +41,7 @@ use fem::FemKeys;
 #[serde(tag = "family", rename_all = "kebab-case")]
 pub(crate) enum MethodKeys {
     /// Finite elements
-    Fem(Named<FemKeys>),
+    Fem(Box<Named<FemKeys>>),
     /// Element-free Galerkin
     Efg(Box<Named<EfgKeys>>),
     /// An external solver, called by an adapter
@@ -89,7 +89,8 @@ const LONGEST_ID: usize = 64;
 impl MethodKeys {
     pub fn read(self, report: &Report) -> Option<Method> {
         let (id, series, mass, family) = match self {
-            MethodKeys::Fem(Named { id, series, keys }) => {
+            MethodKeys::Fem(named) => {
+                let Named { id, series, keys } = *named;
                 (id, series, keys.mass, keys.read(report).map(Family::Fem))
             }
             MethodKeys::Efg(named) => {

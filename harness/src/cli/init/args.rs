@@ -14,7 +14,7 @@ pub struct InitArgs {
     /// Length unit of the file: m, cm, mm or um (default: the unit that gives the length of an organ)
     #[arg(long)]
     pub unit: Option<String>,
-    /// Large strain: neo-Hookean law, contact with a plate. Small strain: linear law, one end of the body
+    /// Large strain: neo-Hookean law, contact with a tool. Small strain: linear law, one end of the body
     /// displaced or loaded (default: large)
     #[arg(long, value_name = "small|large")]
     pub strain: Option<String>,
@@ -24,21 +24,28 @@ pub struct InitArgs {
     /// Poisson's ratio, 0 to below 0.5 (default: 0.45)
     #[arg(long, value_name = "NUMBER")]
     pub poisson: Option<String>,
-    /// Side of the plate: top (z), bottom, left (x), right, front (y) or back (default: the first side with a
+    /// Side of the tool: top (z), bottom, left (x), right, front (y) or back (default: the first side with a
     /// blunt end that is supported by the constrained part through a body that is not slender)
     #[arg(long, value_name = "SIDE")]
     pub press_from: Option<String>,
     /// Constrained part of the body: comparisons such as "z < 3 mm", or a named surface of the file (default:
-    /// at least a fifth of the height, opposite to the plate)
+    /// at least a fifth of the height, opposite to the tool; for jaws across them)
     #[arg(long, value_name = "WHERE")]
     pub hold: Option<String>,
-    /// Displacement of the plate into the body (default: a twentieth of the body's height)
+    /// Displacement of the tool, of each of two jaws, into the body (default: a twentieth of the body's height)
     #[arg(long, value_name = "LENGTH", conflicts_with = "load")]
     pub closure: Option<String>,
-    /// Force on the plate, such as "0.5 N", instead of --closure; at small strain a pressure, such as "1 kPa"
+    /// Force on the tool, on each of two jaws, such as "0.5 N", instead of --closure; at small strain a pressure, such as "1 kPa"
     #[arg(long, value_name = "FORCE")]
     pub load: Option<String>,
-    /// Initial distance of the plate from the body (default: in contact)
+    /// Tool: plate, ball, jaws, or a closed surface (STL, OBJ, PLY) in the unit of the organ's file (default:
+    /// plate)
+    #[arg(long, value_name = "plate|ball|jaws|FILE")]
+    pub tool: Option<String>,
+    /// Coulomb's coefficient of friction between tool and body (default: none)
+    #[arg(long, value_name = "NUMBER")]
+    pub friction: Option<String>,
+    /// Initial distance of the tool from the body (default: in contact)
     #[arg(long, value_name = "LENGTH", conflicts_with = "load")]
     pub gap: Option<String>,
     /// Methods, each in three sizes: tet4, tet4-nodal, tet10 and efg (default: tet4,tet10,efg)
@@ -61,7 +68,7 @@ pub struct InitArgs {
     pub force: bool,
 }
 
-/// Side from which the plate presses.
+/// Side from which the tool presses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(super) enum Side {
     Top,
@@ -80,6 +87,31 @@ impl Side {
             Side::Front | Side::Back => 1,
             Side::Top | Side::Bottom => 2,
         }
+    }
+
+    /// Returns the other side of the axis.
+    pub fn opposite(self) -> Side {
+        match self {
+            Side::Top => Side::Bottom,
+            Side::Bottom => Side::Top,
+            Side::Left => Side::Right,
+            Side::Right => Side::Left,
+            Side::Front => Side::Back,
+            Side::Back => Side::Front,
+        }
+    }
+
+    /// Returns the side's name in a scene.
+    pub fn name(self) -> String {
+        let name = match self {
+            Side::Left => "x-min",
+            Side::Right => "x-max",
+            Side::Front => "y-min",
+            Side::Back => "y-max",
+            Side::Bottom => "z-min",
+            Side::Top => "z-max",
+        };
+        name.into()
     }
 
     /// Returns 1 for a side at the end of its axis, -1 at its start.

@@ -6,7 +6,7 @@ use cases::scene::{Place, Reference, Scene};
 use geometry::{Mesh, Point3};
 
 use super::args::Side;
-use crate::discretise::place;
+use crate::discretise::{node_set, place};
 use crate::error::Failure;
 use crate::scenario::Scenario;
 
@@ -47,7 +47,9 @@ impl Meshes {
     pub fn unheld(&self, place: &Place) -> Result<Option<(&str, usize)>, Failure> {
         for (name, mesh) in &self.0 {
             let mut held = vec![false; mesh.points().len()];
-            place::nodes("support[0]", place, mesh)?.into_iter().for_each(|node| held[node as usize] = true);
+            node_set::nodes("support[0]", place, mesh)?
+                .into_iter()
+                .for_each(|node| held[node as usize] = true);
             let (piece, pieces) = pieces(mesh);
             let mut holds = vec![false; pieces];
             for cell in 0..mesh.cell_count() {

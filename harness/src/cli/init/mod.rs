@@ -1,4 +1,4 @@
-//! `tissuebench init`: writes a scene of an organ under a plate, from options, answers and defaults.
+//! `tissuebench init`: writes a scene of an organ under a tool, from options, answers and defaults.
 
 mod args;
 mod filled;
@@ -6,6 +6,7 @@ mod meshes;
 mod organ;
 mod questions;
 mod scene_text;
+mod tool;
 
 use std::io::{BufReader, IsTerminal};
 use std::path::{Path, PathBuf};
@@ -28,6 +29,7 @@ use meshes::Meshes;
 use organ::Organ;
 use questions::Questions;
 use scene_text::{Drive, Hold, Size, Wanted};
+use tool::Tool;
 
 /// Default of the constrained fraction of the height.
 const HELD: f64 = 0.2;
@@ -78,7 +80,7 @@ pub fn init(args: &InitArgs) -> Result<(), Failure> {
     let found = parsed(&wanted, &out)?;
     let held = &found.supports[0].place;
     if let Place::Where(region) = held {
-        holds(region, &organ, wanted.side)?;
+        holds(region, &organ, &wanted)?;
     }
     if let Some((mesh, pieces)) = meshes.unheld(held)? {
         let problem = format!(
@@ -88,8 +90,9 @@ pub fn init(args: &InitArgs) -> Result<(), Failure> {
     }
     disk::write(&out, &text).map_err(|bad| input(format!("{name}: can't be written: {bad}")))?;
     println!(
-        "{name}: {} under a plate from the {}, {} runs",
+        "{name}: {} under {} from the {}, {} runs",
         file.display(),
+        wanted.tool.words(),
         word(wanted.side),
         found.methods.len()
     );
@@ -166,6 +169,11 @@ fn wanted(
         Some(text) => spacing(text, organ, &described)?,
         None => ask.value("nodes", args.nodes.as_deref(), "Nodes of the finest size", "1000", nodes)?,
     };
+    let tool = tool(args, strain)?;
+    let tool_path = match &tool {
+        Tool::File(file) => path_from(out, file)?,
+        _ => String::new(),
+    };
     let filled = Filled::new(organ);
     let sides = filled.sides(HELD);
     let mut wanted = Wanted {
@@ -178,6 +186,10 @@ fn wanted(
         poisson,
         hold: Hold::Where(String::new()),
         side: sides[0],
+        friction: friction(args, strain)?,
+        across: tool.across(sides[0], organ),
+        tool,
+        tool_path,
         bounds: organ.bounds,
         drive: Drive::Closure(CLOSURE * organ.smallest_extent()),
         gap: gap(args, strain)?,
@@ -187,12 +199,13 @@ fn wanted(
         probes: organ.bounds,
     };
     let pressed = |wanted: &mut Wanted, side| {
-        (wanted.title, wanted.side, wanted.size) = (title(file, side), side, size);
-        fine_enough(wanted, organ, filled.held(side, HELD), out)
+        wanted.title = title(file, &wanted.tool, side);
+        (wanted.side, wanted.size, wanted.across) = (side, size, wanted.tool.across(side, organ));
+        fine_enough(wanted, organ, filled.held(wanted.tool.held_from(side, organ), HELD), out)
     };
     let fits = |side: &&Side| args.press_from.is_none() && pressed(&mut wanted, **side).is_ok();
     let best = word(*sides.iter().find(fits).unwrap_or(&sides[0]));
-    let question = "Side from which the plate presses: top, bottom, left, right, front or back";
+    let question = "Side from which the tool presses: top, bottom, left, right, front or back";
     let side = ask.value("press-from", args.press_from.as_deref(), question, &best, choice::<Side>)?;
     let (meshes, default) = pressed(&mut wanted, side)?;
     let question = "Constrained part: comparisons of x, y and z, or a surface of the mesh file";
@@ -210,7 +223,7 @@ fn wanted(
     Ok((wanted, meshes))
 }
 
-/// Returns the initial distance of the plate, m.
+/// Returns the initial distance of the tool, m.
 fn gap(args: &InitArgs, strain: Strain) -> Result<f64, Failure> {
     match (&args.gap, strain) {
         (None, _) => Ok(0.0),
@@ -218,9 +231,34 @@ fn gap(args: &InitArgs, strain: Strain) -> Result<f64, Failure> {
             quantity(Dimension::Length, text).map_err(|bad| input(format!("--gap '{text}': {bad}")))
         }
         (Some(text), Strain::Small) => {
-            Err(input(format!("--gap '{text}': small strain has no plate; give --strain large")))
+            Err(input(format!("--gap '{text}': small strain has no tool; give --strain large")))
         }
     }
+}
+
+/// Returns the tool.
+fn tool(args: &InitArgs, strain: Strain) -> Result<Tool, Failure> {
+    match (&args.tool, strain) {
+        (None, _) => Ok(Tool::Plate),
+        (Some(text), Strain::Large) => {
+            Tool::parse(text).map_err(|bad| input(format!("--tool '{text}': {bad}")))
+        }
+        (Some(text), Strain::Small) => {
+            Err(input(format!("--tool '{text}': small strain has no tool; give --strain large")))
+        }
+    }
+}
+
+/// Returns the coefficient of friction.
+fn friction(args: &InitArgs, strain: Strain) -> Result<Option<f64>, Failure> {
+    let Some(text) = &args.friction else { return Ok(None) };
+    if strain == Strain::Small {
+        let problem = "small strain has no tool; give --strain large";
+        return Err(input(format!("--friction '{text}': {problem}")));
+    }
+    let value = text.parse().ok().filter(|value: &f64| *value > 0.0 && value.is_finite());
+    let bad = || input(format!("--friction '{text}': a coefficient above zero, such as 0.3"));
+    value.map(Some).ok_or_else(bad)
 }
 
 /// Returns comparisons for a fraction of the height at the end opposite to the plate.
@@ -245,11 +283,12 @@ fn fine_enough(
     let reaches = |name: &str, mesh: &Mesh| match meshes::short(mesh, organ.bounds, side) {
         short if short > SHORT * height => {
             let short = described(short);
-            Err(input(format!("the mesh of {name} ends {short} from the contact point of the plate")))
+            Err(input(format!("the mesh of {name} ends {short} from the contact point of the tool")))
         }
         _ => Ok(()),
     };
-    wanted.hold = Hold::Where(held_end(organ, side, part, &described));
+    let held_from = wanted.tool.held_from(side, organ);
+    wanted.hold = Hold::Where(held_end(organ, held_from, part, &described));
     let mut why = String::new();
     for (parts, finer) in FINENESS {
         (wanted.parts, wanted.size) = (parts, size.times(finer));
@@ -262,7 +301,7 @@ fn fine_enough(
         };
         let more = (0..).map(|k| part + f64::from(k) * MORE);
         for held in more.take_while(|held| *held <= MOST.max(part)) {
-            let comparisons = held_end(organ, side, held, &described);
+            let comparisons = held_end(organ, held_from, held, &described);
             wanted.hold = Hold::Where(comparisons.clone());
             match meshes.unheld(&parsed(wanted, out)?.supports[0].place)? {
                 None => return Ok((meshes, comparisons)),
@@ -286,9 +325,9 @@ fn parsed(wanted: &Wanted, out: &Path) -> Result<Scene, Failure> {
     scene::parse(&scene_text::text(wanted), &out.display().to_string()).map_err(|errors| refused(&errors))
 }
 
-fn title(file: &Path, side: Side) -> String {
+fn title(file: &Path, tool: &Tool, side: Side) -> String {
     let name = file.file_stem().unwrap_or_default().to_string_lossy();
-    format!("{name}, pressed by a plate from the {}", word(side))
+    format!("{name}, pressed by {} from the {}", tool.words(), word(side))
 }
 
 /// Returns the file's path for the scene: relative if the file is in the scene's folder or below.
@@ -373,13 +412,13 @@ fn driven(args: &InitArgs, ask: &mut Questions, strain: Strain, way: &str) -> Re
         quantity(dimension, text).map_err(|bad| input(format!("--load '{text}': {bad}")))?;
         return Ok(Drive::Load(text.clone()));
     }
-    let question = "Displacement of the plate into the body";
+    let question = "Displacement of the tool into the body";
     let read = |text: &str| quantity(Dimension::Length, text).map(Drive::Closure);
     ask.value("closure", args.closure.as_deref(), question, way, read)
 }
 
 /// Refuses comparisons that select nothing, everything, or the point touched by the plate.
-fn holds(region: &Region, organ: &Organ, side: Side) -> Result<(), Failure> {
+fn holds(region: &Region, organ: &Organ, wanted: &Wanted) -> Result<(), Failure> {
     let tolerance = Region::TOLERANCE * (organ.bounds[1] - organ.bounds[0]).norm();
     let inside = |p: &geometry::Point3| region.contains([p.x, p.y, p.z], tolerance);
     let count = organ.surface.points().iter().filter(|p| inside(p)).count();
@@ -393,10 +432,10 @@ fn holds(region: &Region, organ: &Organ, side: Side) -> Result<(), Failure> {
     if count == organ.surface.points().len() {
         return refuse("constrains the whole body; constrain a part of the body");
     }
-    if inside(&organ.first_touched(side)) {
-        let side = word(side);
+    if wanted.tool != Tool::Jaws && inside(&organ.first_touched(wanted.side)) {
+        let (tool, side) = (wanted.tool.words(), word(wanted.side));
         return refuse(&format!(
-            "constrains the point that the plate from the {side} touches first; constrain another part, or give \
+            "constrains the point that {tool} from the {side} touches first; constrain another part, or give \
              another side with --press-from"
         ));
     }
@@ -410,7 +449,7 @@ fn refused(errors: &[SceneError]) -> Failure {
         ("material.young", "--young"),
         ("material.poisson", "--poisson"),
         ("body.path", "--file"),
-        ("tool", "--closure, --load or --gap"),
+        ("tool", "--tool, --closure, --load or --gap"),
         ("load", "--load"),
     ];
     let lines = errors.iter().map(|error| {

@@ -3,6 +3,7 @@
 use geometry::Point3;
 
 use super::args::{Method, Side, Strain, word};
+use super::tool::{STICK, Tool};
 use crate::cli::args::LengthUnit;
 
 const TEMPLATE: &str = include_str!("scene.toml");
@@ -33,8 +34,15 @@ pub(super) struct Wanted {
     pub side: Side,
     /// Bounding box of the body, m.
     pub bounds: [Point3; 2],
+    pub tool: Tool,
+    /// Path of the tool's file in the scene; empty without one.
+    pub tool_path: String,
+    /// Coulomb's coefficient, if there is friction.
+    pub friction: Option<f64>,
+    /// Position of the tool's centre across its way, m.
+    pub across: Point3,
     pub drive: Drive,
-    /// Initial distance of the plate, m.
+    /// Initial distance of the tool, m.
     pub gap: f64,
     pub methods: Vec<Method>,
     pub size: Size,
@@ -88,7 +96,7 @@ impl Size {
 /// Returns the text of the whole scene.
 pub(super) fn text(wanted: &Wanted) -> String {
     let pressed = match (wanted.strain, &wanted.drive) {
-        (Strain::Large, _) => "plate",
+        (Strain::Large, _) => "tool",
         (Strain::Small, Drive::Closure(_)) => "moved",
         (Strain::Small, Drive::Load(_)) => "loaded",
     };
@@ -98,7 +106,12 @@ pub(super) fn text(wanted: &Wanted) -> String {
         Hold::On(_) => part("held").replace("where = ", "on = "),
     };
     let one = |name| filled(part(name), &values);
-    let mut parts = vec![one("head"), filled(&held, &values), one(pressed), one("compared"), one("methods")];
+    let mut parts = vec![one("head"), filled(&held, &values), one(pressed)];
+    if wanted.strain == Strain::Large {
+        parts.extend(wanted.tools());
+        parts.push(one("steps"));
+    }
+    parts.extend([one("compared"), one("methods")]);
     for &method in &wanted.methods {
         let name = word(method);
         let (about, table) = part(&name).split_once('\n').expect("a line about the method");
@@ -160,6 +173,64 @@ impl Wanted {
         format!("[{}]", [0, 1, 2].map(|axis| quoted(&self.length(point[axis]))).join(", "))
     }
 
+    /// Returns the tables of the tools, one for each side from which they come.
+    fn tools(&self) -> Vec<String> {
+        let sides = self.tool.sides(self.side);
+        let of_side = |(at, side): (usize, &Side)| {
+            filled(part("one-tool"), &self.tool_values(*side, &self.tool.name(at)))
+        };
+        sides.iter().enumerate().map(of_side).collect()
+    }
+
+    fn tool_values(&self, side: Side, name: &str) -> Vec<(&'static str, String)> {
+        let (axis, sign) = (side.axis(), side.sign());
+        let along = [0, 1, 2].map(|other| if other == axis { format!("{}", -sign) } else { "0".into() });
+        let drive = match &self.drive {
+            Drive::Closure(by) => format!("closure = {}", quoted(&self.length(by + self.gap))),
+            Drive::Load(load) => format!("force = {}", quoted(load)),
+        };
+        let extents = self.bounds[1] - self.bounds[0];
+        let shape = self
+            .tool
+            .shape(side, &quoted(&self.tool_path), self.unit.name, extents.min(), |l| self.length(l));
+        // MPa/mm is 1e9 Pa/m.
+        let penalty = STIFF * self.young_value / self.height() / 1e9;
+        let slope = |value: f64| format!("{value:.2e} MPa/mm");
+        let friction = self.friction.map_or(String::new(), |coefficient| {
+            format!("\nfriction = {coefficient}\nstick = {}", quoted(&slope(STICK * penalty)))
+        });
+        vec![
+            ("name", quoted(name)),
+            ("shape", shape),
+            ("at", self.place(side)),
+            ("along", format!("[{}]", along.join(", "))),
+            ("drive", format!("{{ {drive} }}")),
+            ("penalty", quoted(&slope(penalty))),
+            ("friction", friction),
+        ]
+    }
+
+    /// Returns the position of a tool: a plate's is known, others stand where they touch the body.
+    fn place(&self, side: Side) -> String {
+        let (axis, sign) = (side.axis(), side.sign());
+        if self.tool == Tool::Plate {
+            let mut at = nalgebra::center(&self.bounds[0], &self.bounds[1]);
+            at[axis] = self.bounds[usize::from(sign > 0.0)][axis] + sign * self.gap;
+            return self.point(at);
+        }
+        let across = (0..3).filter(|&other| other != axis);
+        let across = across.map(|other| {
+            format!("{} = {}", ["x", "y", "z"][other], quoted(&self.length(self.across[other])))
+        });
+        let across: Vec<String> = across.collect();
+        let gap = if self.gap > 0.0 {
+            format!(", gap = {}", quoted(&self.length(self.gap)))
+        } else {
+            String::new()
+        };
+        format!("{{ touch = {}, {}{gap} }}", quoted(&side.name()), across.join(", "))
+    }
+
     fn size_table(&self, size: Size) -> String {
         match size {
             Size::Nodes(count) => format!("{{ nodes = {count:.0} }}"),
@@ -182,17 +253,10 @@ impl Wanted {
         let end = self.bounds[usize::from(sign > 0.0)][axis];
         let than = if sign > 0.0 { ">=" } else { "<=" };
         let from = end - sign * PRESSED * self.height();
-        let mut at = nalgebra::center(&low, &high);
-        at[axis] = end + sign * self.gap;
-        let along = [0, 1, 2].map(|other| if other == axis { format!("{}", -sign) } else { "0".into() });
-        let (drive, moved, load) = match &self.drive {
-            Drive::Closure(by) => {
-                (format!("closure = {}", quoted(&self.length(by + self.gap))), -sign * by, String::new())
-            }
-            Drive::Load(load) => (format!("force = {}", quoted(load)), 0.0, quoted(load)),
+        let (moved, load) = match &self.drive {
+            Drive::Closure(by) => (-sign * by, String::new()),
+            Drive::Load(load) => (0.0, quoted(load)),
         };
-        // MPa/mm is 1e9 Pa/m.
-        let penalty = STIFF * self.young_value / self.height() / 1e9;
         let preferred = [Method::Tet10, Method::Efg, Method::Tet4Nodal, Method::Tet4];
         let reference = preferred.into_iter().find(|method| self.methods.contains(method));
         vec![
@@ -207,10 +271,7 @@ impl Wanted {
             ("z", spans(2)),
             ("hold", quoted(hold)),
             ("side", word(self.side)),
-            ("at", self.point(at)),
-            ("along", format!("[{}]", along.join(", "))),
-            ("drive", format!("{{ {drive} }}")),
-            ("penalty", quoted(&format!("{penalty:.2e} MPa/mm"))),
+            ("tool", self.tool.words().into()),
             ("end", quoted(&format!("{name} {than} {}", self.length(from)))),
             ("move", format!("{{ {name} = {} }}", quoted(&self.length(moved)))),
             ("pressure", load),

@@ -3,9 +3,11 @@
 mod item;
 mod schema;
 
+use std::collections::BTreeMap;
 use std::path::Path;
 
 use cases::exact::SOLUTIONS;
+use cases::tissue::{self, Tissue};
 use catalogue::metric::{METRICS, Metric};
 use catalogue::warning::WARNINGS;
 use catalogue::{Dimension, suggest, units};
@@ -27,9 +29,10 @@ const fn part(name: &'static str, key: &'static str, items: fn() -> Vec<Item>) -
     Part { name, key, items }
 }
 
-const PARTS: [Part; 22] = [
+const PARTS: [Part; 23] = [
     part("bodies", "body.shape; their surfaces: on", || forms("body")),
     part("laws", "material.law", || Item::of_entries(LAWS)),
+    part("tissues", "material.tissue, in place of law", tissues),
     part("tools", "tool.shape", tools),
     part("families", "method.family", || forms("method")),
     part("elements", "method.element, family = \"fem\"", || forms("method.fem.element")),
@@ -51,6 +54,26 @@ const PARTS: [Part; 22] = [
     part("warnings", "of a run, counted by the metric \"warnings\"", warnings),
     part("files", "scenes and studies below this folder", || files(Path::new("cases"))),
 ];
+
+/// Tissues with their sources and constants.
+fn tissues() -> Vec<Item> {
+    let item = |tissue: &Tissue| {
+        let Tissue { organ, species, test, range, source, law, .. } = tissue;
+        let doi = tissue.doi.as_ref().map_or(String::new(), |doi| format!(", doi {doi}"));
+        let meaning = format!("{organ} ({species}): {test}; {range} [{source}{doi}]");
+        let listed = |keys: BTreeMap<&str, String>| {
+            let keys = keys.iter().map(|(key, value)| format!("{key} = {}", value.replace('"', "")));
+            keys.collect::<Vec<_>>().join(", ")
+        };
+        let mut settings = vec![Item::new(law, "", &listed(tissue.constants()))];
+        if !tissue.assumed().is_empty() {
+            settings.push(Item::new("assumed", "", &listed(tissue.assumed())));
+        }
+        settings.extend(tissue.note.iter().map(|note| Item::new("note", "", note)));
+        Item { settings, ..Item::new(&tissue.name, "", &meaning) }
+    };
+    tissue::all().iter().map(item).collect()
+}
 
 /// Shapes of the catalogue, and the surface of a file without the keys that every tool has.
 fn tools() -> Vec<Item> {

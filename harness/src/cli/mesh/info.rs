@@ -176,6 +176,9 @@ impl Found<'_> {
             let area = digits(area / CENTIMETRE.powi(2));
             row(if at == 0 { "surfaces" } else { "" }, &format!("{name}: {faces} faces, {area} cm^2"));
         }
+        for (at, (name, nodes)) in self.mesh.node_groups().enumerate() {
+            row(if at == 0 { "node sets" } else { "" }, &format!("{name}: {} nodes", nodes.len()));
+        }
         row("extent", &extent(self.low, self.high, unit));
         row("unit", &of_unit((self.high - self.low).amax(), unit));
         let volumes = || self.shapes.iter().map(|shape| shape.volume);

@@ -97,6 +97,8 @@ pub enum Needs {
     StepsReference,
     /// A support.
     Support,
+    /// Springs or dampers on a surface.
+    Foundation,
     /// A support, and a point for moments.
     SupportMoment,
     /// A tool, and a point for moments.
@@ -109,6 +111,8 @@ pub enum Needs {
     Stretch,
     /// A surface with a requested volume.
     Enclosed,
+    /// A region with a requested strain energy.
+    RegionEnergy,
     /// Dynamics with probes.
     Motion,
     /// Dynamics with probes, and an exact solution that depends on time.

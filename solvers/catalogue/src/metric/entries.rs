@@ -135,6 +135,8 @@ metrics! {
     // Supports and faces.
     REACTION: "reaction", "support force", Force, Place, Support, Components,
         "force of a support on the body, at the end; the forces of all supports, loads and tools are in equilibrium";
+    FOUNDATION_FORCE: "foundation-force", "force of springs and dampers", Force, Place, Foundation, Components,
+        "force of the springs and dampers of a foundation on the body, at the end";
     MEAN: "mean", "mean displacement", Length, Place, Mean, Components,
         "area-weighted mean displacement of a face listed in output.means, at the end";
     TOOL_MOMENT: "tool-moment", "moment on a tool", Moment, Tool, ToolMoment, Components,
@@ -157,6 +159,8 @@ metrics! {
          output.stretches, at the end";
     ENCLOSED_VOLUME: "enclosed-volume", "enclosed volume", Volume, Place, Enclosed,
         "volume enclosed by a surface of output.volumes, at the end";
+    REGION_ENERGY: "region-energy", "strain energy of a region", Energy, Place, RegionEnergy,
+        "strain energy of a region in output.energies, at the end; none for viscoelastic tissue";
     // Load steps, Newton's method, relaxation.
     LOAD_CARRIED: "load-carried", "applied load fraction", None, Value, Steps,
         "fraction of the load that was reached, 0 to 1";
@@ -233,6 +237,9 @@ metrics! {
         "largest displacement at the end";
     STRAIN_ENERGY: "strain-energy", "strain energy", Energy, Value, Run,
         "strain energy";
+    HOURGLASS_ENERGY: "hourglass-energy", "part of hourglass energy", None, Value, Run,
+        "largest energy of hourglass control divided by the largest strain energy, which includes it, of all \
+         load steps or recorded states";
     LOAD: "load", "load", Force, Value, Run, Components,
         "sum of all nodal loads";
     VOLUME: "volume", "volume", Volume, Value, Run,

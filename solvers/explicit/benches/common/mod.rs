@@ -2,7 +2,7 @@
 
 use geometry::CellKind;
 use geometry::generate::{Jitter, box_mesh};
-use shape::{DilationGroups, GradRows, Point3, Rows, Unity, Vector3, VolumeRows};
+use shape::{DilationGroups, GradRows, HourglassModulus, Point3, Rows, Unity, Vector3, VolumeRows};
 
 /// Returns a box of `cells` cubed cells, its dilation groups, and displacements with strains near 0.1.
 pub fn solid(kind: CellKind, cells: usize) -> (VolumeRows, DilationGroups, Vec<Vector3>) {
@@ -18,6 +18,18 @@ pub fn solid(kind: CellKind, cells: usize) -> (VolumeRows, DilationGroups, Vec<V
     let field = |x: &Point3| Vector3::new(0.05 * x.y, -0.04 * x.z, 0.1 * x.x);
     let u = mesh.points().iter().map(field).collect();
     (volume, groups, u)
+}
+
+/// Returns a box of `cells` cubed hexahedra with one point and hourglass control, and displacements as in
+/// [`solid`].
+#[allow(dead_code)] // not of every benchmark
+pub fn one_point(cells: usize) -> (VolumeRows, Vec<Vector3>) {
+    let jitter = Some(Jitter { fraction: 0.1, seed: 1 });
+    let max = Point3::new(0.04, 0.04, 0.04);
+    let mesh = box_mesh(CellKind::Hex8, Point3::origin(), max, [cells; 3], [1.0; 3], jitter).unwrap();
+    let field = |x: &Point3| Vector3::new(0.05 * x.y, -0.04 * x.z, 0.1 * x.x);
+    let u = mesh.points().iter().map(field).collect();
+    (fem::uniform_rows(&mesh, 0.05, HourglassModulus::PWave).unwrap(), u)
 }
 
 /// Returns points spread over the cells of a grid, each with its (up to) 31 nearest grid nodes, like the

@@ -74,13 +74,13 @@ impl Body {
     ) -> Dynamics<'a, 'b> {
         let zeros = vec![Vector3::zeros(); self.nodes()];
         let held = |k: usize| self.held.contains(&((k / 3) as u32));
-        let springs = Springs { surface: &self.surface, modulus: PENALTY };
+        let springs = Springs { surface: &self.surface, modulus: PENALTY, damping: 0.0 };
         let known =
-            critical_step_touching(force, &self.mass, &zeros, |k| !held(k), Some(springs), LANCZOS).unwrap();
+            critical_step_touching(force, &self.mass, &zeros, |k| !held(k), &[springs], LANCZOS).unwrap();
         let mass = 0.1 * self.mass.iter().sum::<f64>();
         let moving = [0, 1].map(|k| {
             let drive = Drive::Force(4.0);
-            MovingTool { tool: &self.jaws[k], drive, over: 2.0, mass, damping: 0.0 }
+            MovingTool { tool: &self.jaws[k], drive, over: 2.0, curve: None, mass, damping: 0.0 }
         });
         let params = DynamicsParams {
             dt: 0.9 * known.dt,

@@ -15,7 +15,7 @@ impl Element<8> for Hex8 {
         cell: &CUBE,
         nodes: &Self::NODES,
         faces: &[&[0, 3, 2, 1], &[4, 5, 6, 7], &[0, 1, 5, 4], &[1, 2, 6, 5], &[2, 3, 7, 6], &[3, 0, 4, 7]],
-        points: Points { full: 8, reduced: None, fine: 27, volume: 8 },
+        points: Points { full: 8, reduced: Some((1, "1")), fine: 27, volume: 8 },
         files: FileCodes {
             gmsh: 5,
             gmsh_order: &in_order::<8>(),

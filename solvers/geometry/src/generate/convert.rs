@@ -86,6 +86,7 @@ fn cut(kind: CellKind, nodes: &[u32], tets: &mut Vec<u32>) {
 
 /// Raises cells to the quadratic kind of the same shape; quadratic cells are unchanged. New nodes lie halfway
 /// along their edges. They are numbered after the existing nodes, in the order in which cells first use them.
+/// A group of nodes gains the new node of an edge if it has both ends.
 pub fn raise_order(mesh: &Mesh) -> Mesh {
     let mut points = mesh.points().to_vec();
     let mut middle: HashMap<(u32, u32), u32> = HashMap::new();
@@ -118,7 +119,13 @@ pub fn raise_order(mesh: &Mesh) -> Mesh {
         .group_names()
         .map(|name| (name.to_string(), mesh.group(name).unwrap_or_default().to_vec()))
         .collect();
-    with_cell_groups(rebuilt(mesh, points, kinds, nodes, regions, groups), mesh)
+    let mut raised = with_cell_groups(rebuilt(mesh, points, kinds, nodes, regions, groups), mesh);
+    for (name, of) in mesh.node_groups() {
+        let has = |node: &u32| of.binary_search(node).is_ok();
+        let halfway = middle.iter().filter(|((a, b), _)| has(a) && has(b)).map(|(_, &node)| node);
+        raised = raised.with_node_group(name, of.iter().copied().chain(halfway).collect());
+    }
+    raised
 }
 
 /// Copies the cell groups of `of` to a mesh with the same cells.
@@ -154,7 +161,8 @@ pub fn turned(mesh: &Mesh) -> Mesh {
         .group_names()
         .map(|name| (name.to_string(), mesh.group(name).unwrap_or_default().iter().map(moved).collect()));
     let groups = groups.collect();
-    with_cell_groups(rebuilt(mesh, mesh.points().to_vec(), kinds, nodes, regions, groups), mesh)
+    let turned = with_cell_groups(rebuilt(mesh, mesh.points().to_vec(), kinds, nodes, regions, groups), mesh);
+    mesh.node_groups().fold(turned, |turned, (name, of)| turned.with_node_group(name, of.to_vec()))
 }
 
 fn ordered(a: u32, b: u32) -> (u32, u32) {

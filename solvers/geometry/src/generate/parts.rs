@@ -31,7 +31,11 @@ pub(super) fn divided(mesh: &Mesh, kind: CellKind, mut nodes: Vec<u32>, first: &
         points.push(mesh.points()[node]);
     }
     nodes.iter_mut().for_each(|node| *node = number[*node as usize]);
-    let whole = rebuilt(mesh, points, vec![kind; parts], nodes, regions, groups);
+    let mut whole = rebuilt(mesh, points, vec![kind; parts], nodes, regions, groups);
+    for (name, of) in mesh.node_groups() {
+        let kept = of.iter().map(|&node| number[node as usize]).filter(|&node| node != u32::MAX);
+        whole = whole.with_node_group(name, kept.collect());
+    }
     mesh.cell_groups().fold(whole, |whole, (name, of)| {
         let parts = of.iter().flat_map(|&cell| first[cell as usize] as u32..first[cell as usize + 1] as u32);
         whole.with_cell_group(name, parts.collect())

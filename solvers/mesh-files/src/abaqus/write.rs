@@ -1,5 +1,5 @@
 //! Writer of flat decks. Each region becomes a section, each further group of cells a set, and each facet
-//! group a surface of element faces.
+//! group a surface of element faces, and each group of nodes a set.
 
 use std::fmt::Write;
 
@@ -12,7 +12,8 @@ use geometry::{CellKind, Mesh};
 pub(crate) fn text(mesh: &Mesh, unit: f64) -> Result<String, String> {
     let further: Vec<&str> = mesh.cell_groups().map(|(name, _)| name).collect();
     let of_cells: Vec<&str> = mesh.region_names().iter().map(String::as_str).chain(further).collect();
-    let names: Vec<&str> = of_cells.iter().copied().chain(mesh.group_names()).collect();
+    let names = of_cells.iter().copied().chain(mesh.group_names());
+    let names: Vec<&str> = names.chain(mesh.node_groups().map(|(name, _)| name)).collect();
     let bad = |name: &&&str| {
         name.is_empty() || name.trim() != **name || name.contains(['"', '\n', '\r', ',']) || !name.is_ascii()
     };
@@ -55,6 +56,13 @@ pub(crate) fn text(mesh: &Mesh, unit: f64) -> Result<String, String> {
     for (name, cells) in mesh.cell_groups() {
         line!("*ELSET, ELSET=\"{name}\"");
         let numbers: Vec<String> = cells.iter().map(|cell| (cell + 1).to_string()).collect();
+        for chunk in numbers.chunks(15) {
+            line!("{}", chunk.join(", "));
+        }
+    }
+    for (name, nodes) in mesh.node_groups() {
+        line!("*NSET, NSET=\"{name}\"");
+        let numbers: Vec<String> = nodes.iter().map(|node| (node + 1).to_string()).collect();
         for chunk in numbers.chunks(15) {
             line!("{}", chunk.join(", "));
         }

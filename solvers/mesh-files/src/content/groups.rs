@@ -1,12 +1,13 @@
-//! Cells in several groups, and the parts of a file that are not in the mesh.
+//! Cells in several groups, groups of nodes, and the parts of a file that are not in the mesh.
 
 use std::collections::{BTreeMap, HashMap, HashSet};
 
 use super::Content;
-use crate::error::{Parsed, Place};
+use crate::error::{Parsed, Place, Problem};
 use crate::left_out::{Kind, LeftOut};
 use crate::middles;
 use crate::overlap::Cells;
+use crate::rows::Row;
 
 impl Content {
     /// Allows a cell to be listed once for each of its regions.
@@ -24,6 +25,17 @@ impl Content {
         if !cells.is_empty() {
             let region = self.region(place, name)?;
             self.also.extend(cells.iter().map(|&cell| (cell, region)));
+        }
+        Ok(())
+    }
+
+    /// Adds the nodes of a point or a line to a named group of nodes.
+    pub(crate) fn curve(&mut self, row: Row, name: &str, list: &[u64]) -> Parsed<()> {
+        for &number in list {
+            let Some(node) = self.node_of(number) else {
+                return Err((row.place, Problem::UnknownNode { element: row.tag, node: number }));
+            };
+            self.curves.entry(name.into()).or_default().push(node);
         }
         Ok(())
     }

@@ -1,4 +1,4 @@
-//! Physical groups of Gmsh: their names, and their conversion to regions and facet groups.
+//! Physical groups of Gmsh: their names, and their conversion to regions and groups of facets and nodes.
 
 use std::collections::HashMap;
 
@@ -39,6 +39,13 @@ impl Names {
             Some(name) => content.region(place, name),
             None => content.region(place, &format!("region-{tag}")),
         }
+    }
+
+    /// Name of the group of nodes of a physical tag of points (`dimension` 0) or curves (1); a tag without a
+    /// name gives "point-TAG" or "curve-TAG".
+    pub(super) fn curve(&self, dimension: u64, tag: u64) -> String {
+        let kind = if dimension == 0 { "point" } else { "curve" };
+        self.0.get(&(dimension, tag)).cloned().unwrap_or_else(|| format!("{kind}-{tag}"))
     }
 
     /// Index of the facet group of a surface's physical tag; a tag without a name gives "surface-TAG".

@@ -13,8 +13,8 @@ pub(crate) enum Element {
         corners: usize,
         nodes: usize,
     },
-    /// A point or line, which is skipped.
-    Ignored {
+    /// A point or line, whose nodes may belong to a named group.
+    Curve {
         nodes: usize,
     },
 }
@@ -27,9 +27,9 @@ pub(super) fn element(kind: u64) -> Option<Element> {
         return Some(Element::Face { corners: face.corner_count(), nodes: face.node_count() });
     }
     Some(match kind {
-        1 => Element::Ignored { nodes: 2 },
-        8 => Element::Ignored { nodes: 3 },
-        15 => Element::Ignored { nodes: 1 },
+        1 => Element::Curve { nodes: 2 },
+        8 => Element::Curve { nodes: 3 },
+        15 => Element::Curve { nodes: 1 },
         _ => return None,
     })
 }
@@ -47,15 +47,15 @@ impl Element {
         match self {
             Element::Cell(_) => 3,
             Element::Face { .. } => 2,
-            Element::Ignored { nodes: 1 } => 0,
-            Element::Ignored { .. } => 1,
+            Element::Curve { nodes: 1 } => 0,
+            Element::Curve { .. } => 1,
         }
     }
 
     pub(super) fn node_count(self) -> usize {
         match self {
             Element::Cell(kind) => kind.node_count(),
-            Element::Face { nodes, .. } | Element::Ignored { nodes } => nodes,
+            Element::Face { nodes, .. } | Element::Curve { nodes } => nodes,
         }
     }
 }

@@ -156,6 +156,12 @@ pub(super) fn add(
             let groups: Vec<usize> = named.map(|&group| names.group(content, group)).collect();
             content.face(row, &groups, list, corners)
         }
-        Element::Face { .. } | Element::Ignored { .. } => content.element(row, list),
+        Element::Curve { .. } => {
+            for &group in groups.iter().filter(|&&group| group != 0) {
+                content.curve(row, &names.curve(element.dimension().unsigned_abs(), group), list)?;
+            }
+            content.element(row, list)
+        }
+        Element::Face { .. } => content.element(row, list),
     }
 }

@@ -8,7 +8,7 @@ use super::error::TimeError;
 use super::problem::{Motion, TimeParams, TimePath, TimeProblem, TimeStep};
 use super::scheme::{Scheme, Update};
 use crate::nonlinear::{
-    Attempt, Descent, Ended, InertiaTerms, Memory, Newton, Scales, State, Step, Stepper, TimeTerms, near,
+    Attempt, Descent, Ended, InertiaTerms, Memory, Newton, Rate, State, Step, Stepper, TimeTerms, near,
     shortest_travel,
 };
 
@@ -31,9 +31,9 @@ pub fn solve_in_time(
         observe(&done, &march.motion, &march.state.pressure);
         steps.push(done);
     }
-    let mut stepper = Stepper::new(params.end, params.steps, params.smallest);
-    // The peak speed of a smooth ramp is less than twice that of a linear ramp.
-    let shortest = shortest_travel(problem.body) * problem.ramps.tools.over().unwrap_or(params.end);
+    let mut stepper = Stepper::new(params.end, params.steps, params.smallest, problem.body.curves.points());
+    // The peak speed of a smooth curve is less than twice its mean speed.
+    let shortest = shortest_travel(problem.body);
     while let Some(attempt) = stepper.attempt() {
         match march.step(attempt) {
             Ok(mut done) => {
@@ -113,8 +113,8 @@ impl<'a> March<'a> {
             march.start_moving()?;
             return Ok((march, None));
         }
-        let Scales { loads, supports, tools } = march.scales(0.0);
-        let loaded = loads > 0.0 || supports > 0.0 || tools > 0.0;
+        // Dampers resist every sudden motion, so their body starts from rest.
+        let loaded = problem.body.curves.act_at(0.0) && !march.has_dampers();
         let at_once = Attempt { time: 0.0, length: 0.0, output: None };
         let first = if loaded { Some(march.step(at_once)?) } else { None };
         march.before = None;
@@ -130,23 +130,30 @@ impl<'a> March<'a> {
         if !inertia.velocity.is_empty() {
             self.motion.v.copy_from_slice(inertia.velocity);
         }
-        let ramp = self.problem.ramps.supports.derivatives(0.0);
-        for (dof, value) in self.newton.prescribed().iter().enumerate() {
-            if let Some(value) = value {
-                let (i, axis) = (dof / 3, dof % 3);
-                self.state.u[i][axis] = value * ramp[0];
-                self.motion.v[i][axis] = value * ramp[1];
-                self.motion.a[i][axis] = value * ramp[2];
+        let prescribed = self.newton.prescribed_at(0.0);
+        for (i, u) in self.state.u.iter_mut().enumerate() {
+            for axis in 0..3 {
+                if let Some([value, speed, acceleration]) = prescribed(3 * i + axis) {
+                    u[axis] = value;
+                    self.motion.v[i][axis] = speed;
+                    self.motion.a[i][axis] = acceleration;
+                }
             }
         }
-        let scales = self.scales(0.0);
-        for (closure, driven) in self.state.closures.iter_mut().zip(self.problem.body.tools) {
+        drop(prescribed);
+        let body = self.problem.body;
+        for (k, (closure, driven)) in self.state.closures.iter_mut().zip(body.tools).enumerate() {
             if let Drive::Closure(full) = driven.drive {
-                *closure = full * scales.tools;
+                *closure = full * body.curves.tools.of(k).value(0.0);
             }
         }
         let relaxing = self.memory.as_ref().map(|m| m.relaxing(0.0));
-        self.newton.set_terms(TimeTerms { scales, inertia: None, relaxing });
+        let rate = self.has_dampers().then(|| Rate {
+            factor: 0.0,
+            from: self.state.u.clone(),
+            still: self.motion.v.clone(),
+        });
+        self.newton.set_terms(TimeTerms { inertia: None, relaxing, rate });
         let (forces, strain) = self.newton.forces_at(&self.state)?;
         let damping = inertia.mass.times(&self.motion.v);
         let force: Vec<Vector3> = (0..self.state.u.len())
@@ -167,20 +174,13 @@ impl<'a> March<'a> {
         Ok(())
     }
 
-    fn scales(&self, time: f64) -> Scales {
-        let ramps = self.problem.ramps;
-        Scales {
-            loads: ramps.loads.value(time),
-            supports: ramps.supports.value(time),
-            tools: ramps.tools.value(time),
-        }
-    }
-
     /// Takes a step; a failure leaves the state unchanged.
     fn step(&mut self, Attempt { time, length: dt, output }: Attempt) -> Result<TimeStep, TimeError> {
         let relaxing = self.memory.as_ref().map(|m| m.relaxing(dt));
         let inertia = self.problem.inertia.map(|i| self.inertia(time, self.scheme.over(dt), i.damping));
-        self.newton.set_terms(TimeTerms { scales: self.scales(time), inertia, relaxing });
+        let rate = self.has_dampers().then(|| self.rate(time, dt));
+        let moving = rate.clone().filter(|_| self.problem.inertia.is_none());
+        self.newton.set_terms(TimeTerms { inertia, relaxing, rate });
         let before = self.before.as_ref();
         let augmentations = self.params.augmentations;
         let mut to = |descent| self.newton.step(&self.state, before, time, augmentations, descent);
@@ -191,6 +191,9 @@ impl<'a> March<'a> {
             self.newton.check_overlap(&state, &step, ends)?;
         }
         let mut motion = self.motion_at(time, dt, &state.u);
+        if let Some(rate) = moving {
+            motion.v = rate.velocities(&state.u, self.newton.prescribed());
+        }
         let mut error = 0.0f64;
         if self.problem.inertia.is_some() {
             let update = self.scheme.over(dt);
@@ -214,16 +217,18 @@ impl<'a> March<'a> {
 
     /// Sets value, velocity or acceleration (`order` 0, 1, 2) of constrained degrees of freedom at `time`.
     fn prescribe(&self, field: &mut [Vector3], time: f64, order: usize) {
-        let part = self.problem.ramps.supports.derivatives(time)[order];
-        for (dof, value) in self.newton.prescribed().iter().enumerate() {
-            if let Some(value) = value {
-                field[dof / 3][dof % 3] = value * part;
+        let prescribed = self.newton.prescribed_at(time);
+        for (i, value) in field.iter_mut().enumerate() {
+            for axis in 0..3 {
+                if let Some(each) = prescribed(3 * i + axis) {
+                    value[axis] = each[order];
+                }
             }
         }
     }
 
     /// Returns velocities and accelerations for the displacement `u` at `time`. Constrained degrees of
-    /// freedom take the values of the ramp.
+    /// freedom take their prescribed values.
     fn motion_at(&self, time: f64, dt: f64, u: &[Vector3]) -> Motion {
         let Motion { u: from, v, a, .. } = &self.motion;
         let zeros = || vec![Vector3::zeros(); u.len()];
@@ -254,6 +259,30 @@ impl<'a> March<'a> {
         // The acceleration at the end of the last step makes the guess exact for a body in free fall.
         let guess = (0..u.len()).map(|i| u[i] + (v[i] + a[i] * (0.5 * dt)) * dt).collect();
         InertiaTerms { factor: update.factor(damping), from: u.clone(), settled, carried, guess }
+    }
+
+    fn has_dampers(&self) -> bool {
+        self.problem.body.penalties.iter().any(|surface| surface.damping > 0.0)
+    }
+
+    /// Returns the velocities at the end of the step of length `dt` to `time`: those of the scheme, or backward
+    /// differences without inertia. A step of no length, to a body that is loaded at once, has none.
+    fn rate(&self, time: f64, dt: f64) -> Rate {
+        let from = self.state.u.clone();
+        let mut still = self.motion_at(time, dt, &from).v;
+        if self.problem.inertia.is_some() {
+            return Rate { factor: self.scheme.over(dt).velocity_factor(), from, still };
+        }
+        let factor = if dt > 0.0 { 1.0 / dt } else { 0.0 };
+        let prescribed = self.newton.prescribed_at(time);
+        for (i, still) in still.iter_mut().enumerate() {
+            for axis in 0..3 {
+                if let Some([value, ..]) = prescribed(3 * i + axis) {
+                    still[axis] = (value - from[i][axis]) * factor;
+                }
+            }
+        }
+        Rate { factor, from, still }
     }
 
     /// Returns the reaction forces at constrained degrees of freedom; zero at free degrees of freedom.

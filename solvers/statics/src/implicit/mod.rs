@@ -6,7 +6,6 @@ mod error;
 mod march;
 mod mass;
 mod problem;
-mod ramp;
 mod scheme;
 
 pub use energy::Energy;
@@ -14,4 +13,3 @@ pub use error::TimeError;
 pub use march::solve_in_time;
 pub use mass::Mass;
 pub use problem::{Inertia, Motion, TimeParams, TimePath, TimeProblem, TimeStep};
-pub use ramp::{Ramp, Ramps};

@@ -7,16 +7,13 @@ use shape::Vector3;
 use super::energy::Energy;
 use super::error::TimeError;
 use super::mass::Mass;
-use super::ramp::Ramps;
 use crate::nonlinear::{NewtonParams, StaticProblem, StaticWork, Step};
 
-/// A body whose loads, supports and tools follow functions of physical time.
+/// A body whose loads, supports and tools follow curves over physical time.
 #[derive(Clone, Debug)]
 pub struct TimeProblem<'a> {
     /// The body with full loads, prescribed displacements and tools.
     pub body: &'a StaticProblem<'a>,
-    /// Time functions of loads, supports and tools.
-    pub ramps: Ramps,
     /// Mass and initial state; `None` for a quasi-static motion.
     pub inertia: Option<Inertia<'a>>,
     /// Relaxation of the deviatoric stress of each law; empty for an elastic body.
@@ -123,12 +120,6 @@ impl TimeProblem<'_> {
         if let Some(value) = params.accuracy.filter(|a| !(*a > 0.0)) {
             return refuse("the accuracy", value, "it must be positive");
         }
-        let Ramps { loads, supports, tools } = self.ramps;
-        for over in [loads, supports, tools].into_iter().filter_map(super::Ramp::over) {
-            if !(over > 0.0) {
-                return refuse("the duration of a ramp", over, "it must be positive");
-            }
-        }
         let laws = self.body.solid.laws.len();
         if !self.relaxation.is_empty() && self.relaxation.len() != laws {
             let value = self.relaxation.len() as f64;
@@ -138,12 +129,13 @@ impl TimeProblem<'_> {
         if !(inertia.damping >= 0.0 && inertia.damping.is_finite()) {
             return refuse("the damping", inertia.damping, "it must not be negative");
         }
-        let jump = self.body.fixed.iter().find(|f| f.value != 0.0);
-        if let (None, Some(jump)) = (supports.over(), jump) {
+        let at_start = |index: usize| self.body.curves.fixed.of(index).value(0.0);
+        let fixed = self.body.fixed.iter().enumerate();
+        if let Some((_, jump)) = fixed.into_iter().find(|(i, f)| f.value * at_start(*i) != 0.0) {
             return refuse(
-                "the displacement of a support without a ramp",
+                "the displacement of a support at the start",
                 jump.value,
-                "a body with mass needs a ramp",
+                "a body with mass needs a curve that starts at 0",
             );
         }
         let nodes = self.body.nodes.len();

@@ -72,6 +72,11 @@ impl Update {
         (1.0 - alpha_m) / ((1.0 - alpha_f) * beta * self.dt * self.dt) + damping * gamma / (beta * self.dt)
     }
 
+    /// Returns `dv_n+1 / du_n+1`, 1/s.
+    pub fn velocity_factor(&self) -> f64 {
+        self.scheme.gamma / (self.scheme.beta * self.dt)
+    }
+
     /// Returns the norm of the local error of `u_n+1`, m: the third-order term of the Taylor series that the
     /// step lacks, `(beta - 1/6) dt^2 (a_n+1 - a_n)`. Source: Zienkiewicz and Xie, Earthquake Eng. Struct.
     /// Dyn. 20 (1991) 871-887.

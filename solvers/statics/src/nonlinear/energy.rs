@@ -25,6 +25,13 @@ pub(crate) struct Internal {
     pub smallest: (usize, f64),
 }
 
+/// First derivatives and energy (J) of every point; see [`Internal`].
+struct ByPoint {
+    stress: Vec<Matrix3>,
+    misfit: Vec<f64>,
+    energy: Vec<f64>,
+}
+
 /// Second derivatives of the energy.
 pub(crate) struct Hessian {
     /// Per point (9, 9), J: `w d2/dF2` including all terms local to the point.
@@ -36,6 +43,20 @@ pub(crate) struct Hessian {
 }
 
 impl Solid<'_> {
+    /// Returns the strain energy at each quadrature point, J, at nodal parameters `u` (m) and pressures `p` (Pa);
+    /// with a pressure field, the part of the saddle-point functional. That of hourglass control is contained.
+    ///
+    /// # Errors
+    /// A point is inverted, or its dilation has no solution.
+    pub fn energies(&self, u: &[Vector3], p: &[f64]) -> Result<Vec<f64>, StaticError> {
+        let mut energies = self.by_point(self.pairs().as_ref(), p, &self.kinematics(u)?)?.energy;
+        let moduli = |q: usize| [self.law(q).lambda(), self.law(q).mu()];
+        for (energy, control) in energies.iter_mut().zip(self.volume.hourglass_energies(moduli, u)) {
+            *energy += control;
+        }
+        Ok(energies)
+    }
+
     /// Computes energy and stresses at nodal parameters `u` (m) and pressures `p` (Pa).
     pub(crate) fn internal(
         &self,
@@ -44,7 +65,18 @@ impl Solid<'_> {
         p: &[f64],
     ) -> Result<Internal, StaticError> {
         let kinematics = self.kinematics(u)?;
-        let Kinematics { H, j_minus_1, smallest } = &kinematics;
+        let ByPoint { stress, misfit, energy } = self.by_point(pairs, p, &kinematics)?;
+        Ok(Internal { stress, misfit, energy: energy.iter().sum(), smallest: kinematics.smallest })
+    }
+
+    /// Computes energy and stresses of every point.
+    fn by_point(
+        &self,
+        pairs: Option<&Pairs>,
+        p: &[f64],
+        kinematics: &Kinematics,
+    ) -> Result<ByPoint, StaticError> {
+        let Kinematics { H, j_minus_1, .. } = kinematics;
         let weights = self.volume.weights();
         let points = 0..weights.len();
         let mut misfit = Vec::new();
@@ -58,7 +90,7 @@ impl Solid<'_> {
                 })
                 .unzip(),
             SolidDilation::Groups(groups) => {
-                Shared::new(self, groups, pairs.expect("groups have pairs"), &kinematics)?.stress()
+                Shared::new(self, groups, pairs.expect("groups have pairs"), kinematics)?.stress()
             }
             SolidDilation::Mixed(rows) => {
                 let p = self.pressures(rows, p);
@@ -79,7 +111,7 @@ impl Solid<'_> {
                 each.into_iter().map(|e| (e.0, e.1)).unzip()
             }
         };
-        Ok(Internal { stress, misfit, energy: energy.iter().sum(), smallest: *smallest })
+        Ok(ByPoint { stress, misfit, energy })
     }
 
     /// Computes second derivatives at nodal parameters `u` (m) and pressures `p` (Pa).

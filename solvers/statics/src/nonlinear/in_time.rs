@@ -1,32 +1,18 @@
-//! Terms that implicit dynamics adds to the balance of forces: separate scales of loads, supports and tools,
-//! inertia and relaxation.
+//! Terms that implicit dynamics adds to the balance of forces: inertia and relaxation.
 
 use shape::{Matrix3, Vector3};
 
+use super::penalty::Rate;
 use super::relaxing::Relaxing;
 use super::system::SurfaceTable;
-
-/// Fractions of the full values at the end of a step.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Scales {
-    pub loads: f64,
-    pub supports: f64,
-    pub tools: f64,
-}
-
-impl Scales {
-    /// Uses one fraction for everything.
-    pub fn all(scale: f64) -> Scales {
-        Scales { loads: scale, supports: scale, tools: scale }
-    }
-}
 
 /// Terms added by a time step.
 #[derive(Clone, Debug)]
 pub(crate) struct TimeTerms {
-    pub scales: Scales,
     pub inertia: Option<InertiaTerms>,
     pub relaxing: Option<Relaxing>,
+    /// Velocities at the end of the step, for dampers; `None` without dampers.
+    pub rate: Option<Rate>,
 }
 
 /// Inertia and damping of one step of an implicit scheme: the force `carried - M r`. In free degrees of
@@ -48,7 +34,7 @@ pub(crate) struct InertiaTerms {
 /// Nodal forces at the end of a step, N, and the relaxing stresses.
 #[derive(Clone, Debug)]
 pub(crate) struct Ended {
-    /// Forces of loads, of surfaces constrained by penalty and of contact.
+    /// Forces of loads, of surfaces constrained by penalty or on springs and dampers, and of contact.
     pub external: Vec<Vector3>,
     pub internal: Vec<Vector3>,
     /// Instantaneous deviatoric stress of each point, Pa, to which the Prony series applies; empty for an

@@ -1,6 +1,7 @@
 //! Bodies under large displacements: internal energy with projected volume change, and equilibrium by
 //! Newton's method.
 
+mod curves;
 mod energy;
 mod error;
 mod following;
@@ -10,6 +11,7 @@ mod groups;
 mod in_time;
 mod lanes;
 mod newton;
+mod penalty;
 mod problem;
 mod relaxing;
 mod shared;
@@ -23,17 +25,20 @@ mod system;
 #[cfg(test)]
 mod tests;
 
-pub(crate) use in_time::{Ended, InertiaTerms, Scales, TimeTerms};
+pub(crate) use in_time::{Ended, InertiaTerms, TimeTerms};
 pub(crate) use newton::{Descent, Newton, State, near, shortest_travel};
+pub(crate) use penalty::Rate;
 pub(crate) use relaxing::Memory;
 pub(crate) use stepper::{Attempt, Stepper};
 pub(crate) use system::SurfaceTable;
 
+pub use curves::{Curves, Timing};
 pub use error::{Inverted, StaticError, Worst};
 pub use following::FollowingPressure;
 pub use frames::Frames;
 pub use newton::{Iteration, NewtonParams};
-pub use problem::{LinearSystems, PenaltySurface, StaticProblem};
-pub use solid::{Solid, SolidDilation};
+pub use penalty::PenaltySurface;
+pub use problem::{LinearSystems, StaticProblem};
+pub use solid::{Active, Solid, SolidDilation};
 pub use statics::{Rest, StaticParams, StaticPath, solve_static};
 pub use step::{StaticWork, Step};

@@ -1,24 +1,13 @@
 //! A body with loads, supports and tools.
 
 use contact::{ContactSurface, DrivenTool};
-use shape::{Coarser, FixedDof, Point3, SurfaceRows, Vector3};
+use shape::{Coarser, FixedDof, Point3};
 
+use super::curves::Curves;
 use super::following::FollowingPressure;
+use super::penalty::PenaltySurface;
 use super::solid::Solid;
 use crate::load::Load;
-
-/// A surface constrained by a penalty, for bases whose parameters are not displacements.
-#[derive(Clone, Debug)]
-pub struct PenaltySurface<'a> {
-    /// Shape values and weights at the surface points.
-    pub surface: &'a SurfaceRows,
-    /// Constrained axes x, y, z.
-    pub axes: [bool; 3],
-    /// Prescribed displacement at each point at the end of the loading, m.
-    pub values: Vec<Vector3>,
-    /// Penalty, Pa/m.
-    pub beta: f64,
-}
 
 /// Solver of the linear systems of Newton's method.
 #[derive(Clone, Copy, Debug, Default)]
@@ -34,8 +23,7 @@ pub enum LinearSystems<'a> {
     },
 }
 
-/// A body with loads, supports and tools. Loads, pressures, prescribed displacements and drives grow in
-/// proportion to the time, 0 to 1.
+/// A body with loads, supports and tools.
 #[derive(Clone, Debug)]
 pub struct StaticProblem<'a> {
     /// Reference positions, m.
@@ -48,12 +36,14 @@ pub struct StaticProblem<'a> {
     pub following: &'a [FollowingPressure],
     /// Prescribed nodal parameters.
     pub fixed: &'a [FixedDof],
-    /// Surfaces constrained by penalty.
+    /// Surfaces constrained by penalty, and surfaces on springs and dampers.
     pub penalties: &'a [PenaltySurface<'a>],
     /// Surface on which tools may touch the body.
     pub contact: Option<&'a ContactSurface<'a>>,
     /// The tools.
     pub tools: &'a [DrivenTool<'a>],
+    /// Curves of all of these over time.
+    pub curves: Curves<'a>,
     /// Solver of the linear systems.
     pub systems: LinearSystems<'a>,
 }

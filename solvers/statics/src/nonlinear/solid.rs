@@ -6,6 +6,7 @@ use material::{AtPoint, Law, Material};
 use rayon::prelude::*;
 use shape::{DilationGroups, Matrix3, Rows, Vector3, VolumeRows};
 
+use super::curves::Timing;
 use super::error::{Inverted, StaticError};
 use super::groups::Pairs;
 use super::split::dilation_at_pressure;
@@ -23,6 +24,27 @@ pub enum SolidDilation<'a> {
     Mixed(&'a Rows),
 }
 
+/// Active stress along the fibre by region.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Active<'a> {
+    /// Full stress, Pa; empty if no region contracts.
+    pub full: &'a [f64],
+    /// Curves by region and the time at which they are read; `None` for the full stress.
+    pub(crate) at: Option<(&'a Timing<'a>, f64)>,
+}
+
+impl<'a> Active<'a> {
+    /// Uses the stresses `full`, Pa, by region.
+    pub fn new(full: &'a [f64]) -> Active<'a> {
+        Active { full, at: None }
+    }
+
+    fn of(&self, region: usize) -> Option<f64> {
+        let full = self.full.get(region)?;
+        Some(self.at.map_or(*full, |(timing, time)| full * timing.of(region).value(time)))
+    }
+}
+
 /// A quadrature with laws, from which internal forces follow.
 #[derive(Clone, Copy, Debug)]
 pub struct Solid<'a> {
@@ -35,10 +57,8 @@ pub struct Solid<'a> {
     /// Axes of the material at each point, as columns: fibre, sheet and normal directions. Empty if no law
     /// depends on directions.
     pub axes: &'a [Matrix3],
-    /// Active stress along the fibre by region at the end of the loading, Pa; empty if no region contracts.
-    pub active: &'a [f64],
-    /// Fraction of the active stress that acts; loads and active stress grow together.
-    pub activation: f64,
+    /// Active stress along the fibre.
+    pub active: Active<'a>,
     /// Projection of the volume change.
     pub dilation: SolidDilation<'a>,
 }
@@ -55,8 +75,8 @@ impl Solid<'_> {
     pub(crate) fn law(&self, q: usize) -> AtPoint<'_> {
         let region = self.region.get(q).copied().unwrap_or(0) as usize;
         let law = AtPoint::new(&self.laws[region], self.axes.get(q));
-        match self.active.get(region) {
-            Some(active) => law.contracting(active * self.activation),
+        match self.active.of(region) {
+            Some(active) => law.contracting(active),
             None => law,
         }
     }

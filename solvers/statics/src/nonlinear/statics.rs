@@ -88,13 +88,14 @@ pub fn solve_static(
     }
     let mut before: Option<State> = None;
     let (mut steps, mut failure) = (Vec::new(), None);
-    let mut stepper = Stepper::new(1.0, params.steps, params.smallest);
+    let mut stepper = Stepper::new(1.0, params.steps, params.smallest, problem.curves.points());
     let shortest = shortest_travel(problem);
     // At least a step that can still be halved once: a step that cannot be halved has to accept any
     // equilibrium.
     let finest = 2.0 * stepper.smallest;
     let mut within = params.limit_within.map(|within| within.max(finest));
     let mut near_limit = false;
+    let is_curved = !problem.curves.points().is_empty();
     while let Some(attempt) = stepper.attempt() {
         // The displacement so far gives the best guess. Without a converged step, or if the guess inverts a
         // point, the last state is the guess.
@@ -127,6 +128,10 @@ pub fn solve_static(
                 observe(&done, Rest { u, pressure, reaction: newton.reaction() });
                 steps.push(done);
                 before = Some(std::mem::replace(&mut state, reached));
+                // Where all curves return to zero there is no other scale.
+                if is_curved {
+                    newton.keep_scale();
+                }
                 stepper.accept(attempt, if grows { 2.0 } else { 1.0 });
             }
             Err(cause) => {

@@ -1,6 +1,9 @@
 //! Lengths of steps: equal output intervals, shorter steps after failures, and longer steps after quick
 //! steps.
 
+/// Part of an output interval within which two times are the same.
+const NEAR: f64 = 1e-9;
+
 /// State of the stepping from 0 to an end.
 pub(crate) struct Stepper {
     intervals: usize,
@@ -8,6 +11,8 @@ pub(crate) struct Stepper {
     longest: f64,
     /// Shortest step.
     pub smallest: f64,
+    /// Times between outputs at which a step ends too: a step across them would not see the points of a curve.
+    stops: Vec<f64>,
     /// Number of the next output.
     next: usize,
     /// Length of the next step.
@@ -31,11 +36,12 @@ pub(crate) struct Attempt {
 
 impl Stepper {
     /// Starts at 0. The end is divided into `intervals`, of which steps are at least the part `smallest`.
-    pub fn new(end: f64, intervals: usize, smallest: f64) -> Stepper {
+    /// Steps also end at the times `stops`, in order.
+    pub fn new(end: f64, intervals: usize, smallest: f64, stops: Vec<f64>) -> Stepper {
         let intervals = intervals.max(1);
         let longest = end / intervals as f64;
         let smallest = smallest * longest;
-        Stepper { intervals, longest, smallest, next: 1, step: longest, time: 0.0, cut_back: 0 }
+        Stepper { intervals, longest, smallest, stops, next: 1, step: longest, time: 0.0, cut_back: 0 }
     }
 
     /// Returns the next step to try; `None` at the end.
@@ -43,11 +49,14 @@ impl Stepper {
         if self.next > self.intervals {
             return None;
         }
-        let target = self.next as f64 * self.longest;
+        let output = self.next as f64 * self.longest;
+        let near = NEAR * self.longest;
+        let stop = self.stops.iter().copied().find(|stop| *stop > self.time + near && *stop < output - near);
+        let target = stop.unwrap_or(output);
         // Avoids a last step shorter than a tenth of the current step.
         let reaches = self.step > 0.9 * (target - self.time);
         let time = if reaches { target } else { self.time + self.step };
-        let output = reaches.then_some(self.next == self.intervals);
+        let output = (reaches && stop.is_none()).then_some(self.next == self.intervals);
         Some(Attempt { time, length: time - self.time, output })
     }
 

@@ -69,6 +69,29 @@ impl SurfaceTable {
             .collect()
     }
 
+    /// Returns the nodal forces (N) of springs to the ground with the weights (N/m) as stiffness, at
+    /// displacements `u` (m), and their energy, J.
+    pub fn spring_forces(&self, u: &[Vector3]) -> (Vec<Vector3>, f64) {
+        let at = self.displacement(u);
+        let energy = at.iter().zip(&self.weights).map(|(at, w)| 0.5 * w * at.norm_squared()).sum();
+        let mut force = vec![Vector3::zeros(); u.len()];
+        self.add_force(&at, &mut force);
+        (force, energy)
+    }
+
+    /// Adds the stiffness of these springs to row `i` of the lower triangle of a matrix.
+    pub fn add_springs(&self, i: usize, slot: &[u32], row: &mut [Matrix3]) {
+        for &(q, k) in self.of_node.of(i) {
+            let (q, k) = (q as usize, k as usize);
+            let stiffness = self.weights[q] * self.rows.data[k];
+            for j in self.rows.offsets[q]..=k {
+                let entry = stiffness * self.rows.data[j];
+                let block = &mut row[slot[self.rows.nodes[j] as usize] as usize];
+                (0..3).for_each(|a| block[(a, a)] += entry);
+            }
+        }
+    }
+
     /// Adds the nodal forces `sum_q w N t` of a traction to `force`.
     pub fn add_force(&self, traction: &[Vector3], force: &mut [Vector3]) {
         force.par_iter_mut().with_min_len(64).enumerate().for_each(|(i, force)| {
@@ -109,6 +132,8 @@ pub(crate) struct System<'a> {
     /// For each pressure node, its pairs (point, value).
     pressure_of: Vec<Vec<(u32, f64)>>,
     pub surfaces: Vec<SurfaceTable>,
+    /// Springs of hourglass control, whose nodes at each point are those of the solid's points.
+    pub springs: Option<SurfaceTable>,
     following: &'a [FollowingPressure],
     /// The last assembled tangent of the displacements.
     pub stiffness: Stiffness,
@@ -173,6 +198,7 @@ impl<'a> System<'a> {
             groups_of,
             pressure_of,
             surfaces,
+            springs: None,
             following,
             stiffness,
             place,
@@ -210,7 +236,8 @@ impl<'a> System<'a> {
     /// symmetric part of the stiffness of the surfaces. Point `q` of surface `s` adds `N_I N_J D` to the
     /// block of the nodes I and J, with the symmetric part `D` of `surface.blocks[s][q]`.
     pub fn assemble(&mut self, hessian: &Hessian, surface: &SurfaceStiffness) {
-        let System { pairs, points, points_of, groups_of, surfaces, following, stiffness, .. } = self;
+        let System { pairs, points, points_of, groups_of, surfaces, springs, following, stiffness, .. } =
+            self;
         let groups = pairs.as_ref().map(Pairs::connectivity).zip(groups_of.as_ref());
         let path = LanePath::best();
         let gather = |seen: &[(u32, u32)], slot: &[u32], sums: &mut [BlockSum]| {
@@ -224,6 +251,9 @@ impl<'a> System<'a> {
             }
             for (block, sum) in row.iter_mut().zip(sums) {
                 *block = std::mem::replace(sum, BlockSum::ZERO).block();
+            }
+            if let Some(springs) = &*springs {
+                springs.add_springs(i, slot, row);
             }
             for (table, blocks) in surfaces.iter().zip(&surface.blocks) {
                 for &(q, k) in table.of_node.of(i) {

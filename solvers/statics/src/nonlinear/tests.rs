@@ -10,7 +10,7 @@ use shape::{DilationGroups, Matrix3, Point3, Rows, Vector3, VolumeRows};
 
 use super::lanes::GroupRow;
 use super::shared::Shared;
-use super::solid::{Solid, SolidDilation};
+use super::solid::{Active, Solid, SolidDilation};
 use super::system::{SurfaceStiffness, System};
 
 const YOUNG: f64 = 20e3;
@@ -174,8 +174,7 @@ fn forces_and_tangent_are_derivatives_of_the_energy() {
                 laws: &laws,
                 region: &[],
                 axes: &[],
-                active: &[],
-                activation: 1.0,
+                active: Active::default(),
                 dilation,
             };
             let nodes = solid.node_count();
@@ -230,6 +229,47 @@ fn forces_and_tangent_are_derivatives_of_the_energy() {
     }
 }
 
+/// Hourglass control adds the forces and the energy of the table itself, and a constant tangent.
+#[test]
+fn hourglass_control_is_the_derivative_of_its_energy() {
+    let jitter = Some(Jitter { fraction: 0.2, seed: 7 });
+    let max = Point3::new(2.0, 1.0, 1.0);
+    let mesh = box_mesh(CellKind::Hex8, Point3::origin(), max, [2, 1, 1], [1.0; 3], jitter).unwrap();
+    let volume = fem::uniform_rows(&mesh, 0.05, shape::HourglassModulus::PWave).unwrap();
+    let modulus = |q: usize| [2e3 + 1e3 * q as f64, 500.0];
+    let springs = crate::hourglass::springs(&volume, modulus).unwrap();
+    let u = field(mesh.points().len(), 0.03);
+    let (forces, energy) = springs.spring_forces(&u);
+    let mut plain = vec![Vector3::zeros(); u.len()];
+    volume.add_hourglass_forces(modulus, &u, &mut plain);
+    let size = |f: &[Vector3]| f.iter().map(Vector3::norm).fold(0.0, f64::max);
+    let gap: Vec<Vector3> = forces.iter().zip(&plain).map(|(a, b)| a - b).collect();
+    assert!(energy > 0.1 && (energy / volume.hourglass_energy(modulus, &u) - 1.0).abs() < 1e-13);
+    assert!(size(&gap) < 1e-13 * size(&plain));
+    // A quadratic energy is half the work of its forces.
+    let work: f64 = forces.iter().zip(&u).map(|(f, u)| f.dot(u)).sum();
+    assert!((0.5 * work / energy - 1.0).abs() < 1e-13);
+
+    let law = [laws().swap_remove(0)];
+    let solid = Solid {
+        volume: &volume,
+        laws: &law,
+        region: &[],
+        axes: &[],
+        active: Active::default(),
+        dilation: SolidDilation::Standard,
+    };
+    let mut system = System::new(solid, &vec![false; 3 * u.len()], Vec::new(), &[]);
+    let hessian = solid.hessian(None, &u, &[]).unwrap();
+    system.assemble(&hessian, &SurfaceStiffness::default());
+    let without = system.stiffness.multiply(&u);
+    system.springs = Some(springs);
+    system.assemble(&hessian, &SurfaceStiffness::default());
+    let with = system.stiffness.multiply(&u);
+    let gap: Vec<Vector3> = with.iter().zip(&without).zip(&forces).map(|((w, o), f)| w - o - f).collect();
+    assert!(size(&gap) < 1e-13 * size(&with), "{:e}", size(&gap) / size(&with));
+}
+
 #[test]
 fn tangent_is_the_weak_form() {
     let case = case();
@@ -240,8 +280,7 @@ fn tangent_is_the_weak_form() {
             laws: &laws,
             region: &[],
             axes: &[],
-            active: &[],
-            activation: 1.0,
+            active: Active::default(),
             dilation: SolidDilation::Standard,
         };
         let nodes = solid.node_count();
@@ -278,8 +317,7 @@ fn laws_that_part_give_what_pairs_give() {
                 laws: &laws,
                 region: &[],
                 axes: &[],
-                active: &[],
-                activation: 1.0,
+                active: Active::default(),
                 dilation,
             };
             let pairs = solid.pairs().unwrap();
@@ -329,8 +367,7 @@ fn a_group_turned_inside_out_is_refused_with_its_volume_change() {
         laws: &law,
         region: &[],
         axes: &[],
-        active: &[],
-        activation: 1.0,
+        active: Active::default(),
         dilation: SolidDilation::Groups(&groups),
     };
     let mut j_minus_1 = vec![0.0; count];

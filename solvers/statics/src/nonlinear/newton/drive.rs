@@ -81,9 +81,9 @@ impl Newton<'_> {
         descent: Descent,
     ) -> Option<(State, Step)> {
         let tools = self.equations.problem.tools;
-        let forces: Vec<f64> = (tools.iter())
-            .map(|t| match t.drive {
-                Drive::Force(full) => full * self.equations.scales(time).tools,
+        let forces: Vec<f64> = (tools.iter().enumerate())
+            .map(|(k, t)| match t.drive {
+                Drive::Force(full) => full * self.equations.part(k, time),
                 Drive::Closure(_) => 0.0,
             })
             .collect();

@@ -3,17 +3,18 @@
 
 use contact::{ContactCounts, Contacts};
 use material::Material as _;
-use shape::Vector3;
+use shape::{Curve, Vector3};
 
 use super::direction::Direction;
 use super::state::State;
 use crate::body::check_len;
-use crate::load::nodal_forces;
+use crate::hourglass::springs;
+use crate::load::nodal_forces_by_curve;
 use crate::nonlinear::energy::Internal;
 use crate::nonlinear::error::{StaticError, Worst};
-use crate::nonlinear::in_time::{Ended, Scales, TimeTerms};
+use crate::nonlinear::in_time::{Ended, TimeTerms};
 use crate::nonlinear::problem::StaticProblem;
-use crate::nonlinear::solid::Solid;
+use crate::nonlinear::solid::{Active, Solid};
 use crate::nonlinear::system::{SurfaceTable, System};
 use crate::support::prescribed;
 
@@ -37,6 +38,20 @@ fn stiffness(solid: &Solid) -> Vec<f64> {
     sums
 }
 
+/// Returns the number of the prescribed parameter that each of the degrees of freedom of `nodes` nodes follows;
+/// nothing if none has a curve of its own. A parameter in several supports follows the first of them.
+fn prescribed_by(problem: &StaticProblem, nodes: usize) -> Vec<usize> {
+    if problem.curves.fixed.own.is_empty() {
+        return Vec::new();
+    }
+    let mut by = vec![usize::MAX; 3 * nodes];
+    for (index, fixed) in problem.fixed.iter().enumerate() {
+        let slot = &mut by[3 * fixed.node as usize + fixed.axis as usize];
+        *slot = index.min(*slot);
+    }
+    by
+}
+
 /// Forces in a trial state.
 pub(super) struct Balance {
     pub internal: Internal,
@@ -55,8 +70,11 @@ pub(super) struct Balance {
 pub(super) struct Equations<'a> {
     pub problem: &'a StaticProblem<'a>,
     pub system: System<'a>,
-    /// Prescribed value of each degree of freedom at the end of the ramp.
+    /// Full prescribed value of each degree of freedom.
     pub prescribed: Vec<Option<f64>>,
+    /// Number of the prescribed parameter that each degree of freedom follows; empty if none has a curve of
+    /// its own.
+    prescribed_by: Vec<usize>,
     /// Terms of implicit dynamics in the current step.
     pub terms: Option<TimeTerms>,
     /// Force-driven tools that are temporarily under displacement control.
@@ -68,8 +86,8 @@ pub(super) struct Equations<'a> {
     pub counts: ContactCounts,
     /// Number of evaluated states.
     pub evaluations: u64,
-    /// Full nodal forces of the dead loads, N.
-    load: Vec<Vector3>,
+    /// Full nodal forces of the dead loads of each curve, N.
+    loads: Vec<(Curve, Vec<Vector3>)>,
     /// Volume of the body, m^3.
     volume: f64,
     /// Stiffness of each node of the undeformed body against its own displacement, N/m.
@@ -84,7 +102,7 @@ impl<'a> Equations<'a> {
     ) -> Result<Equations<'a>, StaticError> {
         let nodes = problem.nodes.len();
         let prescribed = prescribed(nodes, problem.fixed)?;
-        let load = nodal_forces(problem.solid.volume, problem.loads)?;
+        let loads = nodal_forces_by_curve(problem.solid.volume, problem.loads, &problem.curves.loads)?;
         check_len("nodes of the volume rows", problem.solid.node_count(), nodes)?;
         let mut surfaces: Vec<SurfaceTable> =
             problem.penalties.iter().map(|h| SurfaceTable::new(h.surface)).collect();
@@ -93,42 +111,53 @@ impl<'a> Equations<'a> {
         }
         surfaces.extend(mass.cloned());
         let constrained: Vec<bool> = prescribed.iter().map(Option::is_some).collect();
+        let solid = problem.solid;
+        let mut system = System::new(solid, &constrained, surfaces, problem.following);
+        system.springs = springs(solid.volume, |q| [solid.law(q).lambda(), solid.law(q).mu()]);
         Ok(Equations {
             problem,
-            system: System::new(problem.solid, &constrained, surfaces, problem.following),
+            system,
             prescribed,
+            prescribed_by: prescribed_by(problem, nodes),
             terms: None,
             displacement_driven: vec![false; problem.tools.len()],
             peak: 0.0,
             counts: ContactCounts::default(),
             evaluations: 0,
-            load,
+            loads,
             volume: problem.solid.volume.weights().iter().sum(),
             stiffness: stiffness(&problem.solid),
         })
     }
 
-    /// Returns the body with the active stress at `time`, which grows with the loads.
+    /// Returns the body with the active stress at `time`.
     pub fn solid(&self, time: f64) -> Solid<'a> {
-        Solid { activation: self.scales(time).loads, ..self.problem.solid }
+        let Solid { active: Active { full, .. }, .. } = self.problem.solid;
+        Solid { active: Active { full, at: Some((&self.problem.curves.active, time)) }, ..self.problem.solid }
     }
 
-    /// Returns the fractions of loads, supports and drives at `time`.
-    pub fn scales(&self, time: f64) -> Scales {
-        self.terms.as_ref().map_or(Scales::all(time), |t| t.scales)
+    /// Returns the prescribed value at `time` of each degree of freedom, with its first and second derivative.
+    pub fn prescribed_at(&self, time: f64) -> impl Fn(usize) -> Option<[f64; 3]> {
+        let fixed = &self.problem.curves.fixed;
+        let usual = fixed.usual.derivatives(time);
+        move |dof| {
+            let full = self.prescribed[dof]?;
+            let own = self.prescribed_by.get(dof).map(|&index| fixed.of(index).derivatives(time));
+            Some(own.unwrap_or(usual).map(|factor| full * factor))
+        }
     }
 
     /// Returns the increments that bring constrained degrees of freedom to their prescribed values at `time`,
     /// m; `None` if all are reached.
     pub fn prescribed_move(&self, state: &State, time: f64) -> Option<Vec<Vector3>> {
-        let scale = self.scales(time).supports;
+        let prescribed = self.prescribed_at(time);
         let mut lacking = false;
         let moves: Vec<Vector3> = (state.u.iter().enumerate())
             .map(|(i, u)| {
-                Vector3::from_fn(|a, _| match self.prescribed[3 * i + a] {
-                    Some(value) if u[a] != value * scale => {
+                Vector3::from_fn(|a, _| match prescribed(3 * i + a) {
+                    Some([value, ..]) if u[a] != value => {
                         lacking = true;
-                        value * scale - u[a]
+                        value - u[a]
                     }
                     _ => 0.0,
                 })
@@ -139,10 +168,10 @@ impl<'a> Equations<'a> {
 
     /// Sets constrained degrees of freedom to their values at `time`.
     pub fn prescribe(&self, u: &mut [Vector3], time: f64) {
-        let scale = self.scales(time).supports;
-        for (dof, value) in self.prescribed.iter().enumerate() {
-            if let Some(value) = value {
-                u[dof / 3][dof % 3] = value * scale;
+        let prescribed = self.prescribed_at(time);
+        for dof in 0..self.prescribed.len() {
+            if let Some([value, ..]) = prescribed(dof) {
+                u[dof / 3][dof % 3] = value;
             }
         }
     }
@@ -164,7 +193,8 @@ impl<'a> Equations<'a> {
         residual = residual.max(norm(volumes) / self.volume);
         for (k, lacking) in self.lacking(balance, time).into_iter().enumerate() {
             if let Some(force) = self.force(k, time) {
-                residual = residual.max(lacking.abs() / force.abs());
+                let scale = if force == 0.0 { self.full_force(k) } else { force.abs() };
+                residual = residual.max(lacking.abs() / scale);
             }
         }
         residual
@@ -205,7 +235,7 @@ impl<'a> Equations<'a> {
     /// Computes the forces in a state.
     pub fn balance(&mut self, state: &State, time: f64) -> Result<Balance, StaticError> {
         self.evaluations += 1;
-        let Scales { loads, supports, .. } = self.scales(time);
+        let curves = &self.problem.curves;
         let pairs = self.system.pairs.as_ref();
         let solid = self.solid(time);
         let mut internal = solid.internal(pairs, &state.u, &state.pressure)?;
@@ -213,21 +243,33 @@ impl<'a> Equations<'a> {
         if let Some(relaxing) = self.terms.as_ref().and_then(|t| t.relaxing.as_ref()) {
             deviator = relaxing.relax(&solid, pairs, &state.u, &state.pressure, &mut internal)?;
         }
-        let inner = self.system.internal_force(&internal);
-        let mut out: Vec<Vector3> = self.load.iter().map(|f| f * loads).collect();
-        for pressure in self.problem.following {
-            pressure.add_force(&state.u, loads, &mut out);
+        let mut inner = self.system.internal_force(&internal);
+        if let Some(springs) = &self.system.springs {
+            let (forces, energy) = springs.spring_forces(&state.u);
+            inner.iter_mut().zip(&forces).for_each(|(inner, force)| *inner += force);
+            internal.energy += energy;
         }
-        for (penalty, table) in self.problem.penalties.iter().zip(&self.system.surfaces) {
+        let (usual, own) = self.loads.split_first().expect("the usual curve comes first");
+        let factor = usual.0.value(time);
+        let mut out: Vec<Vector3> = usual.1.iter().map(|f| f * factor).collect();
+        for (curve, forces) in own {
+            let factor = curve.value(time);
+            out.iter_mut().zip(forces).for_each(|(out, f)| *out += f * factor);
+        }
+        for (index, pressure) in self.problem.following.iter().enumerate() {
+            pressure.add_force(&state.u, curves.following.of(index).value(time), &mut out);
+        }
+        let rate = self.terms.as_ref().and_then(|t| t.rate.as_ref());
+        let velocities = rate.map(|rate| rate.velocities(&state.u, &self.prescribed));
+        for (index, (penalty, table)) in self.problem.penalties.iter().zip(&self.system.surfaces).enumerate()
+        {
+            let factor = curves.penalties.of(index).value(time);
             let at = table.displacement(&state.u);
-            let traction: Vec<Vector3> = (at.iter().zip(&penalty.values))
-                .map(|(u, g)| {
-                    Vector3::from_fn(|a, _| {
-                        if penalty.axes[a] { penalty.beta * (g[a] * supports - u[a]) } else { 0.0 }
-                    })
-                })
-                .collect();
-            table.add_force(&traction, &mut out);
+            let moving = match &velocities {
+                Some(velocities) if penalty.damping > 0.0 => table.displacement(velocities),
+                _ => Vec::new(),
+            };
+            table.add_force(&penalty.tractions(&at, &moving, factor), &mut out);
         }
         let mut contacts = Vec::new();
         for (tool, ((driven, &closure), history)) in

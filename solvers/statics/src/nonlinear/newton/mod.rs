@@ -119,9 +119,14 @@ impl<'a> Newton<'a> {
         self.equations.peak = self.equations.peak.max(self.reached);
     }
 
-    /// Returns the prescribed value at the end of the ramp for every degree of freedom.
+    /// Returns whether each degree of freedom is constrained: its full prescribed value.
     pub fn prescribed(&self) -> &[Option<f64>] {
         &self.equations.prescribed
+    }
+
+    /// Returns the prescribed value at `time` of each degree of freedom, with its first and second derivative.
+    pub fn prescribed_at(&self, time: f64) -> impl Fn(usize) -> Option<[f64; 3]> {
+        self.equations.prescribed_at(time)
     }
 
     /// Returns the forces in a state, without inertia, and the strain energy, J.
@@ -149,9 +154,10 @@ impl<'a> Newton<'a> {
         } else if let Some(before) = before {
             moved = self.extrapolate(&mut state, start, before, time);
         }
-        for (closure, driven) in state.closures.iter_mut().zip(self.equations.problem.tools) {
+        for (k, (closure, driven)) in state.closures.iter_mut().zip(self.equations.problem.tools).enumerate()
+        {
             if let Drive::Closure(full) = driven.drive {
-                *closure = full * self.equations.scales(time).tools;
+                *closure = full * self.equations.part(k, time);
             }
         }
         let mut iterations = Vec::new();
@@ -204,7 +210,7 @@ impl<'a> Newton<'a> {
     }
 
     /// Extrapolates the displacement of the last step, or reverses it if the load reverses. Prescribed values
-    /// are linear in time and are therefore extrapolated exactly.
+    /// are set to those at `time`.
     fn extrapolate(&self, state: &mut State, start: &State, before: &State, time: f64) -> bool {
         let ratio = (time - start.time) / (start.time - before.time);
         if !ratio.is_finite() || before.time == 0.0 && !self.equations.problem.tools.is_empty() {

@@ -5,7 +5,7 @@ use algebra::Connectivity;
 use super::Newton;
 use super::state::State;
 use crate::nonlinear::error::StaticError;
-use crate::rigid::{add_prescribed, add_surface, check_rows};
+use crate::rigid::{add_normals, add_prescribed, add_surface, check_rows};
 
 impl Newton<'_> {
     /// Refuses a state in which a rigid motion meets no support and no tool. Tools without friction prevent
@@ -20,8 +20,12 @@ impl Newton<'_> {
         let points = Connectivity { offsets: rows.offsets(), nodes: rows.nodes(), seen_by: &[] };
         check_rows(problem.nodes, points, &[], |add| {
             add_prescribed(&self.equations.prescribed, add);
-            for penalty in problem.penalties {
-                add_surface(penalty.surface.rows(), penalty.axes, add);
+            for penalty in problem.penalties.iter().filter(|penalty| penalty.beta > 0.0) {
+                let rows = penalty.surface.rows();
+                match penalty.along_normal {
+                    true => add_normals(rows, penalty.surface.normals(), add),
+                    false => add_surface(rows, penalty.axes, add),
+                }
             }
             let Some(surface) = problem.contact else { return };
             let table = surface.rows().rows();

@@ -18,12 +18,8 @@ impl Equations<'_> {
     /// Returns the stiffness of the surfaces: those constrained by penalty come first, then the contact
     /// surface, then the points of the mass table with the tangent of the inertia.
     pub(super) fn surface_stiffness(&self, state: &State, balance: &Balance) -> SurfaceStiffness {
-        let mut blocks: Vec<Vec<Matrix3>> = (self.problem.penalties.iter())
-            .map(|h| {
-                let constrained = Vector3::from_fn(|a, _| if h.axes[a] { h.beta } else { 0.0 });
-                h.surface.weights().iter().map(|w| Matrix3::from_diagonal(&(constrained * *w))).collect()
-            })
-            .collect();
+        let rate = self.terms.as_ref().and_then(|t| t.rate.as_ref()).map_or(0.0, |rate| rate.factor);
+        let mut blocks: Vec<Vec<Matrix3>> = (self.problem.penalties.iter()).map(|h| h.blocks(rate)).collect();
         if self.problem.contact.is_some() && !self.problem.tools.is_empty() {
             let table = &self.system.surfaces[blocks.len()];
             let mut of_points = vec![Matrix3::zeros(); table.weights.len()];
@@ -38,9 +34,10 @@ impl Equations<'_> {
             let mass = &self.system.surfaces[blocks.len()];
             blocks.push(inertia.blocks(mass));
         }
-        let part = self.scales(state.time).loads;
-        let following = self.problem.following.iter();
-        SurfaceStiffness { blocks, pressed: following.map(|load| load.pressed(&state.u, part)).collect() }
+        let part = |index| self.problem.curves.following.of(index).value(state.time);
+        let following = self.problem.following.iter().enumerate();
+        let pressed = following.map(|(index, load)| load.pressed(&state.u, part(index))).collect();
+        SurfaceStiffness { blocks, pressed }
     }
 
     /// Returns the tangent in a state, its unsymmetric part, and the right-hand side for the unknowns.
@@ -86,6 +83,11 @@ impl Equations<'_> {
             if let Some(inertia) = self.terms.as_ref().and_then(|t| t.inertia.as_ref()) {
                 let mass = self.system.surfaces.last().expect("inertia has a mass table");
                 inertia.give_back(mass, moves, &mut right);
+            }
+            if let Some(rate) = self.terms.as_ref().and_then(|t| t.rate.as_ref()) {
+                for (penalty, table) in self.problem.penalties.iter().zip(&self.system.surfaces) {
+                    penalty.give_back(table, rate.factor, moves, &mut right);
+                }
             }
         }
         right

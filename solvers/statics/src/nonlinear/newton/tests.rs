@@ -9,8 +9,9 @@ use shape::{FixedDof, Point3, Vector3};
 use super::Newton;
 use super::policy::{Descent, Iteration, NewtonParams, patience};
 use super::state::State;
+use crate::nonlinear::curves::Curves;
 use crate::nonlinear::problem::{LinearSystems, StaticProblem};
-use crate::nonlinear::solid::{Solid, SolidDilation};
+use crate::nonlinear::solid::{Active, Solid, SolidDilation};
 
 /// A column of 20 x 1 x 1 with both ends constrained except that one end may sway, compressed by 1 %. This is
 /// five times the buckling strain `pi^2 / 12 (1 / 20)^2`: the straight column is in equilibrium, but the
@@ -49,13 +50,13 @@ fn column(systems: LinearSystems) {
             laws: &laws,
             region: &[],
             axes: &[],
-            active: &[],
-            activation: 1.0,
+            active: Active::default(),
             dilation: SolidDilation::Standard,
         },
         loads: &[],
         following: &[],
         fixed: &fixed,
+        curves: Curves::proportional(),
         penalties: &[],
         contact: None,
         tools: &[],

@@ -29,6 +29,10 @@ impl Newton<'_> {
     /// of the loading the check is stricter, because no further point can come into contact.
     pub fn check_overlap(&self, state: &State, step: &Step, ends: bool) -> Result<(), StaticError> {
         self.each_tool(|surface, k, tool| {
+            // A tool without a force to exert stays where it last touched.
+            if self.equations.force(k, state.time) == Some(0.0) {
+                return Ok(());
+            }
             let stand = Stand { closure: state.closures[k], u: &state.u };
             match (step.tools[k].active, ends) {
                 (0, true) => surface.check_end(tool, stand),
@@ -50,11 +54,14 @@ impl Newton<'_> {
     }
 }
 
-/// Returns the smallest load fraction of the tools' full displacements to which a step can always be reduced
-/// (the least over all tools). The resolution of a path must not depend on the number of requested results.
+/// Returns the shortest time to which a step can always be reduced for the travel of the tools, the least over
+/// all tools. The resolution of a path must not depend on the number of requested results.
 pub(crate) fn shortest_travel(problem: &StaticProblem) -> f64 {
-    let each = problem.tools.iter().map(|driven| match driven.drive {
-        Drive::Closure(full) if full != 0.0 => SHORTEST * driven.tool.deepest() / full.abs(),
+    let each = problem.tools.iter().enumerate().map(|(k, driven)| match driven.drive {
+        Drive::Closure(full) if full != 0.0 => {
+            let speed = full.abs() * problem.curves.tools.of(k).steepest();
+            SHORTEST * driven.tool.deepest() / speed
+        }
         Drive::Closure(_) | Drive::Force(_) => f64::INFINITY,
     });
     each.fold(f64::INFINITY, f64::min)

@@ -26,8 +26,21 @@ impl Equations<'_> {
     /// displacement control.
     pub fn force(&self, tool: usize, time: f64) -> Option<f64> {
         match self.problem.tools[tool].drive {
-            Drive::Force(full) if !self.displacement_driven[tool] => Some(full * self.scales(time).tools),
+            Drive::Force(full) if !self.displacement_driven[tool] => Some(full * self.part(tool, time)),
             Drive::Force(_) | Drive::Closure(_) => None,
+        }
+    }
+
+    /// Returns the part of the drive of a tool at `time`.
+    pub fn part(&self, tool: usize, time: f64) -> f64 {
+        self.problem.curves.tools.of(tool).value(time)
+    }
+
+    /// Returns the full force of a force-driven tool, N; 1 N for another.
+    pub fn full_force(&self, tool: usize) -> f64 {
+        match self.problem.tools[tool].drive {
+            Drive::Force(full) => full.abs(),
+            Drive::Closure(_) => 1.0,
         }
     }
 
