@@ -76,6 +76,27 @@ penalty = "5 MPa/mm"
 }
 
 #[test]
+fn points_between_steps_are_not_passed_over() {
+    let scene = |part: &str| {
+        run(&cube(&format!(
+            r#"
+procedure = {{ kind = "static", steps = 1 }}
+curve = [{{ name = "pull", part = {part}, factor = [0, 1, 0.5] }}]
+[[load]]
+on = "z-max"
+traction = ["0 kPa", "0 kPa", "2 kPa"]
+curve = "pull"
+"#
+        )))
+    };
+    let object = scene("[0, 0.37, 1]");
+    // One step is reported, and another one has ended at the point.
+    assert_eq!(object["steps"].as_array().unwrap().len(), 1);
+    assert!(number(&object, "newton-iterations") >= 2.0);
+    assert!((number(&object, "load-z") - 0.4).abs() < 1e-12);
+}
+
+#[test]
 fn a_moved_base_takes_the_force_of_its_acceleration() {
     let object = run(&r#"title = "A stiff block on a base that moves out and back"
 body = { shape = "box", size = ["20 mm", "20 mm", "20 mm"] }
