@@ -442,7 +442,7 @@ fn a_problem_is_written_for_others() {
     );
     let done = tissuebench(&dir, &["export", &swings, "--method", "ours", "--out", "swings"]);
     assert_fails(&done, 2, "'modes' is not supported in problem files yet");
-    // What the files would leave out is refused with its key.
+    // A part that the files would leave out is refused with its key.
     let refused = |from: &str, to: &str, says: &str| {
         let scene = write(&dir, "unsaid.toml", &PRESSED.replace(from, to));
         let done = tissuebench(&dir, &["export", &scene, "--method", "hex8", "--out", "unsaid"]);

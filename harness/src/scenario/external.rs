@@ -17,7 +17,7 @@ use crate::process::Limits;
 struct Unsaid {
     key: String,
     what: &'static str,
-    /// What they can describe in its place.
+    /// A replacement that the files can describe.
     help: &'static str,
 }
 

@@ -128,7 +128,7 @@ pub fn solve_static(
                 observe(&done, Rest { u, pressure, reaction: newton.reaction() });
                 steps.push(done);
                 before = Some(std::mem::replace(&mut state, reached));
-                // Where all curves return to zero there is no other scale.
+                // The forces so far are the only scale once all curves have returned to zero.
                 if is_curved {
                     newton.keep_scale();
                 }
