@@ -19,5 +19,6 @@
 //! ```
 
 pub mod exact;
+pub mod import;
 pub mod scene;
 pub mod tissue;

@@ -12,6 +12,7 @@
 
 mod adapter;
 mod expression;
+mod import;
 mod inputs;
 mod mesh;
 mod messages;
@@ -30,7 +31,7 @@ pub struct Target {
 }
 
 /// All targets.
-pub const TARGETS: [Target; 7] = [
+pub const TARGETS: [Target; 8] = [
     Target { name: "scene", run: scene::run },
     Target { name: "study", run: study::run },
     Target { name: "expression", run: expression::run },
@@ -38,4 +39,5 @@ pub const TARGETS: [Target; 7] = [
     Target { name: "records", run: records::run },
     Target { name: "reference", run: reference::run },
     Target { name: "adapter", run: adapter::run },
+    Target { name: "import", run: import::run },
 ];

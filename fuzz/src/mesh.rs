@@ -26,6 +26,13 @@ pub(crate) fn run(data: &[u8]) {
             take(&mesh);
         }
     }
+    match mesh_files::read_vectors_bytes(data, Path::new("/nonexistent/fuzz.msh"), 1e-3, "fibers") {
+        Err(bad) => assert!(!bad.to_string().is_empty()),
+        Ok((mesh, found)) => {
+            let items = if found.of_cells { mesh.cell_count() } else { mesh.points().len() };
+            assert_eq!((found.vectors.len(), found.numbers.len()), (items, items));
+        }
+    }
 }
 
 /// Fills a surface with a few cells.

@@ -5,11 +5,12 @@ mod common;
 use common::{BLOCK, assert_fails, cases, tissuebench, without, write};
 use serde_json::Value;
 
-const KEYS: [&str; 17] = [
+const KEYS: [&str; 18] = [
     "cpu_phases",
     "dofs",
     "elements",
     "format",
+    "free_norm",
     "linear_solver",
     "method",
     "metrics",

@@ -455,7 +455,7 @@ fn a_problem_is_written_for_others() {
     refused(law, fibres, "key 'material.fibers'");
     let [straight, path] =
         ["along = [0, 0, -1], drive = { closure", "drive = { path = [[\"0 mm\", \"0 mm\", \"-2 mm\"]] }"];
-    refused(&format!("{straight} = \"2 mm\" }}"), path, "key 'tool[0].drive.path'");
+    refused(&format!("{straight} = \"2 mm\" }}"), path, "key 'tool[0].drive': is a path or a turn");
     let springs = "procedure = { kind = \"static\", steps = 2 }\nfoundation = [{ on = \"z-min\", stiffness = \"1 kPa/mm\" }]";
     refused("procedure = { kind = \"static\", steps = 2 }", springs, "key 'foundation[0]'");
     let done = tissuebench(&dir, &["export", &pressed, "--method", "efg", "--out", "pressed"]);

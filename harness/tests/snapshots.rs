@@ -41,6 +41,7 @@ fn every_verb_has_help() {
     let dir = folder(&[]);
     let verbs = [
         "init",
+        "import",
         "run",
         "pick",
         "fields",

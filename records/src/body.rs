@@ -77,8 +77,11 @@ pub struct BodyState {
     pub time: f64,
     /// Displacement of each point, metres, packed.
     pub u: String,
-    /// Displacement of each tool, m.
+    /// Displacement of each tool, m; after its rotation about the origin, if it turns.
     pub tools: Vec<[f64; 3]>,
+    /// Rotation of each tool about the origin, a unit quaternion (x, y, z, w); empty if no tool turns.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub turns: Vec<[f64; 4]>,
     /// Contact points inside a tool: three coordinates and the penetration depth of each (m), packed.
     #[serde(default)]
     pub touching: String,

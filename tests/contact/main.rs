@@ -5,3 +5,4 @@ mod search;
 mod shapes;
 mod surface;
 mod tool_travel;
+mod turning;

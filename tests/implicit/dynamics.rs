@@ -89,7 +89,13 @@ fn the_trapezoidal_rule_keeps_the_energy_of_a_linear_body() {
         let loads = [Load::Body { values: traction.iter().map(|t| t / 0.01).collect() }];
         let curves = Curves::all(Curve::growth(0.05));
         let body = StaticProblem { loads: &loads, curves, ..body.clone() };
-        let inertia = Inertia { mass: &mass, damping: 20.0, displacement: &[], velocity: &velocity };
+        let inertia = Inertia {
+            mass: &mass,
+            damping: 20.0,
+            stiffness_damping: 0.0,
+            displacement: &[],
+            velocity: &velocity,
+        };
         let problem = TimeProblem { body: &body, inertia: Some(inertia), relaxation: &[] };
         let path = solve_in_time(&problem, &params(0.1, 50, 1.0), |_, _, _| ()).unwrap();
         let energy = path.steps.last().unwrap().energy;
@@ -198,7 +204,8 @@ fn a_slow_tool_with_inertia_presses_as_a_static_one() {
     let mass = block.lumped(DENSITY);
     // The lowest period is about 20 ms, so the loading takes a hundred periods.
     let slow = StaticProblem { curves: Curves::all(Curve::smooth_growth(2.0)), ..body };
-    let inertia = Inertia { mass: &mass, damping: 0.0, displacement: &[], velocity: &[] };
+    let inertia =
+        Inertia { mass: &mass, damping: 0.0, stiffness_damping: 0.0, displacement: &[], velocity: &[] };
     let problem = TimeProblem { body: &slow, inertia: Some(inertia), relaxation: &[] };
     let path = solve_in_time(&problem, &TimeParams { newton, ..params(2.0, 20, 0.5) }, |_, _, _| ()).unwrap();
     assert_eq!(path.failure, None);
@@ -229,7 +236,8 @@ fn a_moved_base_carries_the_body() {
     let mass = block.consistent(DENSITY);
     let curve = Curve::smooth_growth(0.05);
     let body = StaticProblem { curves: Curves::all(curve.clone()), ..body };
-    let inertia = Inertia { mass: &mass, damping: 0.0, displacement: &[], velocity: &[] };
+    let inertia =
+        Inertia { mass: &mass, damping: 0.0, stiffness_damping: 0.0, displacement: &[], velocity: &[] };
     let problem = TimeProblem { body: &body, inertia: Some(inertia), relaxation: &[] };
     let lost = |steps: usize| {
         let (mut worst, mut largest) = (0.0f64, 0.0f64);
@@ -269,6 +277,7 @@ fn a_surface_held_by_penalty_is_driven_too() {
         along_normal: false,
         damping: 0.0,
         values: vec![Vector3::new(5e-3, 0.0, 0.0); surface.weights().len()],
+        from: Vec::new(),
         beta: 1e10,
     }];
     let body = StaticProblem { penalties: &constrained, ..block.body(&laws, &[]) };
@@ -277,7 +286,13 @@ fn a_surface_held_by_penalty_is_driven_too() {
     let mass = block.lumped(DENSITY);
     let run = |body: &StaticProblem| {
         let body = &StaticProblem { curves: Curves::all(Curve::smooth_growth(0.05)), ..body.clone() };
-        let inertia = Some(Inertia { mass: &mass, damping: 0.0, displacement: &[], velocity: &[] });
+        let inertia = Some(Inertia {
+            mass: &mass,
+            damping: 0.0,
+            stiffness_damping: 0.0,
+            displacement: &[],
+            velocity: &[],
+        });
         let problem = TimeProblem { body, inertia, relaxation: &[] };
         solve_in_time(&problem, &params(0.05, 50, 0.5), |_, _, _| ()).unwrap().motion
     };

@@ -25,7 +25,13 @@ fn oscillator(rho_inf: f64, damping: f64, omega_dt: f64, steps: usize) -> (Vec<f
     let up = |value: f64| block.field(|x| Vector3::new(0.0, 0.0, if x.z > 0.0 { value } else { 0.0 }));
     let displacement = up(1e-3);
     let velocity = up(0.02);
-    let inertia = Inertia { mass: &mass, damping, displacement: &displacement, velocity: &velocity };
+    let inertia = Inertia {
+        mass: &mass,
+        damping,
+        stiffness_damping: 0.0,
+        displacement: &displacement,
+        velocity: &velocity,
+    };
     let problem = TimeProblem { body: &body, inertia: Some(inertia), relaxation: &[] };
     let top = block.nodes().iter().position(|x| x.z > 0.0).unwrap();
     let mut path = Vec::new();

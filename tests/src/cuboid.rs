@@ -96,7 +96,7 @@ pub fn moving<'a>(
     displacement: &'a [Vector3],
     velocity: &'a [Vector3],
 ) -> TimeProblem<'a> {
-    let inertia = Some(Inertia { mass, damping: 0.0, displacement, velocity });
+    let inertia = Some(Inertia { mass, damping: 0.0, stiffness_damping: 0.0, displacement, velocity });
     TimeProblem { body, inertia, relaxation: &[] }
 }
 

@@ -9,6 +9,7 @@ mod mutants;
 mod nightly;
 mod python;
 mod skips;
+mod suites;
 
 use std::path::Path;
 use std::process::{Command, ExitCode};
@@ -92,6 +93,8 @@ enum Task {
     /// Build the wheel of the Python module and test it in a fresh virtual environment, if maturin, numpy and
     /// pytest are installed
     Python,
+    /// Import and run the models of other programs' test suites, and compare the results with those stored there
+    Suites(suites::SuitesArgs),
     /// Run the steps of continuous integration: format, lints, packages, docs, tests, quick verification
     Ci,
 }
@@ -129,6 +132,7 @@ fn run(task: Task) -> Result<u8> {
         Task::Mutants { names } => mutants::mutants(&root(), &names),
         Task::Nightly { minutes } => nightly::nightly(&root(), minutes),
         Task::Python => python::python(&root()),
+        Task::Suites(args) => suites::suites(&root(), &args),
         Task::Ci => ci(),
     }
 }

@@ -74,8 +74,8 @@ pub(crate) enum BodyKeys {
         #[serde(default)]
         mildly_graded: bool,
     },
-    /// A mesh file (Gmsh .msh, Abaqus or CalculiX .inp, VTK .vtu or .vtk), which names its own surfaces, or a
-    /// closed surface (STL, OBJ, PLY)
+    /// A mesh file (Gmsh .msh, Abaqus or CalculiX .inp, FEBio .feb, VTK .vtu or .vtk), which names its own
+    /// surfaces, or a closed surface (STL, OBJ, PLY)
     File {
         /// The file, relative to the folder of the scene
         path: String,

@@ -14,7 +14,7 @@ use super::procedure::{Procedure, ProcedureKind};
 use super::region::Region;
 use super::report::Report;
 use super::selection::{Names, Place, PlaceKeys};
-use super::units::{BodyForce, Force, Length, Pressure, Q};
+use super::units::{BodyForce, Force, Length, Pressure, Q, Time};
 
 /// Prescribed displacement along one axis
 #[derive(Deserialize, JsonSchema)]
@@ -60,6 +60,37 @@ pub(crate) struct SupportKeys {
     motion: Option<MoveKeys>,
     /// Name of the curve that the motion follows; the common growth unless given
     curve: Option<String>,
+    /// Start and end of the part of the loading in which the support acts, such as [0.4, 1]; in implicit dynamics
+    /// times, such as ["0 s", "2 s"]. One that starts late holds the points where they are then; its motion counts
+    /// from there. All of the loading unless given
+    during: Option<SpanKeys>,
+}
+
+/// Start and end of a part of the loading
+#[derive(Deserialize, JsonSchema)]
+#[serde(untagged)]
+enum SpanKeys {
+    Parts([f64; 2]),
+    Times([Q<Time>; 2]),
+}
+
+/// Part of the loading in which a support acts.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Span {
+    /// Start, as a fraction of the loading or in seconds.
+    pub from: f64,
+    /// End, likewise.
+    pub until: f64,
+    pub(crate) in_time: bool,
+}
+
+impl From<SpanKeys> for Span {
+    fn from(keys: SpanKeys) -> Span {
+        match keys {
+            SpanKeys::Parts([from, until]) => Span { from, until, in_time: false },
+            SpanKeys::Times([from, until]) => Span { from: from.0, until: until.0, in_time: true },
+        }
+    }
 }
 
 /// A load: exactly one of traction, pressure (along the inner normal), force and body force
@@ -104,6 +135,8 @@ pub struct Support {
     pub motion: [Option<Prescribed>; 3],
     /// Factor of the displacements over time; `None` for the common growth.
     pub curve: Option<Arc<Curve>>,
+    /// Part of the loading in which the support acts; `None` for all of it.
+    pub during: Option<Span>,
 }
 
 impl Support {
@@ -196,7 +229,7 @@ impl SupportKeys {
         if motion.iter().all(Option::is_none) && self.fix.is_none() {
             report.missing("fix", "write fix = \"xyz\", or move = { z = \"-1 mm\" }");
         }
-        Support { place, motion, curve }
+        Support { place, motion, curve, during: self.during.map(Span::from) }
     }
 }
 

@@ -12,13 +12,12 @@ use shape::Curve;
 
 use super::body::Body;
 use super::curve::{NamedCurve, named};
-use super::expression::Expression;
-use super::field::ScalarField;
+use super::direction::{Direction, DirectionKeys};
 use super::procedure::{Procedure, ProcedureKind};
 use super::region::Region;
 use super::report::Report;
 use super::selection::{Names, Place};
-use super::units::{Angle, Density, Pressure, Q, Time};
+use super::units::{Density, Pressure, Q, Time};
 use super::vocabulary::{Given, Laws, Word, build, settings, tagged};
 use crate::exact::{Elastic, ExactError, Hyperelastic, Medium};
 
@@ -38,8 +37,8 @@ struct BesideLaw {
     density: Option<Q<Density>>,
     #[serde(default)]
     prony: Vec<PronyKeys>,
-    /// Direction of the fibres in the undeformed body, of any length: [1, 0, 0], or expressions in x, y and z
-    /// (metres) such as ["-y", "x", "0"]; for laws that depend on directions
+    /// Direction of the fibres in the undeformed body, of any length: [1, 0, 0], expressions in x, y and z
+    /// (metres) such as ["-y", "x", "0"], or a rule; for laws that depend on directions
     fibers: Option<DirectionKeys>,
     /// Active stress of contracting muscle along the fibres, which grows with the loading or along active_curve: the second
     /// Piola-Kirchhoff stress T f x f beside the passive law; none unless given
@@ -72,35 +71,6 @@ impl From<VolumetricKeys> for VolumetricForm {
             VolumetricKeys::Quadratic => VolumetricForm::Quadratic,
             VolumetricKeys::Logarithmic => VolumetricForm::Logarithmic,
             VolumetricKeys::SimoTaylor => VolumetricForm::SimoTaylor,
-        }
-    }
-}
-
-/// Three numbers, or three expressions in x, y and z (metres)
-#[derive(Deserialize, JsonSchema)]
-#[serde(untagged)]
-enum DirectionKeys {
-    Constant([f64; 3]),
-    Expressions([Expression; 3]),
-    Helix(HelixKeys),
-}
-
-/// Fibres of a ventricle: the angle from the circumference towards the base, at the inner and at the outer wall
-/// and linear between them
-#[derive(Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-struct HelixKeys {
-    helix: [Q<Angle>; 2],
-}
-
-impl From<DirectionKeys> for Direction {
-    fn from(keys: DirectionKeys) -> Direction {
-        match keys {
-            DirectionKeys::Constant(components) => Direction::Field(components.map(ScalarField::Constant)),
-            DirectionKeys::Expressions(of) => {
-                Direction::Field(of.map(|of| ScalarField::Expression { of, factor: 1.0 }))
-            }
-            DirectionKeys::Helix(keys) => Direction::Helix(keys.helix.map(|angle| angle.0)),
         }
     }
 }
@@ -163,24 +133,6 @@ pub struct Directions {
     pub sheets: Option<Direction>,
 }
 
-/// A direction as a function of the undeformed position.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Direction {
-    /// A vector of any length.
-    Field([ScalarField; 3]),
-    /// In the wall of a ventricle, at an angle (radians) from the circumference towards the base: at the inner and
-    /// at the outer wall, and linear in the depth.
-    Helix([f64; 2]),
-}
-
-impl Direction {
-    /// Whether the direction is zero everywhere.
-    fn is_zero(&self) -> bool {
-        let zero = |field: &ScalarField| matches!(field, ScalarField::Constant(0.0));
-        matches!(self, Direction::Field(components) if components.iter().all(zero))
-    }
-}
-
 /// A term of a Prony series: a share of the shear response that relaxes exponentially.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Relaxation {
@@ -210,11 +162,11 @@ impl MaterialKeys {
         let law = build(entry, &values, "law", report)?;
         let volumetric = self.beside.volumetric.map(VolumetricForm::from);
         let law = with_volumetric(law, volumetric).map_err(|bad| report.add("volumetric", bad)).ok()?;
-        let given = (self.beside.fibers.map(Into::into), self.beside.sheets.map(Into::into));
+        let given = [("fibers", self.beside.fibers), ("sheets", self.beside.sheets)];
         let directions = directions(&law, given, report);
         let active = self.beside.active.map_or(0.0, |active| active.0);
         let help = "take a law with fibres, such as law = \"guccione\"";
-        report.require(active == 0.0 || directions.is_some(), "active", "has no fibre to act along", help);
+        report.require(active == 0.0 || law.has_axes(), "active", "has no fibre to act along", help);
         let active_curve = named(self.beside.active_curve.as_ref(), curves, "active_curve", report);
         let help = "give active = \"60 kPa\", the stress at the factor 1";
         report.require(active != 0.0 || active_curve.is_none(), "active_curve", "has no active stress", help);
@@ -233,25 +185,17 @@ fn with_volumetric(law: Law, form: Option<VolumetricForm>) -> Result<Law, Proble
 }
 
 /// Checks that directions are given for a law that depends on them, and for no other.
-fn directions(
-    law: &Law,
-    (fibers, sheets): (Option<Direction>, Option<Direction>),
-    report: &Report,
-) -> Option<Directions> {
+fn directions(law: &Law, given: [(&str, Option<DirectionKeys>); 2], report: &Report) -> Option<Directions> {
     if !law.has_axes() {
-        for (key, given) in [("fibers", &fibers), ("sheets", &sheets)] {
+        for (key, given) in &given {
             let problem = format!("has no effect: the law {} is the same in all directions", law.name());
             report.require(given.is_none(), key, &problem, "leave it out, or take a law with fibres");
         }
         return None;
     }
-    let Some(fibers) = fibers else {
+    let [fibers, sheets] = given.map(|(key, keys)| keys.map(|keys| keys.read(key, report)));
+    if fibers.is_none() {
         report.missing("fibers", "give the direction of the fibres, such as fibers = [1, 0, 0]");
-        return None;
-    };
-    for (key, direction) in [("fibers", Some(&fibers)), ("sheets", sheets.as_ref())] {
-        let sound = direction.is_none_or(|direction| !direction.is_zero());
-        report.require(sound, key, "has no direction", "give a vector such as [1, 0, 0]");
     }
     if law.has_sheets() && sheets.is_none() {
         report.missing(
@@ -259,7 +203,7 @@ fn directions(
             "this law depends on them: give a direction across the fibres, such as sheets = [0, 1, 0]",
         );
     }
-    Some(Directions { fibers, sheets })
+    Some(Directions { fibers: fibers.flatten()?, sheets: sheets.flatten() })
 }
 
 fn prony(terms: Vec<PronyKeys>, report: &Report) -> Vec<Relaxation> {
@@ -323,17 +267,18 @@ impl Material {
     /// Reports contradictions with the body and the procedure.
     pub(crate) fn demands(&self, body: &Body, procedure: &Procedure, report: &Report) {
         let kind = procedure.kind();
-        if self.active != 0.0 && kind == ProcedureKind::Explicit {
-            let help = "take [procedure] kind = \"static\" or \"implicit-dynamic\"";
-            report.add("active", Problem::new("is not available in explicit dynamics yet").help(help));
+        if kind == ProcedureKind::ImplicitDynamic
+            && procedure.ramp().is_some_and(|ramp| ramp.stiffness_damping > 0.0)
+        {
+            let problem =
+                "changes the internal forces by itself, and stiffness_damping resists all their changes";
+            let help = "leave procedure.stiffness_damping out, or take damping";
+            report.require(self.prony.is_empty(), "prony", problem, help);
+            report.require(self.active == 0.0, "active", problem, help);
         }
         if let Some(Directions { fibers, sheets }) = &self.directions {
-            for (key, direction) in [("fibers", Some(fibers)), ("sheets", sheets.as_ref())] {
-                let sound =
-                    !matches!(direction, Some(Direction::Helix(_))) || matches!(body, Body::Ventricle(_));
-                let help = "take body = { shape = \"ventricle\", ... }, or give numbers or expressions";
-                report.require(sound, &format!("{key}.helix"), "needs a ventricle as the body", help);
-            }
+            fibers.demands("fibers", body, report);
+            sheets.iter().for_each(|sheets| sheets.demands("sheets", body, report));
         }
         let name = self.name();
         if matches!(kind, ProcedureKind::Linear | ProcedureKind::Modes) && !self.law.is_small_strain() {

@@ -196,26 +196,6 @@ table! {
     }
 }
 
-/// Most load steps that are proposed.
-const MOST_PROPOSED: usize = 10_000;
-
-impl Static {
-    /// Returns the first of some fractions of the loading at which no load step ends, with help: the number
-    /// of steps that ends at all of them.
-    pub(crate) fn missed(&self, parts: &[f64]) -> Option<(f64, String)> {
-        let meets = |steps: usize| {
-            let near = |part: f64| (part - part.round()).abs() < 1e-6;
-            move |part: &f64| near(part * steps as f64)
-        };
-        let missed = parts.iter().copied().find(|part| !meets(self.steps)(part))?;
-        let help = match (1..=MOST_PROPOSED).find(|steps| parts.iter().all(meets(*steps))) {
-            Some(least) => format!("take procedure.steps = {least} or a multiple of it"),
-            None => "give fractions with simple ratios".into(),
-        };
-        Some((missed, help))
-    }
-}
-
 table! {
     /// Settings of Newton's method in a step
     pub struct Newton from NewtonKeys {
@@ -245,10 +225,18 @@ table! {
         steps: usize as u32 = 1,
         /// Mass-proportional damping, in explicit dynamics also of tools that have a mass; none unless given
         damping: f64 as Q<Rate> = 0.0,
+        /// Stiffness-proportional damping: the factor of the current tangent of the internal forces; none unless
+        /// given
+        stiffness_damping: f64 as Q<Time> = 0.0,
     }
 }
 
 impl Ramp {
+    /// Whether the motion is damped.
+    pub fn damps(&self) -> bool {
+        self.damping > 0.0 || self.stiffness_damping > 0.0
+    }
+
     /// Time in seconds over which loads and supports grow.
     pub fn growth(&self) -> f64 {
         self.over.unwrap_or(self.duration)
@@ -379,6 +367,8 @@ impl Ramp {
         report.require(self.over.is_none_or(|t| t >= 0.0), "over", "is negative", help);
         let help = "give 0 /s or more, or leave it out";
         report.require(self.damping >= 0.0, "damping", "is negative", help);
+        let help = "give \"0 s\" or more, or leave it out";
+        report.require(self.stiffness_damping >= 0.0, "stiffness_damping", "is negative", help);
     }
 }
 
@@ -405,7 +395,7 @@ fn implicit(keys: ImplicitKeys, tools: bool, report: &Report) -> Implicit {
     let sound = (0.0..=1.0).contains(&implicit.spectral_radius);
     let help = "1 dissipates nothing, 0 kills in one step what a step cannot resolve; 0.8 is usual";
     report.require(sound, "spectral_radius", "is not in [0, 1]", help);
-    for key in ["damping", "spectral_radius", "accuracy"] {
+    for key in ["damping", "stiffness_damping", "spectral_radius", "accuracy"] {
         if !implicit.inertia && report.is_given(key) {
             let problem = Problem::new("is of a motion, and inertia = false has none").help("leave it out");
             report.add(key, problem);

@@ -154,6 +154,12 @@ impl Scene {
             .filter_map(|(key, curve)| Some((key, curve.as_ref()?)))
     }
 
+    /// Returns the keys of the supports that act during a part of the loading.
+    pub fn staged(&self) -> impl Iterator<Item = String> {
+        let spans = self.supports.iter().map(|support| support.during).enumerate();
+        spans.filter_map(|(i, during)| during.map(|_| format!("support[{i}].during")))
+    }
+
     /// Whether the file has `key`.
     pub fn has(&self, key: &str) -> bool {
         self.origin.has(key)

@@ -5,11 +5,12 @@ use std::sync::Arc;
 use catalogue::Problem;
 use shape::Curve;
 
+use super::condition::Span;
 use super::curve::NamedCurve;
+use super::drive::Drive;
 use super::procedure::ProcedureKind;
 use super::report::Report;
 use super::scene::Scene;
-use super::tool::Drive;
 
 /// Reports contradictions of the curves with each other, with the conditions that name them, and with the
 /// procedure.
@@ -47,12 +48,16 @@ pub(crate) fn demands(scene: &Scene, report: &Report) {
     }
     for (i, support) in scene.supports.iter().enumerate() {
         let sound = support.curve.is_none() || support.moves();
-        let help = "leave it out: a support can't be released, and holds throughout";
+        let help = "leave it out; for a support that begins late or ends early, give during";
         report.require(sound, &format!("support[{i}].curve"), "has no motion that follows it", help);
+        if let Some(span) = support.during {
+            during(span, scene, &report.at(&format!("support[{i}]")));
+        }
     }
-    if scene.output.repeated.is_some() && scene.curved().next().is_some() {
-        let problem = Problem::new("repeats a load that grows in proportion, and this scene has curves");
-        report.add("output.repeated", problem.help("leave the curves out, or this key"));
+    let courses = scene.curved().map(|(key, _)| key).chain(scene.staged());
+    if let (true, Some(key)) = (scene.output.repeated.is_some(), courses.into_iter().next()) {
+        let problem = format!("repeats a load that grows in proportion, and this scene has {key}");
+        report.add("output.repeated", Problem::new(problem).help("leave one of them out"));
     }
     for (i, tool) in scene.tools.iter().enumerate() {
         let pulls = |curve: &Arc<Curve>| curve.points().iter().any(|point| point[1] < 0.0);
@@ -62,6 +67,41 @@ pub(crate) fn demands(scene: &Scene, report: &Report) {
             let problem = Problem::new("turns the force around, and a tool can't pull").help(help);
             report.add(&format!("tool[{i}].drive.curve"), problem);
         }
+    }
+}
+
+/// Requires a part of the loading of a procedure in which supports may begin or end.
+fn during(span: Span, scene: &Scene, report: &Report) {
+    let kind = scene.procedure.kind();
+    let end = match kind {
+        ProcedureKind::Static => 1.0,
+        ProcedureKind::ImplicitDynamic => scene.procedure.duration().unwrap_or(0.0),
+        _ => {
+            let problem = format!("is not available in a {} procedure", kind.name());
+            let help = "take kind = \"static\" or \"implicit-dynamic\", or leave it out";
+            return report.add("during", Problem::new(problem).help(help));
+        }
+    };
+    let is_timed = kind == ProcedureKind::ImplicitDynamic;
+    if span.in_time != is_timed {
+        let (problem, help) = match is_timed {
+            true => {
+                ("has fractions, but the procedure goes on in time", "give times, such as [\"0 s\", \"2 s\"]")
+            }
+            false => ("has times, but a static procedure has none", "give fractions, such as [0.4, 1]"),
+        };
+        return report.add("during", Problem::new(problem).help(help));
+    }
+    let Span { from, until, .. } = span;
+    if !(0.0 <= from && from < until && until <= end) {
+        let unit = if is_timed { " s" } else { "" };
+        let problem =
+            format!("goes from {from}{unit} to {until}{unit}, and the loading from 0{unit} to {end}{unit}");
+        let help = "give a start and a later end within the loading";
+        report.add("during", Problem::new(problem).help(help));
+    } else if scene.procedure.has_inertia() && from > 0.0 {
+        let help = "let it start at \"0 s\", or take inertia = false";
+        report.add("during", Problem::new("begins late, and a moving mass can't stop at once").help(help));
     }
 }
 

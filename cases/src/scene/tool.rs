@@ -14,12 +14,13 @@ use serde_json::json;
 use shape::Curve;
 
 use super::body::Body;
-use super::curve::{NamedCurve, named as curve_named};
+use super::curve::NamedCurve;
+use super::drive::{Drive, DriveKeys, GivenLeg, Leg};
 use super::mesh_file::MeshFile;
-use super::procedure::{Procedure, ProcedureKind, Static};
+use super::procedure::{Procedure, ProcedureKind};
 use super::report::Report;
 use super::touch::AtKeys;
-use super::units::{ContactSlope, Force, Length, Pressure, Q, Time, Unit};
+use super::units::{ContactSlope, Length, Q, Unit};
 use super::vocabulary::{Given, ToolShapes, Vocabulary, Word, build, settings, tagged};
 
 /// A rigid tool
@@ -108,23 +109,6 @@ impl JsonSchema for ToolKeys {
     }
 }
 
-/// Drive of a tool: one of closure, path, force along its direction of motion, and mean pressure on its face
-#[derive(Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-#[schemars(extend("x-one-of" = ["closure", "path", "force", "pressure"]))]
-struct DriveKeys {
-    closure: Option<Q<Length>>,
-    /// Displacements of the tool, one after another, at constant speed: [["0 mm", "0 mm", "-3 mm"], ["5 mm",
-    /// "0 mm", "0 mm"]] presses and then drags
-    path: Option<Vec<[Q<Length>; 3]>>,
-    force: Option<Q<Force>>,
-    pressure: Option<Q<Pressure>>,
-    /// Time of the ramp (dynamics)
-    over: Option<Q<Time>>,
-    /// Name of the curve that the drive follows; the common growth unless given
-    curve: Option<String>,
-}
-
 /// A rigid tool.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tool {
@@ -136,10 +120,11 @@ pub struct Tool {
     pub file: Option<PathBuf>,
     /// Initial position of the centre, in metres: of a surface, the middle of its bounding box.
     pub at: [f64; 3],
-    /// Unit direction of motion, at the start of a path.
+    /// Unit direction of motion of the centre, at the start of a path. The axis, if the tool first turns about
+    /// its centre.
     pub along: [f64; 3],
-    /// Displacements of the legs of a path, in metres; empty for a straight motion.
-    pub path: Vec<[f64; 3]>,
+    /// Legs of a path; empty for a straight motion.
+    pub path: Vec<Leg>,
     /// Direction of the z axis of the shape's frame, as a unit vector: the axis of a cylinder or capsule, the
     /// outward normal of a plate's face. `None` for a shape aligned with the axes of the scene.
     pub axis: Option<[f64; 3]>,
@@ -164,17 +149,6 @@ pub struct Friction {
     pub stick: f64,
 }
 
-/// Drive of a tool.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Drive {
-    /// Displacement along the direction of motion, in metres.
-    Closure(f64),
-    /// Total force along the direction of motion, in newtons.
-    Force(f64),
-    /// Mean pressure on the tool's face, in pascals.
-    Pressure(f64),
-}
-
 impl ToolKeys {
     pub fn read(self, body: Option<&Body>, curves: &[NamedCurve], report: &Report) -> Option<Tool> {
         let keys = self.beside;
@@ -182,39 +156,15 @@ impl ToolKeys {
             ShapeWord::Named(word) => named(&word, self.settings, report),
             ShapeWord::File => self.surface.and_then(|keys| surface(keys, report)),
         };
-        let DriveKeys { closure, path, force, pressure, over, curve } = keys.drive;
-        let help = "leave it out: the curve has its own times";
-        report.require(over.is_none() || curve.is_none(), "drive.over", "can't be combined with curve", help);
-        let curve = curve_named(curve.as_ref(), curves, "drive.curve", report);
-        let path: Option<Vec<[f64; 3]>> =
-            path.map(|legs| legs.into_iter().map(|leg| leg.map(|q| q.0)).collect());
-        let length = |leg: &[f64; 3]| leg.iter().map(|x| x * x).sum::<f64>().sqrt();
-        let drive = match (closure, &path, force, pressure) {
-            (Some(q), None, None, None) => Drive::Closure(q.0),
-            (None, Some(path), None, None) => Drive::Closure(path.iter().map(length).sum()),
-            (None, None, Some(q), None) => Drive::Force(report.positive("drive.force", q.0)),
-            (None, None, None, Some(q)) => Drive::Pressure(report.positive("drive.pressure", q.0)),
-            _ => {
-                let help = "give one of closure, path, force and pressure";
-                report.add("drive", Problem::new("is not one drive").help(help));
-                return None;
-            }
-        };
-        if path.as_ref().is_some_and(Vec::is_empty) {
-            report.add("drive.path", Problem::new("is empty").help("give one or more displacements"));
-            return None;
-        }
-        let path = path.unwrap_or_default();
-        for (index, leg) in path.iter().enumerate() {
-            let key = format!("drive.path[{index}]");
-            report.require(length(leg) > 0.0, &key, "has no length", "leave it out, or give a displacement");
-        }
-        let along = match (keys.along, path.first()) {
-            (Some(along), None) => unit(along, "along", report)?,
-            (None, Some(&leg)) => unit(leg, "drive.path[0]", report)?,
+        let drive = keys.drive.read(curves, report)?;
+        let along = match (keys.along, drive.first()) {
+            (Some(along), None) => Some(unit(along, "along", report)?),
+            (None, Some(GivenLeg::Move(leg))) => Some(unit((*leg).into(), "drive.path[0]", report)?),
+            (None, Some(GivenLeg::Turn(_))) => None,
             (Some(_), Some(_)) => {
-                let help = "leave it out: a path has directions of its own";
-                report.add("along", Problem::new("can't be combined with drive.path").help(help));
+                let help = format!("leave it out: a {} has directions of its own", drive.word);
+                let problem = format!("can't be combined with drive.{}", drive.word);
+                report.add("along", Problem::new(problem).help(&help));
                 return None;
             }
             (None, None) => {
@@ -225,13 +175,32 @@ impl ToolKeys {
         let Placed { shape, file, middle, axis } = placed?;
         let axis = match axis {
             Some(axis) => Some(unit(axis, "axis", report)?),
-            None => shape.axis(along.into()).map(Into::into),
+            None => None,
         };
-        let turned = axis.map_or_else(Matrix3::identity, |axis| contact::Tool::turned_to(&axis.into()));
-        let at = match keys.at {
-            AtKeys::Point(at) => std::array::from_fn(|a| at[a].0 + middle[a]),
-            touch => touch.read((&shape, turned, along), body, report)?,
+        let framed = |along: [f64; 3]| {
+            let axis = axis.or_else(|| shape.axis(along.into()).map(Into::into));
+            (axis, axis.map_or_else(Matrix3::identity, |axis| contact::Tool::turned_to(&axis.into())))
         };
+        let (at, along) = match (keys.at, along, drive.first()) {
+            (AtKeys::Point(at), along, first) => {
+                let at = std::array::from_fn(|a| at[a].0 + middle[a]);
+                let along = match (along, first) {
+                    (None, Some(GivenLeg::Turn(turn))) => turn.along(&at.into()).into(),
+                    (along, _) => along?,
+                };
+                (at, along)
+            }
+            (touch, Some(along), _) => (touch.read((&shape, framed(along).1, along), body, report)?, along),
+            (_, None, _) => {
+                let help = "give at = [x, y, z], or let a path start with a displacement";
+                let problem = Problem::new("has no direction, because the tool turns first");
+                report.add("at.touch", problem.help(help));
+                return None;
+            }
+        };
+        let (axis, turned) = framed(along);
+        let (over, curve) = (drive.over, drive.curve.clone());
+        let (drive, path) = drive.placed(&shape, &at.into(), &turned, report)?;
         Some(Tool {
             name: keys.name,
             shape,
@@ -241,7 +210,7 @@ impl ToolKeys {
             path,
             axis,
             drive,
-            over: over.map(|q| q.0),
+            over,
             curve,
             penalty: report.positive("penalty", keys.penalty.0),
             friction: friction(keys.friction.unwrap_or(0.0), keys.stick, report),
@@ -340,48 +309,10 @@ pub(crate) fn demands(tools: &[Tool], procedure: &Procedure, report: &Report) {
             "is no duration of a ramp",
             "give a time above zero, or leave it out",
         );
-        if let Procedure::Static(asked) = procedure {
-            steps_meet_bends(tool, asked, &report);
-        }
         if matches!(tool.drive, Drive::Pressure(_)) && tool.shape.face_area(&tool.along.into()).is_none() {
             let help =
                 "only a rounded-box that closes along x, y or z has a face of a known area; give force";
             report.add("drive.pressure", Problem::new("has no face to act on").help(help));
         }
     }
-}
-
-/// Requires that load steps end at the bends of a path: a step across a bend would cut it, and friction would
-/// act along the cut.
-fn steps_meet_bends(tool: &Tool, asked: &Static, report: &Report) {
-    let lengths: Vec<f64> =
-        tool.path.iter().map(|leg| leg.iter().map(|x| x * x).sum::<f64>().sqrt()).collect();
-    let whole: f64 = lengths.iter().sum();
-    let bends = (lengths.iter()).scan(0.0, |sum, length| {
-        *sum += length;
-        Some(*sum / whole)
-    });
-    let bends: Vec<f64> = match &tool.curve {
-        None => bends.collect(),
-        Some(curve) if curve.is_smooth() && curve.steepest() > 0.0 && tool.path.len() > 1 => {
-            let problem = Problem::new("passes the bends of the path between two load steps");
-            return report.add("drive.curve", problem.help("take a curve without smooth = true"));
-        }
-        Some(curve) => bends.flat_map(|bend| crossings(curve, bend)).collect(),
-    };
-    if let Some((missed, help)) = asked.missed(&bends) {
-        let problem =
-            format!("bends at {missed:.4} of the loading, between the ends of {} load steps", asked.steps);
-        report.add("drive.path", Problem::new(problem).help(&help));
-    }
-}
-
-/// Returns the times at which a curve of straight lines passes a factor.
-fn crossings(curve: &Curve, factor: f64) -> Vec<f64> {
-    let each = curve.points().windows(2).filter_map(|pair| {
-        let ([start, from], [end, to]) = (pair[0], pair[1]);
-        let part = (factor - from) / (to - from);
-        (0.0..=1.0).contains(&part).then_some(start + part * (end - start))
-    });
-    each.collect()
 }

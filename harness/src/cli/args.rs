@@ -34,6 +34,28 @@ pub struct FieldsArgs {
     pub force: bool,
 }
 
+/// Arguments of `import`.
+#[derive(Args)]
+pub struct ImportArgs {
+    /// Model of FEBio (.feb, specification 4.0 or 3.0) or deck of CalculiX (.inp)
+    pub model: PathBuf,
+    /// Scene to write; only the parts left out are printed unless given
+    #[arg(long, value_name = "SCENE")]
+    pub out: Option<PathBuf>,
+    /// Unit of the model's lengths, which determines its other units: m, N, s, kg, Pa or mm, N, s, t, MPa
+    #[arg(long, value_enum, default_value_t = ModelUnit::M)]
+    pub unit: ModelUnit,
+}
+
+/// Consistent sets of units, by their lengths.
+#[derive(Clone, Copy, ValueEnum)]
+pub enum ModelUnit {
+    /// m, N, s, kg, Pa
+    M,
+    /// mm, N, s, t, MPa
+    Mm,
+}
+
 /// Arguments of `run`.
 #[derive(Args, Clone)]
 pub struct RunArgs {

@@ -6,8 +6,8 @@ use clap::{ColorChoice, Parser, Subcommand};
 
 use super::adapter::AdapterAction;
 use super::args::{
-    BaselineArgs, ClaimsArgs, CompareArgs, ExportArgs, FieldsArgs, MeshAction, ReferenceArgs, RunArgs,
-    SceneArgs, SchemaOf,
+    BaselineArgs, ClaimsArgs, CompareArgs, ExportArgs, FieldsArgs, ImportArgs, MeshAction, ReferenceArgs,
+    RunArgs, SceneArgs, SchemaOf,
 };
 use super::ci::CiArgs;
 use super::history::HistoryAction;
@@ -54,7 +54,12 @@ pub enum Command {
     /// On a terminal, values not given as options are asked for. Otherwise defaults are used and named in the
     /// output.
     Init(InitArgs),
-    /// Run one scene with some or all of its methods
+    /// Write a scene of a model of FEBio (.feb) or CalculiX (.inp), and list what it leaves out
+    ///
+    /// The scene refers to the model as its mesh file. A part of the model that changes the answer and that no
+    /// scene can express is refused with its line; all other parts that are not in the scene are listed.
+    Import(ImportArgs),
+    /// Run one scene with some or all of its methods; a model of another program is imported first
     Run(RunArgs),
     /// Find the cheapest method of a scene within an error bound
     ///

@@ -43,6 +43,9 @@ pub struct RunObject<'a> {
     tools: Vec<ToolObject<'a>>,
     /// Supports at the end.
     supports: Vec<SupportObject<'a>>,
+    /// 2-norm of the displacements of all unconstrained unknowns at the end, m (`solution_norm` of FEBio).
+    #[serde(skip_serializing_if = "Option::is_none")]
+    free_norm: Option<f64>,
     /// Mean displacements of the requested surfaces at the end.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     means: Vec<MeanObject<'a>>,
@@ -197,6 +200,7 @@ impl<'a> RunObject<'a> {
             supports: (outcome.supports.iter())
                 .map(|s| SupportObject { name: &s.name, force: s.resultant.force.into() })
                 .collect(),
+            free_norm: outcome.free_norm,
             means: outcome.means.iter().map(|m| MeanObject { name: &m.name, u: m.u.into() }).collect(),
             modes: outcome.modes.iter().map(numbers).collect(),
             steps: outcome
@@ -242,6 +246,7 @@ impl<'a> RunObject<'a> {
             probes: Vec::new(),
             tools: Vec::new(),
             supports: Vec::new(),
+            free_norm: None,
             means: Vec::new(),
             modes: Vec::new(),
             steps: Vec::new(),

@@ -13,6 +13,7 @@ mod errors;
 mod export;
 mod fields;
 mod history;
+mod import;
 mod init;
 mod interrupt;
 mod json;
@@ -95,6 +96,7 @@ fn act(cli: Cli) -> u8 {
     }
     match cli.command {
         Command::Init(args) => init::init(&args).map_or_else(|failure| fail(&failure), |()| 0),
+        Command::Import(args) => import::import(&args),
         Command::Run(args) => run(&args),
         Command::Pick(args) => pick::pick(&args),
         Command::Fields(args) => fields::run(&args),

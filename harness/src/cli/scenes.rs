@@ -29,6 +29,11 @@ pub(super) fn refuse_scene(path: &Path, errors: &[SceneError]) -> u8 {
 /// Loads the scene and returns it with the indices of the selected methods.
 pub(super) fn open(args: &SceneArgs) -> Result<(Scene, Vec<usize>), u8> {
     let path = &args.file;
+    if cases::import::is_model(path) {
+        let scene = super::import::open(path, &args.set)?;
+        let chosen = choose(&scene, args)?;
+        return Ok((scene, chosen));
+    }
     let scene = scene::load_with(path, &args.set).map_err(|errors| refuse_scene(path, &errors))?;
     let chosen = choose(&scene, args)?;
     Ok((scene, chosen))

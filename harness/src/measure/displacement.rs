@@ -41,3 +41,12 @@ pub(crate) fn displacement(
     }
     Ok(field)
 }
+
+/// 2-norm of the nodal displacements at the end over the unknowns that no support prescribes, m.
+pub(crate) fn free_norm(run: &Solved) -> f64 {
+    let mut free = run.solution.u.clone();
+    for fixed in run.prepared.fixed() {
+        free[fixed.node as usize][fixed.axis as usize] = 0.0;
+    }
+    free.iter().map(|u| u.norm_squared()).sum::<f64>().sqrt()
+}

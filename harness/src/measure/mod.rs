@@ -43,7 +43,7 @@ use crate::prepare::Prepared;
 use comparison::{against, push_difference};
 use norms::{difference, norms, relative};
 
-pub(crate) use displacement::displacement;
+pub(crate) use displacement::{displacement, free_norm};
 pub(crate) use energies::energies;
 pub(crate) use face_results::places;
 pub(crate) use modes::report as report_modes;

@@ -65,10 +65,10 @@ fn extent(mesh: &Mesh) -> Vector3 {
 /// Points whose convex hull is the tool at a closure (m); for a plate, a slab as wide as the body.
 fn hull(set: &PlacedTool, closure: f64, mesh: &Mesh) -> ToolHull {
     let points = set.tool.shape().outline(extent(mesh).max());
-    let place = set.tool.place(closure).coords;
+    let pose = set.tool.pose(closure);
     ToolHull {
         name: set.name.clone(),
-        points: points.iter().map(|p| (place + set.turned * p).into()).collect(),
+        points: points.iter().map(|p| (pose.place + pose.rotation * p).into()).collect(),
     }
 }
 

@@ -7,15 +7,26 @@ use geometry::{Point3, Vector3};
 use crate::outcome::{LoadStep, Metric};
 
 /// Metrics of the probes' displacement over all recorded states of a complete motion.
-pub(crate) fn metrics(steps: &[LoadStep], exact: Option<&dyn Exact>, probes: &[Point3]) -> Vec<Metric> {
+/// The damping ratio is that of a body that is `damped`.
+pub(crate) fn metrics(
+    steps: &[LoadStep],
+    exact: Option<&dyn Exact>,
+    probes: &[Point3],
+    damped: bool,
+) -> Vec<Metric> {
     let states: Vec<(f64, &[Vector3])> =
         steps.iter().filter_map(|step| Some((step.time()?, step.probes.as_slice()))).collect();
     let first: Vec<(f64, Vector3)> =
         states.iter().filter_map(|(time, probes)| Some((*time, *probes.first()?))).collect();
-    [(&metric::HISTORY_ERROR, error(&states, exact, probes)), (&metric::PERIOD, period(&first))]
-        .into_iter()
-        .filter_map(|(entry, value)| Some(Metric::new(entry, value?)))
-        .collect()
+    let damping = if damped { damping_ratio(&first) } else { None };
+    [
+        (&metric::HISTORY_ERROR, error(&states, exact, probes)),
+        (&metric::PERIOD, period(&first)),
+        (&metric::DAMPING_RATIO, damping),
+    ]
+    .into_iter()
+    .filter_map(|(entry, value)| Some(Metric::new(entry, value?)))
+    .collect()
 }
 
 /// Largest error over the largest exact displacement; `None` without an exact solution that moves.
@@ -32,6 +43,49 @@ fn error(states: &[(f64, &[Vector3])], exact: Option<&dyn Exact>, probes: &[Poin
         }
     }
     (largest > 0.0).then(|| error / largest)
+}
+
+/// Part of critical damping at which a point vibrates: `L / sqrt(pi^2 + L^2)` with the mean logarithm `L` of the
+/// ratio of successive swings, from one extreme to the next, along its largest displacement. `None` with fewer than
+/// two swings; of four and more the second half counts. A swing does not depend on the position of rest, which only tells the extremes apart: it is the mean
+/// of the last half of the motion.
+fn damping_ratio(states: &[(f64, Vector3)]) -> Option<f64> {
+    let farthest = states.iter().map(|s| s.1).max_by(|a, b| a.norm_squared().total_cmp(&b.norm_squared()))?;
+    let way: Vec<f64> = states.iter().map(|s| s.1.dot(&farthest)).collect();
+    let late = &way[way.len() / 2..];
+    let rest = late.iter().sum::<f64>() / late.len() as f64;
+    let mut extremes = Vec::new();
+    let mut first = None;
+    for k in 1..way.len() {
+        if (way[k - 1] < rest) == (way[k] < rest) {
+            continue;
+        }
+        // Only a half of the motion between two passages through the position of rest has its extreme.
+        if let Some(first) = first.replace(k) {
+            extremes.push(extreme(&way, first, k, way[first] < rest));
+        }
+    }
+    let swings: Vec<f64> = extremes.windows(2).map(|pair| (pair[1] - pair[0]).abs()).collect();
+    // Higher modes of a vibration that starts suddenly have faded in the second half.
+    let swings = &swings[if swings.len() >= 4 { swings.len() / 2 } else { 0 }..];
+    let (first, last) = (swings.first()?, swings.last()?);
+    if swings.len() < 2 || !(*last > 0.0) {
+        return None;
+    }
+    let decrement = (first / last).ln() / (swings.len() - 1) as f64;
+    Some(decrement / std::f64::consts::PI.hypot(decrement))
+}
+
+/// Lowest or highest value of `way[first..end]`, by the parabola through three equally spaced states.
+fn extreme(way: &[f64], first: usize, end: usize, lowest: bool) -> f64 {
+    let sign = if lowest { -1.0 } else { 1.0 };
+    let most = (first..end).max_by(|a, b| (sign * way[*a]).total_cmp(&(sign * way[*b]))).unwrap_or(first);
+    if most == 0 || most + 1 == way.len() {
+        return way[most];
+    }
+    let (before, at, after) = (way[most - 1], way[most], way[most + 1]);
+    let (slope, bend) = (0.5 * (after - before), after - 2.0 * at + before);
+    if bend == 0.0 { at } else { at - 0.5 * slope * slope / bend }
 }
 
 /// Mean time (s) between passages of a point, initially at rest, through the middle of its range along its
@@ -81,6 +135,28 @@ mod tests {
         assert!(found(1.0, f64::NAN).is_nan());
         let still = PureBending::new(elastic, 0.5);
         assert_eq!(error(&[(0.01, &[Vector3::zeros(); 2])], Some(&still), &probes), None);
+    }
+
+    #[test]
+    fn a_damping_ratio_is_that_of_the_decaying_swing() {
+        let found = |zeta: f64, per_period: f64, periods: f64| {
+            let omega = 20.0;
+            let free = omega * (1.0 - zeta * zeta).sqrt();
+            let states: Vec<(f64, Vector3)> = (1..=(per_period * periods) as usize)
+                .map(|k| {
+                    let t = 2.0 * std::f64::consts::PI / free * k as f64 / per_period;
+                    let swing = (free * t).cos() + zeta * omega / free * (free * t).sin();
+                    let x = 2e-3 * (1.0 - (-zeta * omega * t).exp() * swing);
+                    (t, Vector3::new(0.0, -x, 0.5 * x))
+                })
+                .collect();
+            damping_ratio(&states)
+        };
+        for zeta in [0.005, 0.05, 0.2] {
+            let ratio = found(zeta, 40.0, 5.5).unwrap();
+            assert!((ratio / zeta - 1.0).abs() < 2e-3, "{ratio} {zeta}");
+        }
+        assert_eq!((found(0.05, 40.0, 1.4), damping_ratio(&[])), (None, None));
     }
 
     #[test]

@@ -1,5 +1,6 @@
 //! States of a run for visualisation programs: displacement, stress and tools at every recorded state.
 
+use contact::Tool;
 use geometry::{Mesh, Point3, Search, Vector3};
 use shape::{Matrix3, PointRows};
 
@@ -7,7 +8,7 @@ use super::solved::Solved;
 use super::stress::own_stress;
 use crate::discretise::Volume;
 use crate::error::Failure;
-use crate::outcome::{LoadStep, State, States, Tensors, ToolSkin};
+use crate::outcome::{LoadStep, Moved, State, States, Tensors, ToolSkin};
 use crate::scenario::PlacedTool;
 
 /// A recorded state of a run.
@@ -95,7 +96,7 @@ pub(crate) fn states(run: &Solved, most: usize) -> Result<States, Failure> {
                 .flat_map(|(tool, closure)| deformed().map(|x| tool.gap(*closure, &x)))
                 .fold(f64::INFINITY, f64::min),
             displacement,
-            tools: tools().map(|(tool, closure)| tool.displacement(*closure)).collect(),
+            tools: tools().map(|(tool, closure)| moved(tool, *closure)).collect(),
         }
     };
     let states: Vec<State> = recorded(run, most).into_iter().map(state).collect();
@@ -112,6 +113,16 @@ pub(crate) fn states(run: &Solved, most: usize) -> Result<States, Failure> {
 /// Whether the `k`-th of `count` states is among the `most` states that end equal parts of the history.
 fn is_kept(k: usize, count: usize, most: usize) -> bool {
     count <= most || (k + 1) * most / count > k * most / count
+}
+
+/// Motion of a tool from its start to a closure (m).
+fn moved(tool: &Tool, closure: f64) -> Moved {
+    if !tool.turns() {
+        return Moved { rotation: None, by: tool.displacement(closure) };
+    }
+    let (start, now) = (tool.pose(0.0), tool.pose(closure));
+    let rotation = now.rotation * start.rotation.transpose();
+    Moved { rotation: Some(rotation), by: now.place - rotation * start.place }
 }
 
 /// Surface of a tool at its start.

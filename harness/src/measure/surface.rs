@@ -1,8 +1,9 @@
 //! Data of a run for the three-dimensional view: the surface of the elements at some of the run's states.
 
 use geometry::{Facet, Mesh, Point3, Search, Vector3};
+use nalgebra::{Rotation3, UnitQuaternion};
 use records::{BodyState, Faces, Inside, InsideState, RecordedBody, Skin, pack};
-use shape::PointRows;
+use shape::{Matrix3, PointRows};
 
 use super::comparison::against;
 use super::comparison::compared;
@@ -12,7 +13,7 @@ use super::states;
 use super::states::{Recorded, at_mesh, recorded};
 use super::stress::Recovered;
 use crate::error::Failure;
-use crate::outcome::{State, ToolSkin, von_mises};
+use crate::outcome::{Moved, State, ToolSkin, von_mises};
 
 /// Number of states kept of a run, enough to show a motion. A body of 1000 surface nodes takes 20 kB for
 /// each.
@@ -205,11 +206,24 @@ fn body_state(state: &State, values: Option<&Values>, points: &Points) -> BodySt
     BodyState {
         time: state.time,
         u: vectors(points.skin().map(|n| state.displacement[n])),
-        tools: state.tools.iter().map(|by| <[f64; 3]>::from(*by)).collect(),
+        tools: state.tools.iter().map(|moved| moved.by.into()).collect(),
+        turns: turns(&state.tools),
         touching: pack(state.touching.iter().flat_map(|(x, gap)| [x.x, x.y, x.z, -gap].map(|v| v as f32))),
         deepest_node: (-state.gap).max(0.0),
         values: values.map(|values| packed(&values[..points.skin])),
     }
+}
+
+/// Rotations of the tools as unit quaternions; empty if none turns.
+fn turns(tools: &[Moved]) -> Vec<[f64; 4]> {
+    if tools.iter().all(|moved| moved.rotation.is_none()) {
+        return Vec::new();
+    }
+    let of_tool = |moved: &Moved| {
+        let rotation = Rotation3::from_matrix_unchecked(moved.rotation.unwrap_or_else(Matrix3::identity));
+        UnitQuaternion::from_rotation_matrix(&rotation).coords.into()
+    };
+    tools.iter().map(of_tool).collect()
 }
 
 fn skin(tool: &ToolSkin) -> Skin {

@@ -39,8 +39,8 @@ impl ToolStep {
             closure: state.closure,
             force: state.force,
             moment: state.moment + tool.place(state.closure).coords.cross(&state.force),
-            // The subtraction yields 0 for a tool without contact; a sign would yield -0.
-            pushed: 0.0 - state.force.dot(&tool.along_at(state.closure)),
+            // The sum yields 0 for a tool without contact, which would otherwise have -0.
+            pushed: 0.0 + tool.driving_force(state.closure, &state.force, &state.moment),
             active: state.active as u64,
             carriers: state.carriers,
             area: state.area,

@@ -29,7 +29,7 @@ pub(crate) use metrics::push;
 pub use plan::{Plan, Stage, StageName};
 pub(crate) use rows::run_id;
 pub use states::States;
-pub(crate) use states::{State, Tensors, ToolSkin, von_mises};
+pub(crate) use states::{Moved, State, Tensors, ToolSkin, von_mises};
 use timing::Timed;
 pub use warning::Warning;
 pub use watch::{Stopped, Watch};
@@ -152,6 +152,8 @@ pub struct Outcome {
     pub tools: Vec<String>,
     /// Forces of the supports at the end.
     pub supports: Vec<SupportForce>,
+    /// 2-norm of the displacements of all unconstrained unknowns at the end, m; `None` without a displacement.
+    pub free_norm: Option<f64>,
     /// Mean displacement of faces at the end.
     pub means: Vec<FaceMean>,
     /// The last state reported: converged in a static procedure, recorded in dynamics.
@@ -212,6 +214,7 @@ impl Outcome {
             counters: Counters::default(),
             tools: Vec::new(),
             supports: Vec::new(),
+            free_norm: None,
             means: Vec::new(),
             last: None,
             steps: Vec::new(),

@@ -27,8 +27,8 @@ pub(crate) struct State {
     pub(crate) displacement: Vec<Vector3>,
     /// Stress and volume ratio of the cells; `None` for vibration modes and viscoelastic tissue.
     pub(crate) tensors: Option<Tensors>,
-    /// Displacement of each tool, m.
-    pub(crate) tools: Vec<Vector3>,
+    /// Motion of each tool from its start.
+    pub(crate) tools: Vec<Moved>,
     /// Contact points inside a tool (position, m), each with its signed distance (m, negative inside).
     pub(crate) touching: Vec<(Point3, f64)>,
     /// Smallest signed distance of a mesh point to a tool, m; infinite without tools.
@@ -52,6 +52,22 @@ pub(crate) struct ToolSkin {
     pub(crate) quads: Vec<[u32; 4]>,
     /// Unit direction of travel at the start.
     pub(crate) along: Vector3,
+}
+
+/// Rigid motion of a tool from its start: a position `x` moves to `R x + d`.
+#[derive(Clone, Debug)]
+pub(crate) struct Moved {
+    /// Rotation `R` (3, 3); `None` for a tool that does not turn.
+    pub(crate) rotation: Option<Matrix3>,
+    /// Displacement `d`, m.
+    pub(crate) by: Vector3,
+}
+
+impl Moved {
+    /// Displacement of a position (m), m.
+    fn displacement(&self, x: &Point3) -> Vector3 {
+        self.rotation.map_or(self.by, |rotation| rotation * x.coords - x.coords + self.by)
+    }
 }
 
 impl States {
@@ -123,7 +139,7 @@ impl States {
             points.extend_from_slice(&tool.points);
             quads.extend(tool.quads.iter().map(|quad| quad.map(|k| first + k)));
             bodies.resize(quads.len(), number as u32);
-            moved.resize(points.len(), *by);
+            moved.extend(tool.points.iter().map(|x| by.displacement(x)));
         }
         surface_vtu(&points, &quads, &bodies, state.time, &[vectors("displacement", &moved)])
     }

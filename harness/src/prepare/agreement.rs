@@ -26,14 +26,23 @@ pub(super) fn check(supports: &[Support], mesh: &Mesh) -> Result<(), Failure> {
     let values: Vec<_> = supports.iter().map(values).collect::<Result<_, _>>()?;
     let size = place::size(mesh);
     let largest = values.iter().flatten().map(|(_, value)| value.amax()).fold(size, f64::max);
-    // First support and its value, m, by vertex and axis.
-    let mut prescribed: HashMap<(u32, usize), (usize, f64)> = HashMap::new();
+    // Supports and their values, m, by vertex and axis: the first that always acts, and all others.
+    let mut prescribed: HashMap<(u32, usize), Vec<(usize, f64)>> = HashMap::new();
+    let together = |one: usize, other: usize| match (supports[one].during, supports[other].during) {
+        (Some([from, until]), Some([start, end])) => from < end && start < until,
+        _ => true,
+    };
     let curves_differ = |one: usize, other: usize| supports[one].curve != supports[other].curve;
     for (index, (support, values)) in supports.iter().zip(values).enumerate() {
         for (vertex, value) in values {
             for axis in (0..3).filter(|&axis| support.axes[axis]) {
                 let second = value[axis];
-                let &mut (other, first) = prescribed.entry((vertex, axis)).or_insert((index, second));
+                let before = prescribed.entry((vertex, axis)).or_default();
+                let &(other, first) =
+                    before.iter().find(|(other, _)| together(index, *other)).unwrap_or(&(index, second));
+                if other == index {
+                    before.push((index, second));
+                }
                 if first != 0.0 && curves_differ(index, other) {
                     let node = position(&mesh.points()[vertex as usize], size);
                     let problem = format!("moves {node} along another curve than {}", supports[other].key);

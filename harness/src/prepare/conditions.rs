@@ -11,6 +11,8 @@ pub(super) struct Conditions {
 /// The conditions of one support.
 pub(super) struct Held {
     pub(super) axes: [bool; 3],
+    /// Start and end of the part of the loading in which it acts; `None` for all of it.
+    pub(super) during: Option<[f64; 2]>,
     /// Counts before the support and after it.
     pub(super) from: Conditions,
     pub(super) to: Conditions,

@@ -2,7 +2,7 @@
 //! edges.
 
 use cases::scene::ErrorKind;
-use contact::{ContactSurface, Outline, Tool};
+use contact::{ContactSurface, Motion, Outline, Tool};
 use geometry::quadrature::Parts;
 use geometry::{Facet, Mesh, Point3, Vector3};
 use shape::{PointRows, RowSource, SurfaceRows, length, position_alone};
@@ -150,10 +150,21 @@ fn passes(mesh: &Mesh, facet: Facet, tool: &Tool) -> bool {
     let middle = Point3::from(nodes().map(|x| x.coords).sum::<Vector3>() / nodes().len() as f64);
     let radius = nodes().map(|x| (x - middle).norm()).fold(0.0, f64::max);
     let (low, high) = tool.bounds(0.0);
-    tool.legs().any(|(start, along)| {
-        let off = middle - start;
-        let across = off - along * off.dot(&along);
-        across.norm() <= radius + (high - low).norm()
+    let margin = radius + (high - low).norm();
+    tool.legs().any(|(start, leg)| match leg.motion() {
+        Motion::Along(along) => {
+            let off = middle - start.place;
+            let across = off - along * off.dot(along);
+            across.norm() <= margin
+        }
+        // The tool sweeps a ring.
+        Motion::About(turn) => {
+            let [of_tool, of_facet] = [start.place, middle].map(|x| {
+                let off = x - turn.pin;
+                (off.dot(&turn.axis), turn.axis.cross(&off).norm())
+            });
+            (of_tool.0 - of_facet.0).abs() <= margin && (of_tool.1 - of_facet.1).abs() <= margin
+        }
     })
 }
 

@@ -39,6 +39,7 @@ impl OwnedFoundation {
             axes: [true; 3],
             along_normal: self.along_normal,
             values: self.ground.clone(),
+            from: Vec::new(),
             beta: self.stiffness,
             damping: self.damping,
         }

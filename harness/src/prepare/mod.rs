@@ -18,6 +18,7 @@ mod support_gap;
 pub(crate) mod surfaces;
 mod timed;
 mod values;
+mod wall;
 
 use std::collections::HashMap;
 
@@ -65,6 +66,9 @@ struct OwnedPenalty {
     beta: f64,
 }
 
+/// First prescribed value (m) of each vertex, axis, and part of the loading.
+type FirstValues = HashMap<(u32, usize, Option<[u64; 2]>), f64>;
+
 /// All tables of one run.
 pub struct Prepared {
     /// Source of further tables.
@@ -105,7 +109,7 @@ pub fn prepare(
     counters: &mut Counters,
 ) -> Result<Prepared, Failure> {
     let (source, mut volume) = method.volume(&setup.alike(), plan, counters)?;
-    volume.axes = axes::axes(&volume, setup)?;
+    volume.axes = axes::axes(method, &*source, &volume, setup)?;
     let spacing = source.spacing(&volume.rows);
     let mut prepared = Prepared {
         source,
@@ -188,6 +192,12 @@ impl Prepared {
         &self.fixed
     }
 
+    /// Iterates over the prescribed degrees of freedom of supports that act throughout the loading.
+    pub fn always_fixed(&self) -> impl Iterator<Item = &FixedDof> {
+        let always = |index: usize| !matches!(self.own_curves.fixed_during.get(index), Some(Some(_)));
+        self.fixed.iter().enumerate().filter(move |(index, _)| always(*index)).map(|(_, dof)| dof)
+    }
+
     /// Returns the surfaces constrained by penalty in a static procedure, then those on springs and dampers, for the
     /// solver.
     pub fn penalties(&self) -> Vec<PenaltySurface<'_>> {
@@ -198,6 +208,7 @@ impl Prepared {
                 axes: h.axes,
                 along_normal: false,
                 values: h.values.clone(),
+                from: Vec::new(),
                 beta: h.beta,
                 damping: 0.0,
             })
@@ -289,8 +300,8 @@ impl Prepared {
                     self.constrain_weakly(method, support, (Weak::Penalty { factor: *factor }, *factor))?;
                 }
             }
-            self.hold(support.axes, from);
-            self.time_supports(&support.curve);
+            self.hold(support, from);
+            self.time_supports(&support.curve, support.during);
         }
         Ok(())
     }
@@ -301,18 +312,19 @@ impl Prepared {
         &mut self,
         mesh: &Mesh,
         support: &Support,
-        first: &mut HashMap<(u32, usize), f64>,
+        first: &mut FirstValues,
         node: impl Fn(u32) -> u32,
     ) -> Result<(), Failure> {
         let vertices = node_set::nodes(&support.key, &support.place, mesh)?;
         if vertices.is_empty() {
             return Err(place::empty(&support.key, &support.place, mesh));
         }
+        let span = support.during.map(|span| span.map(f64::to_bits));
         for vertex in vertices {
             let value =
                 (support.value)(&mesh.points()[vertex as usize]).map_err(not_finite(&support.key, "move"))?;
             for axis in (0..3).filter(|&a| support.axes[a]) {
-                let value = *first.entry((vertex, axis)).or_insert(value[axis]);
+                let value = *first.entry((vertex, axis, span)).or_insert(value[axis]);
                 self.fixed.push(FixedDof { node: node(vertex), axis: axis as u8, value });
             }
         }

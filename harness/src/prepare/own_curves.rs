@@ -17,6 +17,9 @@ pub(super) struct OwnCurves {
     pub(super) following: Vec<Timed>,
     pub(super) fixed: Vec<Timed>,
     pub(super) weak: Vec<Timed>,
+    /// Start and end of the time in which each of the fixed and of the weak conditions acts.
+    pub(super) fixed_during: Vec<Option<[f64; 2]>>,
+    pub(super) weak_during: Vec<Option<[f64; 2]>>,
     /// Those of surfaces, body forces and nodal forces, one after another.
     pub(super) loads: Vec<Timed>,
     pub(super) active: Vec<Timed>,

@@ -114,6 +114,7 @@ fn beside(corners: &[u32], corner: u32) -> [u32; 2] {
 /// the tool passes by.
 fn way(tool: &Tool, x: &Point3, size: f64) -> Option<f64> {
     let mut closure = 0.0;
+    let rate = tool.rate(std::iter::once(*x), 0.0);
     let farthest = tool.gap(0.0, x) + 2.0 * size;
     for _ in 0..STEPS {
         let gap = tool.gap(closure, x);
@@ -121,7 +122,7 @@ fn way(tool: &Tool, x: &Point3, size: f64) -> Option<f64> {
             return Some(closure);
         }
         // No part of the tool is nearer than the gap.
-        closure += gap;
+        closure += gap / rate;
         if closure > farthest {
             return None;
         }

@@ -2,12 +2,11 @@
 
 use std::ops::Range;
 
-use geometry::{Point3, Vector3};
-use shape::{FixedDof, Resultant};
-use statics::Timing;
-
 use super::Prepared;
 use super::conditions::{Conditions, Held};
+use crate::scenario::setup::Support;
+use geometry::{Point3, Vector3};
+use shape::{FixedDof, Resultant};
 
 /// Forces (N) on the body at a solution, by kind of condition.
 pub struct ConditionForces<'a> {
@@ -19,6 +18,15 @@ pub struct ConditionForces<'a> {
     pub rows: &'a [Resultant],
     /// Force of each weakly constrained surface.
     pub weak: &'a [Resultant],
+    /// Fraction of the loading, or time in s, of these forces; `None` in a procedure in which all supports always
+    /// act.
+    pub time: Option<f64>,
+}
+
+/// Whether a support acts at a time: its force still does at its end, but not yet at a late start.
+fn acts([from, until]: &[f64; 2], time: f64) -> bool {
+    const ROUNDING: f64 = 1e-9;
+    (*from == 0.0 || time > from * (1.0 + ROUNDING)) && time <= until * (1.0 + ROUNDING)
 }
 
 impl Prepared {
@@ -27,8 +35,9 @@ impl Prepared {
     }
 
     /// Records that all conditions since `from` belong to one support.
-    pub(super) fn hold(&mut self, axes: [bool; 3], from: Conditions) {
-        self.held.push(Held { axes, from, to: self.conditions() });
+    pub(super) fn hold(&mut self, support: &Support, from: Conditions) {
+        let (axes, during) = (support.axes, support.during);
+        self.held.push(Held { axes, during, from, to: self.conditions() });
     }
 
     /// Iterates over the constrained axes of each support.
@@ -40,8 +49,13 @@ impl Prepared {
     /// counts for the first of them, so that the sum balances the loads.
     pub fn support_forces(&self, forces: &ConditionForces) -> Vec<Resultant> {
         let mut seen = vec![false; 3 * forces.nodes.len()];
-        let each = self.held.iter().map(|Held { from, to, .. }| {
+        let each = self.held.iter().map(|Held { during, from, to, .. }| {
             let mut sum = Resultant::default();
+            if let (Some(time), Some(span)) = (forces.time, during)
+                && !acts(span, time)
+            {
+                return sum;
+            }
             for &FixedDof { node, axis, .. } in self.fixed.get(from.fixed..to.fixed).unwrap_or_default() {
                 let (i, a) = (node as usize, usize::from(axis));
                 // Without nodal supports there are no nodal forces.
@@ -53,23 +67,6 @@ impl Prepared {
                 all.get(range).unwrap_or_default().iter().copied().sum()
             };
             sum + of(forces.rows, from.rows..to.rows) + of(forces.weak, from.weak..to.weak)
-        });
-        each.collect()
-    }
-
-    /// Returns the resultant of each penalty surface's forces on the body under Newton's method. `u` (m) are
-    /// the nodal parameters at `time`, and `timing` gives the curves of the prescribed displacements.
-    pub fn penalty_forces(&self, u: &[Vector3], timing: &Timing, time: f64) -> Vec<Resultant> {
-        let each = self.penalties.iter().enumerate().map(|(index, held)| {
-            let part = timing.of(index).value(time);
-            let mut sum = Resultant::default();
-            let moved = held.surface.rows().apply(u);
-            let points = held.surface.points().iter().zip(&moved).zip(&held.values);
-            for (((x, u), g), w) in points.zip(held.surface.weights()) {
-                let lacking = (g * part - u) * (held.beta * w);
-                sum.add(&(x + u), &Vector3::from_fn(|a, _| if held.axes[a] { lacking[a] } else { 0.0 }));
-            }
-            sum
         });
         each.collect()
     }

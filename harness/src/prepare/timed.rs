@@ -6,6 +6,11 @@ use super::Prepared;
 use super::own_curves::{OwnCurves, Timed};
 use crate::scenario::setup::Setup;
 
+/// Returns a list, or an empty one if all its entries are usual.
+fn used<T>(list: Vec<Option<T>>) -> Vec<Option<T>> {
+    if list.iter().any(Option::is_some) { list } else { Vec::new() }
+}
+
 impl Prepared {
     /// Gives all loads that were added last the curve of their load in the scene.
     pub(super) fn time_loads(&mut self, curve: &Timed) {
@@ -20,23 +25,28 @@ impl Prepared {
         }
     }
 
-    /// Gives all conditions that were added last the curve of their support in the scene.
-    pub(super) fn time_supports(&mut self, curve: &Timed) {
+    /// Gives all conditions that were added last the curve of their support in the scene, and the time in which it
+    /// acts.
+    pub(super) fn time_supports(&mut self, curve: &Timed, during: Option<[f64; 2]>) {
         self.own_curves.fixed.resize(self.fixed.len(), curve.clone());
         self.own_curves.weak.resize(self.weak.len(), curve.clone());
+        self.own_curves.fixed_during.resize(self.fixed.len(), during);
+        self.own_curves.weak_during.resize(self.weak.len(), during);
     }
 
     /// Completes the lists when all conditions are prepared.
     pub(super) fn time_all(&mut self, setup: &Setup) {
-        let OwnCurves { surfaces, body_force, nodal, following, fixed, weak, .. } =
-            std::mem::take(&mut self.own_curves);
+        let OwnCurves {
+            surfaces, body_force, nodal, following, fixed, fixed_during, weak, weak_during, ..
+        } = std::mem::take(&mut self.own_curves);
         let loads = surfaces.into_iter().chain(body_force).chain(nodal).collect();
         let tools = setup.tools.iter().map(|tool| tool.curve.clone()).collect();
-        let used = |list: Vec<Timed>| if list.iter().any(Option::is_some) { list } else { Vec::new() };
         self.own_curves = OwnCurves {
             following: used(following),
             fixed: used(fixed),
+            fixed_during: used(fixed_during),
             weak: used(weak),
+            weak_during: used(weak_during),
             loads: used(loads),
             active: used(setup.active_curves.clone()),
             tools: used(tools),
@@ -47,14 +57,15 @@ impl Prepared {
 
     /// Returns the curves of all conditions; `usual` gives those of the conditions without their own.
     pub fn curves(&self, usual: Curves<'static>) -> Curves<'_> {
-        let OwnCurves { following, fixed, weak, loads, active, tools, .. } = &self.own_curves;
+        let OwnCurves { following, fixed, fixed_during, weak, weak_during, loads, active, tools, .. } =
+            &self.own_curves;
         Curves {
-            loads: Timing { usual: usual.loads.usual, own: loads },
-            following: Timing { usual: usual.following.usual, own: following },
-            active: Timing { usual: usual.active.usual, own: active },
-            fixed: Timing { usual: usual.fixed.usual, own: fixed },
-            penalties: Timing { usual: usual.penalties.usual, own: weak },
-            tools: Timing { usual: usual.tools.usual, own: tools },
+            loads: Timing { usual: usual.loads.usual, own: loads, during: &[] },
+            following: Timing { usual: usual.following.usual, own: following, during: &[] },
+            active: Timing { usual: usual.active.usual, own: active, during: &[] },
+            fixed: Timing { usual: usual.fixed.usual, own: fixed, during: fixed_during },
+            penalties: Timing { usual: usual.penalties.usual, own: weak, during: weak_during },
+            tools: Timing { usual: usual.tools.usual, own: tools, during: &[] },
         }
     }
 }

@@ -7,9 +7,9 @@ use cases::scene::Precision::{Double, Single};
 use catalogue::metric;
 use contact::{ContactSurface, Drive};
 use explicit::{
-    Balance, Dynamics, DynamicsParams, ExplicitBody, ExplicitError, External, InternalForce, LanczosParams,
-    Lumping, MovingTool, Precision, Prescribed, Springs, Tools, critical_step_touching, lumped_mass,
-    point_masses,
+    Balance, Contraction, CriticalStep, Dynamics, DynamicsParams, ExplicitBody, ExplicitError, External,
+    InternalForce, LanczosParams, Lumping, MovingTool, Precision, Prescribed, Springs, Tools,
+    critical_step_touching, lumped_mass, point_masses,
 };
 use geometry::{Point3, Vector3};
 use lanes::LanePath;
@@ -78,6 +78,12 @@ impl Loading<'_> {
         self.led.values().map(motion).collect()
     }
 
+    /// Active stress of each region (Pa) at a time (s).
+    fn active(&self, setup: &Setup, time: f64) -> Vec<f64> {
+        let curves = &self.curves.active;
+        setup.active.iter().enumerate().map(|(k, full)| full * curves.of(k).value(time)).collect()
+    }
+
     fn new<'a>(problem: &Problem<'a>, asked: &Explicit) -> Result<Loading<'a>, Failure> {
         let Problem { prepared, .. } = *problem;
         let over = asked.ramp.growth();
@@ -122,21 +128,21 @@ fn motion(problem: &Problem, asked: &Explicit, counters: &mut Counters) -> Resul
     let surface = prepared.contact();
     let tool_mass = asked.tool_mass * mass.iter().sum::<f64>();
     let moving = moving_tools(setup, asked, tool_mass);
-    let tools = match &surface {
-        Some(surface) => Some(Tools::new(surface, &moving, &zeros)?),
-        None => None,
-    };
-    let constrained: BTreeSet<usize> =
-        loading.led.keys().map(|&(node, axis)| 3 * node as usize + axis as usize).collect();
+    let tools = surface.as_ref().map(|surface| Tools::new(surface, &moving, &zeros)).transpose()?;
     let springs = springs(setup, prepared, surface.as_ref());
-    let first =
-        critical_step_touching(&mut force, &mass, &zeros, |k| !constrained.contains(&k), &springs, LANCZOS)?;
+    let stress = |time: f64| loading.active(setup, time);
+    let contraction = contraction(setup, loading, &stress);
+    let first = first_critical(&mut force, &mass, loading, &springs, contraction.as_ref())?;
+    let beta = asked.ramp.stiffness_damping;
+    let first = if beta > 0.0 { first.with_stiffness_damping(beta) } else { first };
     let interval = asked.ramp.duration / asked.ramp.steps as f64;
     let dt = first_step(asked, interval, first.dt)?;
     let params =
         DynamicsParams { dt, damping: asked.ramp.damping, critical: LANCZOS, recheck: 0, known: Some(first) };
     let motion =
         Dynamics::new(&mut force, &mass, &prescribed, params, zeros.clone(), zeros).and_then(|motion| {
+            let motion = contraction.into_iter().fold(motion, Dynamics::contracting);
+            let motion = motion.with_stiffness_damping(beta)?;
             tools.into_iter().try_fold(motion.on_ground(prepared.ground()), Dynamics::with_tools)
         });
     let mut states = States { critical: first.dt, ..States::default() };
@@ -171,6 +177,37 @@ fn motion(problem: &Problem, asked: &Explicit, counters: &mut Counters) -> Resul
         spurious_motion,
         ..Solution::default()
     })
+}
+
+/// Critical step of the undeformed body at rest, without stiffness-proportional damping.
+fn first_critical(
+    force: &mut InternalForce,
+    mass: &[f64],
+    loading: &Loading,
+    springs: &[Springs],
+    contraction: Option<&Contraction>,
+) -> Result<CriticalStep, ExplicitError> {
+    let constrained: BTreeSet<usize> =
+        loading.led.keys().map(|&(node, axis)| 3 * node as usize + axis as usize).collect();
+    let zeros = vec![Vector3::zeros(); mass.len()];
+    force.contract(contraction.map_or(&[], |contraction| &contraction.largest));
+    let found = critical_step_touching(force, mass, &zeros, |k| !constrained.contains(&k), springs, LANCZOS);
+    force.contract(&[]);
+    found
+}
+
+/// Active stress of the regions over time; `None` if none contracts.
+fn contraction<'a>(
+    setup: &Setup,
+    loading: &Loading,
+    stress: &'a (dyn Fn(f64) -> Vec<f64> + Sync),
+) -> Option<Contraction<'a>> {
+    let largest = |(region, full): (usize, &f64)| {
+        let factors = loading.curves.active.of(region).points().iter().map(|[_, factor]| factor * full);
+        factors.fold(0.0, f64::max)
+    };
+    let largest: Vec<f64> = setup.active.iter().enumerate().map(largest).collect();
+    (!largest.is_empty()).then_some(Contraction { stress, largest })
 }
 
 /// Springs for the critical step: those of possible contact, and of surfaces on springs and dampers.
@@ -406,7 +443,13 @@ impl Run<'_, '_> {
             forces[node as usize][usize::from(axis)] = *force;
         }
         let at = |i: usize| self.nodes[i] + u[i];
-        self.prepared.support_forces(&ConditionForces { at: &at, nodes: &forces, rows: &[], weak: &[] })
+        self.prepared.support_forces(&ConditionForces {
+            at: &at,
+            nodes: &forces,
+            rows: &[],
+            weak: &[],
+            time: None,
+        })
     }
 
     fn reported(&self, balance: &Balance, u: &[Vector3], time: f64) -> LoadStep {

@@ -80,12 +80,12 @@ fn motion(problem: &Problem, asked: &Implicit, counters: &mut Counters) -> Resul
     let mut points = Vec::new();
     let usual = growth(setup, asked);
     let path = with_static_problem(method, setup, prepared, contact.as_ref(), usual, |body| {
-        let timing = &body.curves.penalties;
         let problem = TimeProblem {
             body,
             inertia: mass.as_ref().map(|mass| Inertia {
                 mass,
                 damping: asked.ramp.damping,
+                stiffness_damping: asked.ramp.stiffness_damping,
                 displacement: &[],
                 velocity: &[],
             }),
@@ -96,7 +96,8 @@ fn motion(problem: &Problem, asked: &Implicit, counters: &mut Counters) -> Resul
                 at: &|i| method.nodes()[i] + motion.u[i],
                 nodes: &motion.reaction,
                 rows: &[],
-                weak: &prepared.penalty_forces(&motion.u, timing, done.step.time),
+                weak: &motion.penalties,
+                time: Some(done.step.time),
             });
             points = prepared.foundation_forces(&motion.u, &motion.v);
             if let Some(watch) = watch {

@@ -39,6 +39,7 @@ pub(super) fn solve(
         nodes: &solved.factored.reactions(&solved.solution, 1.0),
         rows: &solved.factored.forces_of_rows(nodes, &solved.solution),
         weak: &solved.factored.forces_of_weak(nodes, &solved.solution, 1.0),
+        time: None,
     });
     let statics::Solution { u, info, .. } = solved.solution;
     // These diagnostics are not part of the solution: they are not timed and are computed once for all

@@ -20,10 +20,10 @@ pub(crate) struct Problem<'a> {
 }
 
 impl Problem<'_> {
-    /// Number of unknowns after elimination of the supports, without those of a pressure field.
+    /// Number of unknowns after elimination of the supports that always act, without those of a pressure field.
     pub(super) fn free_dofs(&self) -> usize {
         let fixed: std::collections::BTreeSet<(u32, u8)> =
-            self.prepared.fixed().iter().map(|f| (f.node, f.axis)).collect();
+            self.prepared.always_fixed().map(|f| (f.node, f.axis)).collect();
         3 * self.method.nodes().len() - fixed.len()
     }
 }

@@ -64,6 +64,10 @@ pub(super) fn possible(method: &Discretisation, setup: &Setup) -> (bool, &'stati
         _ if !setup.curved().is_empty() => {
             (false, "not available with curves over time; the load path ends if the solver stalls")
         }
+        _ if !setup.staged().is_empty() => (
+            false,
+            "not available with supports that begin late or end early; the load path ends if the solver stalls",
+        ),
         _ if !setup.foundations.is_empty() => {
             (false, "not available with springs on a surface; the load path ends if the solver stalls")
         }
@@ -124,6 +128,7 @@ pub(super) fn continue_from(
             f.iter_mut().zip(&loads).for_each(|(f, full)| *f += full * load);
             prepared.following().iter().for_each(|pressure| pressure.add_force(u, load, f));
         };
+        force.contract(&setup.active.iter().map(|full| full * load).collect::<Vec<_>>());
         if let Some(pressing) = &mut pressing {
             pressing.drive(setup.tools.iter().map(|set| part_of(set.drive, load)));
         }
@@ -178,6 +183,7 @@ fn step_at_rest(
             nodes: reaction,
             rows: &[],
             weak: &[],
+            time: None,
         }),
         means: Vec::new(),
         strain_energy: Some(force.energy(u).map_err(ExplicitError::from)?),

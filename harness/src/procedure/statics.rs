@@ -9,7 +9,7 @@ use material::Material as _;
 use shape::{Coarser, Resultant};
 use statics::{
     Active, Curves, LinearSystems, NewtonParams, Rest, Solid, SolidDilation, StaticError, StaticParams,
-    StaticPath, StaticProblem, Step, Timing, solve_static,
+    StaticPath, StaticProblem, Step, solve_static,
 };
 
 use super::linear_solver::tangents;
@@ -95,10 +95,9 @@ fn path(problem: &Problem, asked: &Static, counters: &mut Counters) -> Result<(S
     let tangents = Tangents::new(problem)?;
     let usual = Curves::proportional();
     let path = with_static_problem(method, setup, prepared, contact.as_ref(), usual, |problem| {
-        let timing = &problem.curves.penalties;
         let systems = tangents.systems();
         solve_static(&StaticProblem { systems, ..problem.clone() }, &params, |step, rest| {
-            supports = support_forces(method, prepared, &rest, timing, step.time);
+            supports = support_forces(method, prepared, &rest, step.time);
             points = prepared.foundation_forces(rest.u, &[]);
             let (supports, points) = (&supports, &points);
             let reported = |step| with_forces(reported(step, setup), supports, points);
@@ -161,18 +160,13 @@ fn path(problem: &Problem, asked: &Static, counters: &mut Counters) -> Result<(S
 }
 
 /// Forces of the supports on the body at an equilibrium.
-fn support_forces(
-    method: &Discretisation,
-    prepared: &Prepared,
-    rest: &Rest,
-    timing: &Timing,
-    time: f64,
-) -> Vec<Resultant> {
+fn support_forces(method: &Discretisation, prepared: &Prepared, rest: &Rest, time: f64) -> Vec<Resultant> {
     prepared.support_forces(&ConditionForces {
         at: &|i| method.nodes()[i] + rest.u[i],
         nodes: rest.reaction,
         rows: &[],
-        weak: &prepared.penalty_forces(rest.u, timing, time),
+        weak: rest.penalties,
+        time: Some(time),
     })
 }
 

@@ -60,7 +60,7 @@ impl Group<'_> {
     ///
     /// # Errors
     /// Returns an error if the procedure is neither linear nor static (others do not end at rest), if the
-    /// method refines its cloud, and for every reason that a run is refused for.
+    /// method refines its cloud, if a tool turns, and for every reason that a run is refused for.
     pub fn pose(&self, scenario: &Scenario) -> Result<Posed, Failure> {
         let (method, setup) = (scenario.discretise()?, scenario.setup()?);
         let (plan, _) = self.plan(scenario)?;
@@ -71,6 +71,11 @@ impl Group<'_> {
         if scenario.following().is_some() {
             return refused(
                 "has a pressure on the deformed surface, which can't be passed to another solver: add dead = true",
+            );
+        }
+        if setup.tools.iter().any(|placed| placed.tool.turns()) {
+            return refused(
+                "has a tool that turns, which can't be passed to another solver: give closure or force",
             );
         }
         if plan.runs(StageName::Refinement) {

@@ -20,7 +20,7 @@ use crate::discretise::Discretisation;
 use crate::error::Failure;
 use crate::measure::{
     self, Field, OwnError, Recovered, Reference, Request, check_points, check_probes, displacement, energies,
-    measure, of_tables, over_time, picture, places, points, probe_errors, probe_history, probes,
+    free_norm, measure, of_tables, over_time, picture, places, points, probe_errors, probe_history, probes,
     report_modes, report_steps, states, surface, transfers, warnings,
 };
 use crate::outcome::timing::{Meters, Timed, Timings};
@@ -222,6 +222,7 @@ fn loaded(
     outcome.probes = probes(run, recovered.as_ref(), request.probes)?;
     points(outcome, run, request.probes)?;
     energies(outcome, run)?;
+    outcome.free_norm = Some(free_norm(run));
     if let Some(exact) = &setup.exact {
         probe_errors(&mut outcome.metrics, &outcome.probes, exact.as_ref(), &solution.u);
     }
@@ -259,9 +260,9 @@ fn compare(
     measure(&mut outcome.metrics, run, field, recovered, &request.at_end(solution.is_whole()))?;
     if let Some(history) = &solution.history {
         let steps = report_steps(&mut outcome.metrics, run, history, request)?;
-        if history.failure.is_none() && run.setup.procedure.ramp().is_some() {
+        if let (None, Some(ramp)) = (&history.failure, run.setup.procedure.ramp()) {
             let exact = run.setup.exact.as_deref();
-            outcome.metrics.extend(probe_history(&steps, exact, request.probes));
+            outcome.metrics.extend(probe_history(&steps, exact, request.probes, ramp.damps()));
         }
         (outcome.steps, outcome.last) = (steps, Some(history.last.clone()));
         outcome.stalled = history.failure.clone();

@@ -4,7 +4,7 @@
 use std::collections::BTreeSet;
 
 use cases::scene::{LoadKind, ScalarField, Scene, Support, VectorField};
-use contact::Tool;
+use contact::{Leg, Motion, Tool};
 use geometry::{Facet, Mesh, Point3, Vector3};
 
 use crate::discretise::place;
@@ -82,7 +82,12 @@ impl Plane {
             image[self.axis] = 2.0 * self.at - x[self.axis];
             (tool.gap(0.0, x) - tool.gap(0.0, &image)).abs() <= ROUNDING * size
         };
-        tool.legs().all(|(_, along)| along[self.axis].abs() <= ROUNDING) && points.iter().all(is_same)
+        // A turn is its own image if its axis is normal to the plane.
+        let is_mirrored = |leg: &Leg| match leg.motion() {
+            Motion::Along(along) => along[self.axis].abs() <= ROUNDING,
+            Motion::About(turn) => turn.axis[self.axis].abs() >= 1.0 - ROUNDING,
+        };
+        tool.legs().all(|(_, leg)| is_mirrored(leg)) && points.iter().all(is_same)
     }
 
     fn is_of_symmetry(&self, scene: &Scene, mesh: &Mesh) -> bool {

@@ -153,16 +153,15 @@ fn inside(file: &MeshFile, kind: CellKind, size: Inside) -> Result<Mesh, Failure
         return Err(Failure::input(Key::Size(""), problem, help));
     }
     let from_file = file_body::load(file)?;
+    let quadratic = kind.order() == 2;
     let fill = match size {
         Inside::Spacing(spacing) => {
             few_enough(expected::of_spacing(&Body::File(file.clone()), kind, spacing))?;
-            Fill::spacing(spacing)
+            Fill::Spacing { bits: spacing.to_bits(), quadratic }
         }
-        Inside::Nodes(nodes) if kind.order() == 2 => Fill::QuadraticNodes(nodes),
-        Inside::Nodes(nodes) => Fill::Nodes(nodes),
+        Inside::Nodes(nodes) => Fill::Nodes { nodes, quadratic },
     };
-    let mesh = from_file.mesh(fill)?;
-    Ok(if kind.order() == 2 { raise_order(&mesh) } else { mesh })
+    from_file.mesh(fill)
 }
 
 /// Refuses a mesh of too many nodes before it is made, because making it takes seconds and gigabytes.

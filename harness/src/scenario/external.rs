@@ -115,10 +115,17 @@ impl Scenario<'_> {
         if let Some((key, _)) = self.scene.curved().next() {
             add(key, "a curve over time", "leave it out: everything grows in proportion to the load");
         }
+        for key in self.scene.staged() {
+            add(
+                key,
+                "a support that begins late or ends early",
+                "leave it out: the support holds throughout",
+            );
+        }
         for (index, tool) in self.scene.tools.iter().enumerate() {
             if !tool.path.is_empty() {
-                let key = format!("tool[{index}].drive.path");
-                add(key, "a path of a tool", "give along and drive = { closure = ... }");
+                let key = format!("tool[{index}].drive");
+                add(key, "a path or a turn of a tool", "give along and drive = { closure = ... }");
             }
             if tool.file.is_some() {
                 let key = format!("tool[{index}].shape");

@@ -8,7 +8,7 @@ use std::time::SystemTime;
 
 use cases::scene::MeshFile;
 use geometry::generate::to_tets;
-use geometry::stuffing::{Stuffing, stuff, stuff_with_nodes, stuff_with_quadratic_nodes};
+use geometry::stuffing::{Stuffing, stuff, stuff_quadratic, stuff_quadratic_with_nodes, stuff_with_nodes};
 use geometry::surface::BoundaryFaces;
 use geometry::{Facet, Mesh, Point3, Surface, Vector3, locate};
 
@@ -23,21 +23,13 @@ pub struct FileBody {
     made: Mutex<HashMap<Fill, Mesh>>,
 }
 
-/// Size of a mesh inside a surface.
+/// Size of a mesh inside a surface, and whether its tetrahedra are quadratic.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Fill {
     /// Approximate number of nodes.
-    Nodes(usize),
-    /// Approximate number of nodes of the quadratic mesh.
-    QuadraticNodes(usize),
-    /// Mean edge length (m), as bits.
-    Spacing(u64),
-}
-
-impl Fill {
-    pub fn spacing(metres: f64) -> Fill {
-        Fill::Spacing(metres.to_bits())
-    }
+    Nodes { nodes: usize, quadratic: bool },
+    /// Mean distance of neighbouring corners (m), as bits.
+    Spacing { bits: u64, quadratic: bool },
 }
 
 /// Identity of a file when it was read: path, unit, joining, length and time of modification.
@@ -98,10 +90,13 @@ impl FileBody {
             return Ok(mesh.clone());
         }
         let stuffed = match fill {
-            Fill::Nodes(nodes) => stuff_with_nodes(&self.surface, nodes, 0).map(|(stuffed, _)| stuffed),
-            Fill::QuadraticNodes(nodes) => stuff_with_quadratic_nodes(&self.surface, nodes),
-            Fill::Spacing(bits) => {
-                stuff(&self.surface, Stuffing { spacing: f64::from_bits(bits), doublings: 0 })
+            Fill::Nodes { nodes, quadratic: false } => {
+                stuff_with_nodes(&self.surface, nodes, 0).map(|(stuffed, _)| stuffed)
+            }
+            Fill::Nodes { nodes, quadratic: true } => stuff_quadratic_with_nodes(&self.surface, nodes),
+            Fill::Spacing { bits, quadratic } => {
+                let how = Stuffing { spacing: f64::from_bits(bits), doublings: 0 };
+                if quadratic { stuff_quadratic(&self.surface, how) } else { stuff(&self.surface, how) }
             }
         };
         let stuffed = stuffed.map_err(|bad| {

@@ -110,6 +110,10 @@ impl Scenario<'_> {
             StaticError::Contact { tool, cause } => {
                 finding(ErrorKind::NotRun, Key::Scene(format!("tool[{tool}]")), cause.to_string(), "")
             }
+            StaticError::Loose { .. } => {
+                let help = "let another support or a spring hold the body from then on";
+                finding(ErrorKind::NotRun, Key::Scene("support".into()), error.to_string(), help)
+            }
             StaticError::Parameter { .. } => {
                 finding(ErrorKind::Invalid, Key::Scene("procedure".into()), error.to_string(), "")
             }

@@ -11,6 +11,7 @@ mod expected;
 mod external;
 mod fibers;
 mod file_body;
+mod file_vectors;
 mod grading;
 mod identity;
 mod law;
@@ -34,6 +35,7 @@ use geometry::{Point3, Vector3};
 use material::{Law, LinearElastic, Material as _, Prony};
 
 use crate::error::{Failure, Key};
+use file_vectors::FileVectors;
 use setup::{Applied, Directions, Foundation, Load, Setup, Support, SurfaceLoad};
 
 /// A scene's method with the changes of a study.
@@ -86,7 +88,7 @@ impl Scenario<'_> {
             laws,
             materials,
             densities: self.scene.materials().map(|(_, material)| material.density).collect(),
-            directions: self.directions(),
+            directions: self.directions()?,
             active: self.active(),
             active_curves: self.scene.materials().map(|(_, m)| m.active_curve.clone()).collect(),
             supports: self.supports(e)?,
@@ -115,6 +117,7 @@ impl Scenario<'_> {
                     key: format!("support[{index}]"),
                     place: support.place.clone(),
                     curve: support.curve.clone(),
+                    during: support.during.map(|span| [span.from, span.until]),
                     axes: std::array::from_fn(|a| support.motion[a].is_some()),
                     value: Box::new(move |x| {
                         let known = exact.as_ref().map(|e| e.displacement(x));
@@ -210,22 +213,41 @@ impl Scenario<'_> {
         if each.iter().all(|active| *active == 0.0) { Vec::new() } else { each }
     }
 
-    fn directions(&self) -> Vec<Option<Directions>> {
-        let field = |of: &scene::Direction| -> setup::VectorField {
-            match (of.clone(), &self.scene.body) {
-                (scene::Direction::Field(of), _) => Box::new(move |x| components(&of, x)),
-                (scene::Direction::Helix(angles), scene::Body::Ventricle(wall)) => {
-                    let wall = *wall;
-                    Box::new(move |x| Ok(fibers::helix(&wall, angles, x)))
-                }
-                (scene::Direction::Helix(_), _) => Box::new(|_| Err("needs a ventricle".into())),
-            }
-        };
+    fn directions(&self) -> Result<Vec<Option<Directions>>, Failure> {
         let each = self.scene.materials().map(|(key, material)| {
-            let scene::Directions { fibers, sheets } = material.directions.as_ref()?;
-            Some(Directions { key, fibers: field(fibers), sheets: sheets.as_ref().map(field) })
+            let Some(scene::Directions { fibers, sheets }) = &material.directions else { return Ok(None) };
+            let fibers = self.direction(fibers, &format!("{key}.fibers"))?;
+            let sheets =
+                sheets.as_ref().map(|of| self.direction(of, &format!("{key}.sheets"))).transpose()?;
+            Ok(Some(Directions { key, fibers, sheets }))
         });
         each.collect()
+    }
+
+    /// Returns the direction of a scene's key.
+    fn direction(&self, of: &scene::Direction, key: &str) -> Result<setup::Direction, Failure> {
+        let other = |key: String, problem: &str| Failure::input(Key::Scene(key), problem, "");
+        Ok(match (of.clone(), &self.scene.body) {
+            (scene::Direction::Field(of), _) => {
+                setup::Direction::Field(Box::new(move |x| components(&of, x)))
+            }
+            (scene::Direction::Helix(angles), scene::Body::Ventricle(wall)) => {
+                let wall = *wall;
+                setup::Direction::Field(Box::new(move |x| Ok(fibers::helix(&wall, angles, x))))
+            }
+            (scene::Direction::Helix(_), _) => {
+                return Err(other(format!("{key}.helix"), "needs a ventricle as the body"));
+            }
+            (scene::Direction::Depth(wall), _) => setup::Direction::Wall(wall),
+            (scene::Direction::Data(name), scene::Body::File(file)) => {
+                let help = "name an array of vectors, one for each cell or node";
+                let wrong = |bad| Failure::input(Key::Scene(format!("{key}.data")), bad, help);
+                setup::Direction::File(Box::new(FileVectors::read(file, &name).map_err(wrong)?))
+            }
+            (scene::Direction::Data(_), _) => {
+                return Err(other(format!("{key}.data"), "needs a mesh file as the body"));
+            }
+        })
     }
 
     fn relaxation(&self) -> Result<Vec<Option<Prony>>, Failure> {

@@ -3,11 +3,12 @@
 use std::sync::Arc;
 
 use cases::exact::{Contact, Exact};
-use cases::scene::{Mass, Output, Place, Procedure};
+use cases::scene::{Mass, Output, Place, Procedure, WallRule};
 use geometry::{Point3, Vector3};
 use material::{Law, LinearElastic, Prony};
 use shape::Curve;
 
+use super::file_vectors::FileVectors;
 use super::tools::PlacedTool;
 use crate::error::{Failure, Key};
 
@@ -30,6 +31,9 @@ pub struct Support {
     pub value: VectorField,
     /// Factor of the displacement over time; `None` for the common growth.
     pub curve: Option<Arc<Curve>>,
+    /// Start and end of the part of the loading in which it acts, a fraction in statics and s in dynamics; `None`
+    /// for all of it.
+    pub during: Option<[f64; 2]>,
 }
 
 /// Springs and dampers between a part of the surface and the ground.
@@ -50,10 +54,20 @@ pub struct Foundation {
 pub struct Directions {
     /// The material's key in the scene, such as `material`.
     pub key: String,
-    /// Along the fibres, of any length.
-    pub fibers: VectorField,
-    /// Within a sheet across the fibres, of any length, if given.
-    pub sheets: Option<VectorField>,
+    /// Along the fibres.
+    pub fibers: Direction,
+    /// Within a sheet across the fibres, if given.
+    pub sheets: Option<Direction>,
+}
+
+/// A direction in the undeformed body.
+pub enum Direction {
+    /// A vector of any length at each point.
+    Field(VectorField),
+    /// Vectors of the body's mesh file.
+    File(Box<FileVectors>),
+    /// By the depth of a wall, for which each method solves Laplace's equation.
+    Wall(WallRule),
 }
 
 /// The kind of a load, with its field.
@@ -207,10 +221,23 @@ impl Setup {
         all.filter(|(_, curve)| curve.is_some()).map(|(key, _)| key).collect()
     }
 
-    /// Describes in the plan what follows curves; empty without any.
+    /// Keys of the supports that act during a part of the loading.
+    pub fn staged(&self) -> Vec<&str> {
+        let staged = self.supports.iter().filter(|support| support.during.is_some());
+        staged.map(|support| support.key.as_str()).collect()
+    }
+
+    /// Describes in the plan what follows curves, and what acts during a part of the loading; empty without any.
     pub fn curves(&self) -> String {
-        let curved = self.curved();
-        if curved.is_empty() { String::new() } else { format!("; along curves: {}", curved.join(", ")) }
+        let (curved, staged) = (self.curved(), self.staged());
+        let mut words = String::new();
+        if !curved.is_empty() {
+            words += &format!("; along curves: {}", curved.join(", "));
+        }
+        if !staged.is_empty() {
+            words += &format!("; during a part of the loading: {}", staged.join(", "));
+        }
+        words
     }
 
     /// Whether any tool has friction.

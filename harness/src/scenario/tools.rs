@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use cases::scene::{self, ErrorKind};
-use contact::{ContactError, ContactLaw, Drive, Tool};
+use contact::{ContactError, ContactLaw, Drive, Motion, Tool, Turn};
 use geometry::{Point3, Vector3};
 use shape::{Curve, Matrix3};
 
@@ -57,15 +57,12 @@ fn placed(tool: &scene::Tool, index: usize) -> Result<PlacedTool, Failure> {
         None => ContactLaw::frictionless(tool.penalty),
     };
     let turned = tool.axis.map_or_else(Matrix3::identity, |axis| Tool::turned_to(&Vector3::from(axis)));
-    let along = Vector3::from(tool.along);
+    let first = tool.path.first().map_or(Motion::Along(Vector3::from(tool.along)), motion);
     let law = law.map_err(wrong)?;
-    let straight = Tool::new(tool.shape.clone(), Point3::from(tool.at), turned, along, law);
+    let straight = Tool::new(tool.shape.clone(), Point3::from(tool.at), turned, first, law);
     // Each bend needs the length of the leg before it.
     let bends = tool.path.iter().zip(tool.path.iter().skip(1));
-    let solver = bends.fold(straight, |path, (before, after)| {
-        let (before, after) = (Vector3::from(*before), Vector3::from(*after));
-        path?.then(before.norm(), after.normalize())
-    });
+    let solver = bends.fold(straight, |path, (before, after)| path?.then(before.travel(), motion(after)));
     let solver = solver.map_err(wrong)?;
     Ok(PlacedTool {
         name: tool.name.clone(),
@@ -75,4 +72,14 @@ fn placed(tool: &scene::Tool, index: usize) -> Result<PlacedTool, Failure> {
         over: tool.over,
         curve: tool.curve.clone(),
     })
+}
+
+/// Motion of a tool on a leg of its path.
+fn motion(leg: &scene::Leg) -> Motion {
+    match *leg {
+        scene::Leg::Move(by) => Motion::Along(Vector3::from(by).normalize()),
+        scene::Leg::Turn(scene::Turn { point, axis, arm, .. }) => {
+            Motion::About(Turn { pin: Point3::from(point), axis: Vector3::from(axis), arm })
+        }
+    }
 }

@@ -136,7 +136,10 @@ fn copy(from: &Path, to: &Path) {
         let target = to.join(path.file_name().expect("a name"));
         if path.is_dir() {
             copy(&path, &target);
-        } else if path.extension().is_some_and(|e| ["toml", "msh", "json", "csv"].iter().any(|k| e == *k)) {
+        } else if path
+            .extension()
+            .is_some_and(|e| ["toml", "msh", "json", "csv", "feb"].iter().any(|k| e == *k))
+        {
             std::fs::copy(&path, &target).expect("copied");
         }
     }

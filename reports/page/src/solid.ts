@@ -11,12 +11,16 @@ import { face } from "./cut";
 import { h, select } from "./dom";
 import { digits } from "./text";
 
+/** Unit quaternion (x, y, z, w). */
+type Turn = [number, number, number, number];
+const UNTURNED: Turn = [0, 0, 0, 1];
+
 /** Body of a method at the recorded states of its run. Arrays are base64 of little-endian numbers; lengths
  * are in metres, stresses in pascals. */
 export interface Body {
   method: string; title: string; points: string; faces: { nodes: number; indices: string }[];
   tools: { points: string; quads: string; along: [number, number, number] }[];
-  states: { time: number; u: string; tools: [number, number, number][]; touching: string; deepest_node: number; values: [string, string, string] | null }[];
+  states: { time: number; u: string; tools: [number, number, number][]; turns?: Turn[]; touching: string; deepest_node: number; values: [string, string, string] | null }[];
   left_out: number;
   /** Distance of each point from its position in the reference or exact solution at the end; empty if neither
    * is known. */
@@ -249,6 +253,7 @@ class Solid {
     this.tools.children.forEach((tool, k) => {
       const [x, y, z] = this.body.states[state].tools[k] ?? [0, 0, 0];
       tool.position.set(x, y, z);
+      tool.quaternion.set(...(this.body.states[state].turns?.[k] ?? UNTURNED));
     });
   }
 

@@ -45,9 +45,10 @@ impl Contacts {
         let (mut force, mut moment) = (Vector3::zeros(), Vector3::zeros());
         let (mut area, mut max_penetration, mut dissipated) = (0.0, 0.0f64, 0.0);
         let (mut load, mut squares) = (0.0, 0.0);
+        let place = tool.place(closure);
         for f in &found {
             let w = surface.rows().weights()[f.point as usize];
-            let arm = surface.position(f.point as usize, u) - tool.place(closure);
+            let arm = surface.position(f.point as usize, u) - place;
             force -= f.traction * w;
             moment -= arm.cross(&f.traction) * w;
             area += w;
@@ -82,8 +83,8 @@ impl Contacts {
     }
 
     /// Contact tangents `dt/dx` (3, 3), Pa/m, one per point in contact, unsymmetric in slip; empty from
-    /// [`ContactSurface::tractions`]. The derivative with respect to the tool's displacement is
-    /// `dt/dclosure = -(dt/dx) along`.
+    /// [`ContactSurface::tractions`]. On a straight leg the derivative with respect to the tool's displacement
+    /// is `dt/dclosure = -(dt/dx) along`.
     pub fn stiffness(&self) -> &[Matrix3] {
         &self.stiffness
     }

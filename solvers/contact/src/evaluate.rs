@@ -7,6 +7,7 @@ use crate::contacts::{Contacts, Found};
 use crate::error::ContactError;
 use crate::history::ContactHistory;
 use crate::law::Response;
+use crate::motion::Pose;
 use crate::surface::ContactSurface;
 use crate::tool::Tool;
 
@@ -46,8 +47,8 @@ impl ContactSurface<'_> {
     ) -> Result<Option<Contacts>, ContactError> {
         let reach = self.reach(tool, closure, u, history, counts)?;
         let near = self.near(tool, closure, reach, u)?;
-        let found = self.scan(tool, closure, u, history, counts, &near, |response, p, normal| {
-            tool.stiffness(response, p, normal)
+        let found = self.scan(tool, closure, u, history, counts, &near, |pose, response, p, normal| {
+            tool.stiffness(pose, response, p, normal)
         })?;
         Ok(found.map(|found| {
             let stiffness = found.iter().map(|f| f.tangent).collect();
@@ -71,7 +72,7 @@ impl ContactSurface<'_> {
     ) -> Result<Option<Contacts>, ContactError> {
         let reach = self.reach(tool, closure, u, history, counts)?;
         let near = self.near(tool, closure, reach, u)?;
-        let found = self.scan(tool, closure, u, history, counts, &near, |_, _, _| ())?;
+        let found = self.scan(tool, closure, u, history, counts, &near, |_, _, _, _| ())?;
         Ok(found.map(|found| Contacts::new(self, tool, closure, u, found, Vec::new())))
     }
 
@@ -104,23 +105,24 @@ impl ContactSurface<'_> {
         history: &ContactHistory,
         counts: &mut ContactCounts,
         near: &[&[u32]],
-        tangent: impl Fn(&Response, &Vector3, &Vector3) -> T + Sync,
+        tangent: impl Fn(&Pose, &Response, &Vector3, &Vector3) -> T + Sync,
     ) -> Result<Option<Vec<Found<T>>>, ContactError> {
         if near.is_empty() {
             counts.skipped += 1;
             return Ok(None);
         }
         counts.distances += near.iter().map(|points| points.len() as u64).sum::<u64>();
+        let pose = tool.pose(closure);
         let touch = |clusters: &[&[u32]]| {
             let mut found = Vec::new();
             for &q in clusters.iter().copied().flatten() {
                 let point = q as usize;
-                let p = tool.local(closure, &self.position(point, u));
+                let p = pose.local(&self.position(point, u));
                 let (gap, normal) = tool.shape().foot(&p);
                 let (slip, multiplier) = (history.slip(point), history.multiplier(point));
                 if let Some(response) = tool.law().respond(gap, &normal, &p, &slip, multiplier) {
-                    let tangent = tangent(&response, &p, &normal);
-                    let traction = tool.to_world(&response.traction);
+                    let tangent = tangent(&pose, &response, &p, &normal);
+                    let traction = pose.to_world(&response.traction);
                     found.push(Found {
                         point: q,
                         gap,

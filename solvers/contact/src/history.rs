@@ -72,10 +72,11 @@ impl ContactHistory {
         u: &[Vector3],
     ) {
         self.commit(contacts);
+        let pose = tool.pose(closure);
         let touching = contacts.map_or(&[][..], |c| c.points());
         for (q, slip) in self.slip.iter_mut().enumerate() {
             if touching.binary_search(&(q as u32)).is_err() {
-                let at = tool.local(closure, &surface.position(q, u));
+                let at = pose.local(&surface.position(q, u));
                 // A point that touches only through its multiplier has no path left to its contact.
                 *slip = Slip::at(&at, tool.shape().foot(&at).0.max(0.0));
                 self.stuck.push(q as u32);

@@ -2,7 +2,7 @@
 //! evaluation over the quadrature points of a surface.
 //!
 //! A [`Tool`] is a [`ToolShape`] at a position, with a [`ContactLaw`]; it moves by `closure` (m) along its
-//! direction. A [`ContactSurface`] is a surface quadrature with bounding boxes. Evaluating a tool against a
+//! path, or turns. A [`ContactSurface`] is a surface quadrature with bounding boxes. Evaluating a tool against a
 //! surface gives [`Contacts`]: tractions per undeformed area and their consistent tangents at the points that
 //! touch, and nothing at the others. Over many small steps a [`ContactSearch`] finds the same contacts with
 //! less work.
@@ -34,6 +34,7 @@ mod error;
 mod evaluate;
 mod history;
 mod law;
+mod motion;
 mod outline;
 mod overlap;
 mod search;
@@ -49,6 +50,7 @@ pub use error::ContactError;
 pub use evaluate::ContactCounts;
 pub use history::ContactHistory;
 pub use law::{ContactLaw, Slip};
+pub use motion::{Leg, Motion, Pose, Turn};
 pub use outline::Outline;
 pub use overlap::ON_THE_WAY;
 pub use search::{ContactSearch, SearchAt};

@@ -49,6 +49,8 @@ struct List {
     closure: f64,
     /// Gap up to which a point with a multiplier touches, m.
     reach: f64,
+    /// Largest change of a gap per travel of the tool while the list serves.
+    rate: f64,
 }
 
 impl<'a> ContactSearch<'a> {
@@ -64,7 +66,7 @@ impl<'a> ContactSearch<'a> {
             listed_at: vec![Vector3::zeros(); nodes.len()],
             nodes,
             state: 0,
-            lists: vec![List { state: 0, points: Vec::new(), closure: 0.0, reach: 0.0 }; tools],
+            lists: vec![List { state: 0, points: Vec::new(), closure: 0.0, reach: 0.0, rate: 1.0 }; tools],
             margin: MARGIN * spacing,
             stretch: 3.0f64.sqrt() * surface.lebesgue(),
             surface,
@@ -136,14 +138,14 @@ impl SearchAt<'_, '_> {
             self.list(number, tool, closure, reach)?;
         }
         let near: Vec<&[u32]> = self.search.lists[number].points.chunks(CLUSTER).collect();
-        let found = surface.scan(tool, closure, u, history, counts, &near, |_, _, _| ())?;
+        let found = surface.scan(tool, closure, u, history, counts, &near, |_, _, _, _| ())?;
         Ok(found.map(|found| Contacts::new(surface, tool, closure, u, found, Vec::new())))
     }
 
     fn serves(&self, number: usize, closure: f64, reach: f64) -> bool {
         let ContactSearch { state, margin, lists, .. } = &*self.search;
         let list = &lists[number];
-        let moved = self.moved + (closure - list.closure).abs();
+        let moved = self.moved + list.rate * (closure - list.closure).abs();
         // A NaN must not pass, hence `moved <= ..`. The first state is 1.
         *state > 0 && list.state == *state && reach <= list.reach && moved <= (1.0 - ROUNDING) * margin
     }
@@ -161,10 +163,13 @@ impl SearchAt<'_, '_> {
             self.moved = 0.0;
         }
         let list = &mut search.lists[number];
+        // Points may move away from an axis by the margin while the list serves.
+        let positions = (0..surface.rows().points().len()).map(|q| surface.position(q, u));
+        let rate = tool.rate(positions, search.margin);
         let may = |&q: &u32| tool.gap(closure, &surface.position(q as usize, u)) <= far;
         list.points.clear();
         list.points.extend(near.iter().copied().flatten().copied().filter(may));
-        (list.state, list.closure, list.reach) = (search.state, closure, reach);
+        (list.state, list.closure, list.reach, list.rate) = (search.state, closure, reach, rate);
         Ok(())
     }
 }

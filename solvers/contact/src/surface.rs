@@ -95,8 +95,9 @@ impl<'a> ContactSurface<'a> {
     /// Returns the smallest signed distance (m) of any point to the tool in the state `u`; infinite without
     /// points.
     pub fn gap(&self, tool: &Tool, closure: f64, u: &[Vector3]) -> f64 {
+        let pose = tool.pose(closure);
         (0..self.rows.points().len())
-            .map(|q| tool.gap(closure, &self.position(q, u)))
+            .map(|q| tool.shape().foot(&pose.local(&self.position(q, u))).0)
             .fold(f64::INFINITY, f64::min)
     }
 
@@ -117,12 +118,13 @@ impl<'a> ContactSurface<'a> {
     ) -> Result<Vec<&[u32]>, ContactError> {
         let (low, high) = tool.bounds(closure);
         let (low, high) = (low.map(|c| c - reach), high.map(|c| c + reach));
+        let pose = tool.pose(closure);
         let mut near = Vec::new();
         for cluster in &self.clusters {
             let (middle, half) = cluster.current_box(&self.nodes, u)?;
             let apart = (0..3).any(|a| middle[a] + half[a] < low[a] || middle[a] - half[a] > high[a]);
             // The distance function changes by no more than the distance travelled.
-            if apart || tool.shape().foot(&tool.local(closure, &middle)).0 > half.norm() + reach {
+            if apart || tool.shape().foot(&pose.local(&middle)).0 > half.norm() + reach {
                 continue;
             }
             near.push(&self.order[cluster.points.clone()]);

@@ -6,9 +6,10 @@ use super::law::Response;
 use crate::ToolShape;
 use crate::error::ContactError;
 use crate::law::{ContactLaw, Slip};
+use crate::motion::{Leg, Motion, Pose};
 
-/// Rigid tool that moves along a path of straight legs without rotating. The `closure` (m) is the distance
-/// that it has travelled along the path.
+/// Rigid tool that moves along a path of legs: straight ones, and turns about an axis. The `closure` (m) is
+/// the distance that it has travelled along the path; a turn counts at the arm of [`Turn`](crate::Turn).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tool {
     shape: ToolShape,
@@ -17,30 +18,25 @@ pub struct Tool {
     first: Leg,
     /// Legs after the first, by ascending closure.
     later: Vec<Leg>,
+    /// Whether it turns on any leg.
+    turns: bool,
     law: ContactLaw,
     deepest: f64,
 }
 
-/// Straight part of a tool's path.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Leg {
-    /// Closure at its start, m.
-    from: f64,
-    /// Displacement of the tool at its start, m.
-    start: Vector3,
-    /// Unit direction of motion.
-    along: Vector3,
-}
-
 /// Relative rounding error of a closure: a tool that has just reached the end of a leg is still on this leg.
 const ROUNDING: f64 = 1e-12;
+
+/// Largest turn of a tool, rad, during which a point that is at rest moves straight relative to the tool: the
+/// arc then differs from its chord by 1/2000 of its radius.
+const PART: f64 = 0.0625;
 
 /// Contact of one point with one tool.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PointContact {
     /// Traction on the tissue, per undeformed area, Pa.
     pub traction: Vector3,
-    /// Tangent `dt/dx` (3, 3), Pa/m; unsymmetric in slip. `dt/dclosure = -(dt/dx) along`.
+    /// Tangent `dt/dx` (3, 3), Pa/m; unsymmetric in slip. On a straight leg `dt/dclosure = -(dt/dx) along`.
     pub stiffness: Matrix3,
     /// Friction history to commit if the step converges in this state.
     pub slip: Slip,
@@ -54,7 +50,8 @@ pub struct PointContact {
 
 impl Tool {
     /// Makes a tool. `at` (m) is the position of the shape's origin at closure 0, before any displacement.
-    /// `rotation` (3, 3) maps the shape's axes to the world's. `along` is the unit direction of motion.
+    /// `rotation` (3, 3) maps the shape's axes to the world's. `motion` is the unit direction of motion, or a
+    /// turn.
     ///
     /// # Errors
     ///
@@ -63,7 +60,7 @@ impl Tool {
         shape: ToolShape,
         at: Point3,
         rotation: Matrix3,
-        along: Vector3,
+        motion: impl Into<Motion>,
         law: ContactLaw,
     ) -> Result<Tool, ContactError> {
         shape.check()?;
@@ -76,31 +73,25 @@ impl Tool {
         if !(deviation <= 1e-9 && determinant > 0.0) {
             return Err(ContactError::Rotation { deviation, determinant });
         }
-        let length = along.norm();
-        if !((length - 1.0).abs() <= 1e-9) {
-            return Err(ContactError::Direction { length });
-        }
-        let first = Leg { from: 0.0, start: Vector3::zeros(), along };
+        let first = Leg::first(&at, motion.into())?;
         let deepest = 0.5 * shape.inradius();
-        Ok(Tool { shape, at, rotation, first, later: Vec::new(), law, deepest })
+        let turns = matches!(first.motion, Motion::About(_));
+        Ok(Tool { shape, at, rotation, first, later: Vec::new(), turns, law, deepest })
     }
 
-    /// Bends the path: after the distance `length` (m) from the start of the last leg the tool moves along
-    /// the unit vector `along`.
+    /// Bends the path: after the distance `length` (m) from the start of the last leg the tool moves along a
+    /// unit vector, or turns about a line that is fixed to the tool and given at the start of the path.
     ///
     /// # Errors
     ///
-    /// The length is not positive, or the direction is not valid.
-    pub fn then(mut self, length: f64, along: Vector3) -> Result<Tool, ContactError> {
-        let norm = along.norm();
-        if !((norm - 1.0).abs() <= 1e-9) {
-            return Err(ContactError::Direction { length: norm });
-        }
+    /// The length is not positive, or the motion is not valid.
+    pub fn then(mut self, length: f64, motion: impl Into<Motion>) -> Result<Tool, ContactError> {
         if !(length > 0.0 && length.is_finite()) {
             return Err(ContactError::Leg { length });
         }
-        let last = *self.later.last().unwrap_or(&self.first);
-        self.later.push(Leg { from: last.from + length, start: last.start + last.along * length, along });
+        let next = self.later.last().unwrap_or(&self.first).next(&self.at, length, motion.into())?;
+        self.later.push(next);
+        self.turns |= matches!(next.motion, Motion::About(_));
         Ok(self)
     }
 
@@ -123,39 +114,93 @@ impl Tool {
         &self.law
     }
 
-    /// Unit direction of the first leg: of the whole motion, if the path is straight.
+    /// Unit direction in which the shape's origin moves on the first leg, of the whole motion if the path is
+    /// straight: at the start of a turn; its axis if the origin lies on the axis.
     pub fn along(&self) -> Vector3 {
         self.first.along
     }
 
-    /// Unit direction of the leg on which the tool is at a closure (m); at a bend that of the leg before it.
-    pub fn along_at(&self, closure: f64) -> Vector3 {
-        self.leg(closure).along
-    }
-
     /// Whether the tool moves along one straight line.
     pub fn is_straight(&self) -> bool {
-        self.later.is_empty()
+        self.later.is_empty() && !self.turns
     }
 
-    /// Position of the shape's origin (m) at the start of each leg of the path, and the leg's unit direction.
-    pub fn legs(&self) -> impl Iterator<Item = (Point3, Vector3)> {
-        std::iter::once(&self.first).chain(&self.later).map(|leg| (self.at + leg.start, leg.along))
+    /// Whether the tool turns on any leg of its path.
+    pub fn turns(&self) -> bool {
+        self.turns
     }
 
-    /// Displacement of the tool at a closure (m), m.
+    /// Legs of the path, each with the tool's pose at its start.
+    pub fn legs(&self) -> impl Iterator<Item = (Pose, &Leg)> {
+        std::iter::once(&self.first).chain(&self.later).map(|leg| {
+            let rotation = leg.turned * self.rotation;
+            (Pose { rotation, place: self.at + leg.start }, leg)
+        })
+    }
+
+    /// Closures (m) at which the path bends: those at the start of every leg but the first.
+    pub fn bends(&self) -> impl Iterator<Item = f64> {
+        self.later.iter().map(|leg| leg.from)
+    }
+
+    /// Displacement of the shape's origin at a closure (m), m.
     pub fn displacement(&self, closure: f64) -> Vector3 {
         // Contact asks for it at every point, and most paths are straight.
         if self.is_straight() {
             return self.first.along * closure;
         }
         let leg = self.leg(closure);
-        leg.start + leg.along * (closure - leg.from)
+        leg.reached(&self.at, closure - leg.from).0
     }
 
     /// Position of the shape's origin at a closure (m), m.
     pub fn place(&self, closure: f64) -> Point3 {
         self.at + self.displacement(closure)
+    }
+
+    /// Position and orientation at a closure (m).
+    #[inline]
+    pub fn pose(&self, closure: f64) -> Pose {
+        if !self.turns {
+            return Pose { rotation: self.rotation, place: self.place(closure) };
+        }
+        let leg = self.leg(closure);
+        let (moved, turned) = leg.reached(&self.at, closure - leg.from);
+        Pose { rotation: turned * self.rotation, place: self.at + moved }
+    }
+
+    /// Returns the force (N) that the tool exerts in the sense of its travel at a closure (m), given the force
+    /// (N) on the tool and the moment (N m) about its origin. On a turn this is the moment about the axis over
+    /// the arm.
+    pub fn driving_force(&self, closure: f64, force: &Vector3, moment: &Vector3) -> f64 {
+        -self.leg(closure).driving(&self.place(closure), force, moment)
+    }
+
+    /// Returns the largest change of the distance between the tool and a place per travel, for places that are
+    /// up to `beyond` (m) farther from the axis of any turn than the farthest of some positions (m). This is 1
+    /// for bounded tools, whose arm is that of their farthest point.
+    pub fn rate(&self, positions: impl Iterator<Item = Point3> + Clone, beyond: f64) -> f64 {
+        if !self.turns || !self.shape.is_endless() {
+            return 1.0;
+        }
+        let of_leg = |leg: &Leg| match leg.motion {
+            Motion::Along(_) => 1.0,
+            Motion::About(turn) => {
+                let farthest = positions.clone().map(|x| turn.axis.cross(&(x - turn.pin)).norm());
+                (farthest.fold(0.0, f64::max) + beyond) / turn.arm
+            }
+        };
+        std::iter::once(&self.first).chain(&self.later).map(of_leg).fold(1.0, f64::max)
+    }
+
+    /// Returns the number of parts of a step between two closures (m) in each of which the tool turns by at
+    /// most [`PART`]; 1 for a tool that does not turn.
+    pub(super) fn parts(&self, [from, to]: [f64; 2]) -> usize {
+        let of_leg = |leg: &Leg| match leg.motion {
+            Motion::Along(_) => 1.0,
+            Motion::About(turn) => ((to - from).abs() / turn.arm / PART).ceil(),
+        };
+        std::iter::once(&self.first).chain(&self.later).map(of_leg).fold(1.0, f64::max) as usize
     }
 
     fn leg(&self, closure: f64) -> &Leg {
@@ -172,12 +217,12 @@ impl Tool {
     /// Lowest and highest corner (m) of a box along the world's axes that contains the tool at a closure (m);
     /// infinite for a plate.
     pub fn bounds(&self, closure: f64) -> (Point3, Point3) {
-        let place = self.place(closure);
+        let Pose { rotation, place } = self.pose(closure);
         let (_, corner) = self.shape.bounds();
         let half = if self.shape.is_endless() {
             Vector3::repeat(f64::INFINITY)
         } else {
-            self.rotation.abs() * corner.coords
+            rotation.abs() * corner.coords
         };
         (place - half, place + half)
     }
@@ -189,16 +234,27 @@ impl Tool {
             return f64::INFINITY;
         }
         let outline = self.shape.outline(0.0);
-        let breadth = |across: &Vector3| {
-            let across = self.rotation.tr_mul(across);
+        let breadth = |rotation: &Matrix3, across: &Vector3| {
+            let across = rotation.tr_mul(across);
             let (low, high) = (outline.iter().map(|p| across.dot(p)))
                 .fold((0.0f64, 0.0f64), |(low, high), x| (low.min(x), high.max(x)));
             0.5 * (high - low)
         };
-        let of_leg = |(_, along): (Point3, Vector3)| {
-            let turned = Tool::turned_to(&along);
+        let of_direction = |rotation: &Matrix3, along: &Vector3| {
+            let turned = Tool::turned_to(along);
             let across = |turn: f64| turned * Vector3::new(turn.cos(), turn.sin(), 0.0);
-            (0..24).map(|k| breadth(&across((7.5 * f64::from(k)).to_radians()))).fold(f64::INFINITY, f64::min)
+            let each = (0..24).map(|k| breadth(rotation, &across((7.5 * f64::from(k)).to_radians())));
+            each.fold(f64::INFINITY, f64::min)
+        };
+        let of_leg = |(pose, leg): (Pose, &Leg)| match leg.motion {
+            Motion::Along(along) => of_direction(&pose.rotation, &along),
+            // The places of the tool move in all directions across the axis.
+            Motion::About(turn) => {
+                let turned = Tool::turned_to(&turn.axis);
+                let way = |turn: f64| turned * Vector3::new(turn.cos(), turn.sin(), 0.0);
+                let each = (0..12).map(|k| way((15.0 * f64::from(k)).to_radians()));
+                each.map(|way| of_direction(&pose.rotation, &way)).fold(f64::INFINITY, f64::min)
+            }
         };
         self.legs().map(of_leg).fold(f64::INFINITY, f64::min)
     }
@@ -206,12 +262,13 @@ impl Tool {
     /// Evaluates contact at the current position `x` (m), from the last committed history. `augmented` is the
     /// multiplier of the augmented Lagrangian, Pa; 0 for a plain penalty.
     pub fn contact(&self, closure: f64, x: &Point3, history: &Slip, augmented: f64) -> PointContact {
-        let p = self.local(closure, x);
+        let pose = self.pose(closure);
+        let p = pose.local(x);
         let (gap, normal) = self.shape.foot(&p);
         match self.law.respond(gap, &normal, &p, history, augmented) {
             Some(response) => PointContact {
-                traction: self.rotation * response.traction,
-                stiffness: self.stiffness(&response, &p, &normal),
+                traction: pose.to_world(&response.traction),
+                stiffness: self.stiffness(&pose, &response, &p, &normal),
                 slip: response.slip,
                 gap,
                 pressure: response.pressure,
@@ -237,17 +294,22 @@ impl Tool {
     /// Returns the position in the tool's frame.
     #[inline]
     pub(super) fn local(&self, closure: f64, x: &Point3) -> Vector3 {
+        if self.turns {
+            return self.pose(closure).local(x);
+        }
         self.rotation.tr_mul(&(x - self.place(closure)))
-    }
-
-    #[inline]
-    pub(super) fn to_world(&self, v: &Vector3) -> Vector3 {
-        self.rotation * v
     }
 
     /// Returns `dt/dx` in the world's axes.
     #[inline]
-    pub(super) fn stiffness(&self, response: &Response, p: &Vector3, normal: &Vector3) -> Matrix3 {
-        self.rotation * self.law.tangent(response, normal, &self.shape.hessian(p)) * self.rotation.transpose()
+    pub(super) fn stiffness(
+        &self,
+        pose: &Pose,
+        response: &Response,
+        p: &Vector3,
+        normal: &Vector3,
+    ) -> Matrix3 {
+        let tangent = self.law.tangent(response, normal, &self.shape.hessian(p));
+        pose.rotation * tangent * pose.rotation.transpose()
     }
 }

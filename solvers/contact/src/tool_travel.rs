@@ -2,7 +2,7 @@
 //!
 //! Contact depends on a state, not on how the state was reached. A tool that travels farther in a step than
 //! its own thickness ends beyond the surface, and nothing touches it there. Relative to the tool every point
-//! moves on a straight line during a step, and the distance to a convex shape is convex along that line. Its
+//! moves on a straight line during a step (during parts of it, if the tool turns), and the distance to a convex shape is convex along that line. Its
 //! minimum is found by bisection on the sign of the slope. Of other shapes, parts of the line are halved
 //! until the distance, which changes at most as fast as the position, can't be smaller in them.
 
@@ -96,11 +96,19 @@ impl ContactSurface<'_> {
                 boxed.map(|(middle, half)| (middle - tool.displacement(stand.closure), half))
             });
             let [(a, half_a), (b, half_b)] = [ends[0].clone()?, ends[1].clone()?];
-            let (low, high) = ((a - half_a).inf(&(b - half_b)), (a + half_a).sup(&(b + half_b)));
-            let middle = nalgebra::center(&low, &high);
-            let half = (high - low) * 0.5;
             // The distance function changes by no more than the distance travelled.
-            if tool.shape().foot(&tool.local(0.0, &middle)).0 - half.norm() < -limit {
+            let least = if tool.turns() {
+                let middle = cluster.current_box(&self.nodes, from.u)?.0;
+                let moved = (cluster.current_box(&self.nodes, to.u)?.0 - middle).norm();
+                let travel = (to.closure - from.closure).abs();
+                tool.gap(from.closure, &middle) - half_a.norm().max(half_b.norm()) - moved - travel
+            } else {
+                let (low, high) = ((a - half_a).inf(&(b - half_b)), (a + half_a).sup(&(b + half_b)));
+                let middle = nalgebra::center(&low, &high);
+                let half = (high - low) * 0.5;
+                tool.shape().foot(&tool.local(0.0, &middle)).0 - half.norm()
+            };
+            if least < -limit {
                 passed.push(&self.order[cluster.points.clone()]);
             }
         }
@@ -121,32 +129,53 @@ struct Passage {
 impl Passage {
     /// Follows one point. A point that is as deep before or after the step has not been jumped over.
     fn meet(&mut self, tool: &Tool, closures: [f64; 2], ends: [Point3; 2]) {
-        let [a, b] = [tool.local(closures[0], &ends[0]), tool.local(closures[1], &ends[1])];
-        let way = b - a;
-        let foot = |part: f64| tool.shape().foot(&(a + (b - a) * part));
-        let before = foot(0.0).0;
-        let after = foot(1.0).0;
-        let travel = way.norm();
-        if 0.5 * (before + after - travel) >= -self.depth {
-            return;
+        let foot = |p: &Vector3| tool.shape().foot(p).0;
+        let count = tool.parts(closures);
+        let mut from = tool.local(closures[0], &ends[0]);
+        let before = foot(&from);
+        let (mut least, mut travel, mut after) = (before, 0.0, before);
+        for k in 1..=count {
+            let to = if k == count {
+                tool.local(closures[1], &ends[1])
+            } else {
+                let part = k as f64 / count as f64;
+                let closure = closures[0] + part * (closures[1] - closures[0]);
+                tool.local(closure, &ends[0].lerp(&ends[1], part))
+            };
+            let last = std::mem::replace(&mut after, foot(&to));
+            least = least.min(self.least_between(tool, [from, to], [last, after]));
+            travel += (to - from).norm();
+            from = to;
         }
-        let least = if tool.shape().is_convex() {
-            let (mut low, mut high) = (0.0, 1.0);
-            let mut least = before.min(after);
-            for _ in 0..HALVINGS {
-                let middle = 0.5 * (low + high);
-                let (gap, normal) = foot(middle);
-                least = least.min(gap);
-                *(if normal.dot(&way) < 0.0 { &mut low } else { &mut high }) = middle;
-            }
-            least
-        } else {
-            self.least(before, after, travel, |part| foot(part).0)
-        };
         if -least > self.depth && least < before.min(after) {
             *self = Passage { depth: -least, at: ends[1], travel };
         }
     }
+
+    /// Smallest distance (m) on a straight line between two positions (m, in the tool's frame) with the
+    /// distances `ends` (m); that of the nearer end if no place between them is a deeper passage.
+    fn least_between(&self, tool: &Tool, [a, b]: [Vector3; 2], ends: [f64; 2]) -> f64 {
+        let way = b - a;
+        let foot = |part: f64| tool.shape().foot(&(a + (b - a) * part));
+        let [before, after] = ends;
+        let travel = way.norm();
+        if 0.5 * (before + after - travel) >= -self.depth {
+            return before.min(after);
+        }
+        if !tool.shape().is_convex() {
+            return self.least(before, after, travel, |part| foot(part).0);
+        }
+        let (mut low, mut high) = (0.0, 1.0);
+        let mut least = before.min(after);
+        for _ in 0..HALVINGS {
+            let middle = 0.5 * (low + high);
+            let (gap, normal) = foot(middle);
+            least = least.min(gap);
+            *(if normal.dot(&way) < 0.0 { &mut low } else { &mut high }) = middle;
+        }
+        least
+    }
+
     /// Smallest distance (m) along a path of the length `travel` (m), to the accuracy that decides whether it
     /// is a deeper passage.
     fn least(&self, before: f64, after: f64, travel: f64, gap: impl Fn(f64) -> f64) -> f64 {

@@ -2,72 +2,15 @@
 
 use shape::{Matrix3, Vector3};
 
-use super::critical_step::{CriticalStep, Estimate, LanczosParams, Springs, critical_step_touching};
+use super::active::Contraction;
+use super::critical_step::{CriticalStep, Estimate, Springs, critical_step_touching};
+use super::motion::{Balance, DynamicsParams, External, Prescribed};
 use super::step_lanes::{Forces, Inertia, accelerate, advance};
+use super::stiffness_damping::StiffnessDamping;
 use crate::error::ExplicitError;
 use crate::force::InternalForce;
 use crate::kernel::Precision;
-use crate::tools::{ToolEnergies, Tools};
-
-/// Parameters of a time integration.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct DynamicsParams {
-    /// Time step, s.
-    pub dt: f64,
-    /// Mass-proportional damping `alpha` of `C = alpha M`, 1/s.
-    pub damping: f64,
-    /// Parameters of the estimate of the critical step, which `dt` must not exceed.
-    pub critical: LanczosParams,
-    /// Number of steps between two checks of the critical step as the body deforms; 0: before the first step
-    /// only.
-    pub recheck: usize,
-    /// Critical step at the start, if known, including the springs of possible contact.
-    pub known: Option<CriticalStep>,
-}
-
-/// Degree of freedom with a prescribed displacement.
-pub struct Prescribed<'a> {
-    /// Index of the node.
-    pub node: u32,
-    /// Axis, 0 to 2.
-    pub axis: u8,
-    /// Displacement (m) as a function of time (s).
-    pub motion: &'a (dyn Fn(f64) -> f64 + Sync),
-}
-
-/// External forces, as a function `(t, u, v, f)` that adds nodal forces (N) to `f`, which starts from zero.
-/// Time `t` (s) and displacements `u` (m) are those of step n, and the velocities `v` (m/s) lag by half a
-/// step: `v_(n-1/2)`.
-pub type External<'a> = dyn FnMut(f64, &[Vector3], &[Vector3], &mut [Vector3]) + 'a;
-
-/// Energy balance at one step, J.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Balance {
-    /// Number of the step.
-    pub step: usize,
-    /// Time, s.
-    pub time: f64,
-    /// Kinetic energy `v_(n-1/2) . M v_(n+1/2) / 2` at a whole step. Its sum with the strain energy is
-    /// constant to rounding in a linear undamped motion.
-    pub kinetic: f64,
-    /// Strain energy.
-    pub strain: f64,
-    /// Work of the external forces since the start. The work of the tools' drives is in `tools.work`.
-    pub external: f64,
-    /// Work of the prescribed displacements since the start.
-    pub support: f64,
-    /// Energy lost to damping since the start.
-    pub damping: f64,
-    /// Energies of the tools; zero without tools.
-    pub tools: ToolEnergies,
-    /// Relative energy error: the change of the sum below since the first recorded step, over the largest of
-    /// its terms so far (without `tools.kinetic` and `tools.damping`).
-    ///
-    /// The sum is
-    /// `kinetic + strain + damping + tools.kinetic + tools.stored + tools.friction + tools.damping` less
-    /// `external + support + tools.work`.
-    pub drift: f64,
-}
+use crate::tools::Tools;
 
 /// Explicit time integration of a body. The bits do not depend on the number of threads.
 pub struct Dynamics<'a, 'b> {
@@ -79,6 +22,8 @@ pub struct Dynamics<'a, 'b> {
     inertia: Inertia,
     tools: Option<Tools<'b>>,
     ground: Vec<Springs<'b>>,
+    contraction: Option<Contraction<'b>>,
+    stiffness_damping: Option<StiffnessDamping>,
     step: usize,
     /// Step and time of the last change of the time step.
     since: (usize, f64),
@@ -143,6 +88,8 @@ impl<'a, 'b> Dynamics<'a, 'b> {
             constrained,
             tools: None,
             ground: Vec::new(),
+            contraction: None,
+            stiffness_damping: None,
             step: 0,
             since: (0, 0.0),
             before: params.dt,
@@ -186,6 +133,40 @@ impl<'a, 'b> Dynamics<'a, 'b> {
     pub fn on_ground(mut self, springs: Vec<Springs<'b>>) -> Dynamics<'a, 'b> {
         self.ground = springs;
         self
+    }
+
+    /// Adds an active stress along the fibres, whose forces count as external ones, to the motion and to the
+    /// estimates of the critical step.
+    pub fn contracting(mut self, contraction: Contraction<'b>) -> Dynamics<'a, 'b> {
+        self.contraction = Some(contraction);
+        self
+    }
+
+    /// Adds the damping `beta K` to `C`, `beta` in s, with the tangent `K` of the internal forces in the current
+    /// state, without an active stress. It shortens the critical step: see
+    /// [`CriticalStep::with_stiffness_damping`].
+    ///
+    /// # Errors
+    ///
+    /// [`ExplicitError::BadParameter`] if `beta` is negative or not finite, [`ExplicitError::StepTooLarge`] if the
+    /// time step exceeds the critical step with this damping.
+    pub fn with_stiffness_damping(mut self, beta: f64) -> Result<Dynamics<'a, 'b>, ExplicitError> {
+        if !(beta >= 0.0 && beta.is_finite()) {
+            let what = "stiffness-proportional damping";
+            return Err(ExplicitError::BadParameter {
+                what,
+                value: beta,
+                allowed: "finite and not negative",
+            });
+        }
+        if beta > 0.0 {
+            self.stiffness_damping = Some(StiffnessDamping::new(beta, self.u.len()));
+            if self.params.known.is_none() {
+                self.estimate = None;
+            }
+            self.check_step()?;
+        }
+        Ok(self)
     }
 
     /// Tools in the state of the last recorded or completed step.
@@ -242,15 +223,21 @@ impl<'a, 'b> Dynamics<'a, 'b> {
         let springs: Vec<Springs> = contact.into_iter().chain(self.ground.iter().copied()).collect();
         let step = self.step;
         let time = self.time();
-        critical_step_touching(
+        if let Some(contraction) = &self.contraction {
+            self.force.contract(&contraction.largest);
+        }
+        let found = critical_step_touching(
             self.force,
             self.mass,
             &self.u,
             |k| !constrained[k],
             &springs,
             self.params.critical,
-        )
-        .map_err(|error| match error {
+        );
+        self.force.contract(&[]);
+        let beta = self.stiffness_damping.as_ref().map(StiffnessDamping::beta);
+        let found = found.map(|found| beta.into_iter().fold(found, CriticalStep::with_stiffness_damping));
+        found.map_err(|error| match error {
             ExplicitError::Inverted(at) => ExplicitError::InvertedAt { step, time, at },
             other => other,
         })
@@ -343,6 +330,7 @@ impl<'a, 'b> Dynamics<'a, 'b> {
         std::mem::swap(&mut self.external, &mut self.previous_external);
         self.external.fill(Vector3::zeros());
         external(time, &self.u, &self.v, &mut self.external);
+        self.act_on_itself(time)?;
         if let Some(tools) = &mut self.tools {
             tools.step(step, time, [before_dt, after_dt], &self.u)?;
         }
@@ -406,6 +394,21 @@ impl<'a, 'b> Dynamics<'a, 'b> {
         Ok(kinetic)
     }
 
+    /// Adds the forces of active stress and of stiffness-proportional damping to the external forces.
+    fn act_on_itself(&mut self, time: f64) -> Result<(), ExplicitError> {
+        let step = self.step;
+        if let Some(contraction) = &self.contraction {
+            let active = (contraction.stress)(time);
+            (self.force.body().add_active_forces(&active, -1.0, &self.u, &mut self.external))
+                .map_err(|at| ExplicitError::InvertedAt { step, time, at })?;
+        }
+        if let Some(damping) = &mut self.stiffness_damping {
+            let (dt, external) = (self.before, &mut self.external);
+            damping.act(&self.internal, dt, &self.v, &self.constrained, external);
+        }
+        Ok(())
+    }
+
     fn not_finite(&self, step: usize, time: f64) -> ExplicitError {
         let bad = |f: &[Vector3]| f.iter().position(|f| !f.iter().all(|c| c.is_finite()));
         let (what, node) =
@@ -437,8 +440,19 @@ impl<'a, 'b> Dynamics<'a, 'b> {
     fn balance(&mut self, kinetic: f64) -> Result<Balance, ExplicitError> {
         let step = self.step;
         let time = self.time();
-        let strain = self.force.energy(&self.u).map_err(|at| ExplicitError::InvertedAt { step, time, at })?;
-        let [external, support, damping] = self.work;
+        let inverted = |at| ExplicitError::InvertedAt { step, time, at };
+        let mut strain = self.force.energy(&self.u).map_err(inverted)?;
+        let [mut external, support, mut damping] = self.work;
+        if let Some(StiffnessDamping { lost: [free, prescribed], .. }) = &self.stiffness_damping {
+            // Its forces in free degrees of freedom have worked as external ones so far.
+            (external, damping) = (external + free, damping + free + prescribed);
+        }
+        if let Some(contraction) = &self.contraction {
+            let active = (contraction.stress)(time);
+            // Its force has worked as an external one so far.
+            let energy = self.force.body().active_energy(&active, &self.u).map_err(inverted)?;
+            (strain, external) = (strain + energy, external + energy);
+        }
         let tools = self.tools.as_ref().map(Tools::energies).unwrap_or_default();
         let gained =
             kinetic + strain + damping + tools.kinetic + tools.stored + tools.friction + tools.damping;

@@ -21,8 +21,26 @@ pub struct CriticalStep {
     pub dt: f64,
     /// Largest angular frequency found, rad/s.
     pub omega_max: f64,
+    /// Largest sum of a row of `M^-1 C` of dampers, 1/s.
+    pub damping: f64,
     /// Number of Lanczos steps made: fewer than requested if the space is exhausted.
     pub steps: usize,
+}
+
+impl CriticalStep {
+    /// Returns the critical step of a body that also has the damping `beta K`, `beta` in s. Its largest rate is
+    /// `beta omega_max^2`, and its forces lag by half a step, as those of dampers do.
+    pub fn with_stiffness_damping(self, beta: f64) -> CriticalStep {
+        let damping = self.damping + beta * self.omega_max * self.omega_max;
+        let dt = self.dt * longest(damping, self.omega_max) / longest(self.damping, self.omega_max);
+        CriticalStep { dt, damping, ..self }
+    }
+}
+
+/// Longest stable step (s) of a mode with the angular frequency `omega` and the damping `gamma` of `M^-1 C`, both
+/// in 1/s.
+fn longest(gamma: f64, omega: f64) -> f64 {
+    4.0 / (gamma + (gamma * gamma + 4.0 * omega * omega).sqrt())
 }
 
 /// Change of shape `|dF F^-1|` at any point since an estimate up to which the estimate is kept. Moduli are
@@ -179,10 +197,10 @@ pub fn critical_step_touching(
         .for_each(|springs| springs.add_damping(&mut rates));
     let gamma = rates.iter().zip(mass).map(|(rate, mass)| rate / mass).fold(0.0, f64::max);
     let dt = match gamma > 0.0 {
-        true => safety * 4.0 / (gamma + (gamma * gamma + 4.0 * omega_max * omega_max).sqrt()),
+        true => safety * longest(gamma, omega_max),
         false => safety * 2.0 / omega_max,
     };
-    Ok(CriticalStep { dt, omega_max, steps: alpha.len() })
+    Ok(CriticalStep { dt, omega_max, damping: gamma, steps: alpha.len() })
 }
 
 /// Product `K v` by `(f(u + h v) - f(u - h v)) / 2 h`.

@@ -23,6 +23,8 @@ pub struct InternalForce<'a> {
     engine: Option<Box<dyn Engine>>,
     path: LanePath,
     precision: Precision,
+    /// Active stress by region, Pa; empty if there is none.
+    active: Vec<f64>,
 }
 
 fn boxed<E: Engine + 'static>(engine: E) -> Box<dyn Engine> {
@@ -59,7 +61,7 @@ impl<'a> InternalForce<'a> {
                 _ => None,
             }),
         };
-        Ok(InternalForce { body, engine, path, precision })
+        Ok(InternalForce { body, engine, path, precision, active: Vec::new() })
     }
 
     /// Uses the plain loop for any table: the reference of the other kernels.
@@ -69,12 +71,20 @@ impl<'a> InternalForce<'a> {
     /// As [`InternalForce::new`].
     pub fn plain(body: ExplicitBody<'a>) -> Result<InternalForce<'a>, ExplicitError> {
         body.check()?;
-        Ok(InternalForce { body, engine: None, path: LanePath::PORTABLE, precision: Precision::Double })
+        let (path, precision) = (LanePath::PORTABLE, Precision::Double);
+        Ok(InternalForce { body, engine: None, path, precision, active: Vec::new() })
     }
 
     /// The body.
     pub fn body(&self) -> ExplicitBody<'a> {
         self.body
+    }
+
+    /// Adds an active stress along the fibre (Pa, by region) to all evaluations that follow; none if empty. Its
+    /// forces are computed by the plain loop, whatever the kernel.
+    pub fn contract(&mut self, active: &[f64]) {
+        self.active.clear();
+        self.active.extend_from_slice(active);
     }
 
     /// Number of nodes.
@@ -106,6 +116,14 @@ impl<'a> InternalForce<'a> {
     /// [`InvertedPoint`] if `J` is not positive at a point.
     pub fn evaluate(&mut self, u: &[Vector3], f: &mut [Vector3]) -> Result<(), InvertedPoint> {
         assert_eq!((u.len(), f.len()), (self.node_count(), self.node_count()), "one vector per node");
+        self.passive(u, f)?;
+        if self.active.is_empty() {
+            return Ok(());
+        }
+        self.body.add_active_forces(&self.active, 1.0, u, f)
+    }
+
+    fn passive(&mut self, u: &[Vector3], f: &mut [Vector3]) -> Result<(), InvertedPoint> {
         let Some(engine) = &mut self.engine else {
             return plain_forces(&self.body, u, f);
         };
@@ -126,14 +144,15 @@ impl<'a> InternalForce<'a> {
     pub fn rounding(&mut self, u: &[Vector3]) -> Result<f64, InvertedPoint> {
         let mut forces = [vec![Vector3::zeros(); u.len()], vec![Vector3::zeros(); u.len()]];
         let [found, exact] = &mut forces;
-        self.evaluate(u, found)?;
+        self.passive(u, found)?;
         plain_forces(&self.body, u, exact)?;
         let largest = exact.iter().map(Vector3::amax).fold(0.0, f64::max);
         let gap = found.iter().zip(exact).map(|(a, b)| (a - *b).amax()).fold(0.0, f64::max);
         Ok(if largest > 0.0 { gap / largest } else { 0.0 })
     }
 
-    /// Computes the strain energy (J) at nodal displacements `u` (m) by the plain loop.
+    /// Computes the strain energy (J) at nodal displacements `u` (m) by the plain loop, with the energy of an
+    /// active stress.
     ///
     /// # Errors
     ///
@@ -145,7 +164,8 @@ impl<'a> InternalForce<'a> {
             None => plain::energy(volume, density, u),
             Some(groups) => plain::dilated_energy(volume, groups, density, u),
         }?;
-        Ok(seen + volume.hourglass_energy(|q| self.body.moduli(q), u))
+        let active = if self.active.is_empty() { 0.0 } else { self.body.active_energy(&self.active, u)? };
+        Ok(seen + volume.hourglass_energy(|q| self.body.moduli(q), u) + active)
     }
 }
 

@@ -27,6 +27,7 @@
 //! # }
 //! ```
 
+mod active;
 mod body;
 mod cell_lanes;
 mod cells;
@@ -38,6 +39,7 @@ mod force;
 mod kernel;
 mod mass;
 mod moduli;
+mod motion;
 mod nodal;
 mod one_point;
 mod one_point_lanes;
@@ -50,18 +52,21 @@ mod rows;
 mod scalar;
 mod single;
 mod step_lanes;
+mod stiffness_damping;
 mod tet4;
 mod tet4_lanes;
 mod tools;
 mod trilinear;
 
+pub use active::Contraction;
 pub use body::ExplicitBody;
-pub use central_difference::{Balance, Dynamics, DynamicsParams, External, Prescribed};
+pub use central_difference::Dynamics;
 pub use critical_step::{CriticalStep, LanczosParams, Springs, critical_step, critical_step_touching};
 pub use error::{ExplicitError, InvertedPoint};
 pub use force::InternalForce;
 pub use kernel::{Kernel, KernelInfo, Precision};
 pub use mass::{Lumping, lumped_mass, point_masses};
+pub use motion::{Balance, DynamicsParams, External, Prescribed};
 pub use pressing::{Pressing, PressingTool};
 pub use relaxation::{RelaxationInfo, RelaxationParams, Rested, StaticLoad, relax, relax_under};
 pub use tools::{MovingTool, ToolEnergies, ToolMotion, Tools};

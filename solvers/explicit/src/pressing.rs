@@ -113,9 +113,10 @@ impl<'a> Pressing<'a> {
             if let Some(contacts) = &contacts {
                 contacts.add_force(self.surface.rows(), force);
             }
-            self.states[k] = ToolState::new(tool.closure, contacts.as_ref());
-            self.pushed[k] =
-                [-self.states[k].force.dot(&tool.tool.along_at(tool.closure)), self.pushed[k][0]];
+            let state = ToolState::new(tool.closure, contacts.as_ref());
+            let pushed = tool.tool.driving_force(tool.closure, &state.force, &state.moment);
+            self.pushed[k] = [pushed, self.pushed[k][0]];
+            self.states[k] = state;
         }
         Ok(())
     }

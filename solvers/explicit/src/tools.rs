@@ -253,7 +253,8 @@ impl<'a> Tools<'a> {
 
 impl<'a> Moving<'a> {
     fn new(of: MovingTool<'a>, surface: &ContactSurface, u: &[Vector3]) -> Moving<'a> {
-        let touch = touch(of.tool, surface, u);
+        let full = if let Drive::Closure(full) = of.drive { full } else { f64::INFINITY };
+        let touch = touch(of.tool, full, surface, u);
         let mut moving = Moving {
             of,
             history: ContactHistory::new(of.tool, surface.rows().points().len()),
@@ -327,7 +328,8 @@ impl<'a> Moving<'a> {
     }
 
     fn advance(&mut self, first: bool, time: f64, [before_dt, after_dt]: [f64; 2]) {
-        let pushed = -self.motion.state.force.dot(&self.of.tool.along_at(self.closure));
+        let state = &self.motion.state;
+        let pushed = self.of.tool.driving_force(self.closure, &state.force, &state.moment);
         match self.of.drive {
             Drive::Closure(_) => {
                 if !first {
@@ -365,25 +367,29 @@ impl<'a> Moving<'a> {
 }
 
 /// Returns the displacement (m) of first contact, to 1e-9 m or a millionth of the distance to the body's far
-/// side; infinite if the tool passes by. The distance to a point changes by no more than the tool's travel,
+/// side; infinite if the tool passes by. A tool that turns travels up to `full` (m). The distance to a point changes by no more than the tool's travel,
 /// so advancing by the gap never overshoots.
-fn touch(tool: &Tool, surface: &ContactSurface, u: &[Vector3]) -> f64 {
+fn touch(tool: &Tool, full: f64, surface: &ContactSurface, u: &[Vector3]) -> f64 {
     let points = surface.rows().points();
     if points.is_empty() {
         return f64::INFINITY;
     }
     // Beyond the body's far side, when the tool's origin has passed every point, nothing is left to touch.
     let ahead = |x: &Point3| (x - tool.place(0.0)).dot(&tool.along());
-    let far = (0..points.len()).map(|q| ahead(&surface.position(q, u))).fold(0.0, f64::max);
-    let near = 1e-9f64.min(1e-6 * far);
+    let positions = (0..points.len()).map(|q| surface.position(q, u));
+    let far = positions.clone().map(|x| ahead(&x)).fold(0.0, f64::max);
+    // A turn has no far side.
+    let farthest = if tool.turns() { full } else { 2.0 * far.abs() + 1.0 };
+    let near = 1e-9f64.min(1e-6 * if tool.turns() { full } else { far });
+    let rate = tool.rate(positions, 0.0);
     let mut closure = 0.0;
     for _ in 0..10_000 {
         let gap = surface.gap(tool, closure, u);
         if gap <= near {
             return closure;
         }
-        closure += gap;
-        if closure > 2.0 * far.abs() + 1.0 {
+        closure += gap / rate;
+        if closure > farthest {
             break;
         }
     }

@@ -366,6 +366,12 @@ impl Mesh {
         Mesh { points, nodes, node_groups, boundary: Default::default(), ..self.clone() }
     }
 
+    /// The same topology with other positions, m.
+    pub(crate) fn at(&self, points: Vec<Point3>) -> Mesh {
+        debug_assert_eq!(points.len(), self.points.len());
+        Mesh { points, ..self.clone() }
+    }
+
     /// The same topology with every position mapped by `map`.
     ///
     /// # Errors

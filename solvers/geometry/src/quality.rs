@@ -225,7 +225,7 @@ fn surface(kind: CellKind, points: &[Point3]) -> f64 {
 
 /// Smallest and largest angle (degrees) between faces that share an edge. At an edge of a quadrilateral the
 /// face is taken as the plane through the edge and the corner adjacent to its start.
-fn dihedrals(kind: CellKind, points: &[Point3]) -> (f64, f64) {
+pub(crate) fn dihedrals(kind: CellKind, points: &[Point3]) -> (f64, f64) {
     let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
     for &[a, b] in kind.edges() {
         let along = (points[b] - points[a]).normalize();

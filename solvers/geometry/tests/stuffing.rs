@@ -4,7 +4,7 @@ mod common;
 
 use common::{bumpy, jagged, joined, moved, sphere_like, surface, torus};
 use tissuebench_geometry::stuffing::{
-    Stuffing, StuffingError, expected_nodes, fit, stuff, stuff_with_nodes, stuff_with_quadratic_nodes,
+    Stuffing, StuffingError, expected_nodes, fit, stuff, stuff_quadratic_with_nodes, stuff_with_nodes,
 };
 use tissuebench_geometry::{Facet, Mesh, Surface, quality};
 
@@ -115,8 +115,8 @@ fn more_nodes_wanted_are_never_fewer_made() {
             let volume = quality::check(&stuffed.mesh).unwrap().volume;
             assert!(volume > 0.75 * surface.volume(), "{name}: {volume} of {}", surface.volume());
             last = found;
-            let stuffed = stuff_with_quadratic_nodes(surface, nodes).unwrap();
-            let found = stuffed.mesh.points().len() + tissuebench_geometry::edges(&stuffed.mesh).len();
+            let stuffed = stuff_quadratic_with_nodes(surface, nodes).unwrap();
+            let found = stuffed.mesh.points().len();
             assert!(found >= quadratic, "{name}: {found} for {nodes} quadratic, {quadratic} for fewer");
             quadratic = found;
         }
@@ -166,4 +166,34 @@ fn cells_of_several_sizes_fit_together() {
     let volumes = quality::volumes(&mesh);
     let [least, most] = [f64::min, f64::max].map(|of| volumes.iter().copied().reduce(of).unwrap());
     assert!(most > 60.0 * least, "{least} to {most}");
+}
+
+/// The volume of the surface, from meshes of which each cell is cut by it to those that resolve it.
+#[test]
+fn meshes_enclose_the_volume_of_their_surfaces() {
+    let surfaces = [
+        ("sphere", surface(sphere_like(5, |n| n))),
+        ("ellipsoid", surface(sphere_like(5, |n| [2.0 * n.x, n.y, 0.5 * n.z].into()))),
+        ("bumpy", surface(bumpy(5))),
+        ("torus", surface(torus(0.4, 96, 48))),
+    ];
+    for (name, surface) in &surfaces {
+        for nodes in [400, 1000, 6000] {
+            let (linear, _) = stuff_with_nodes(surface, nodes, 0).unwrap();
+            let volume = angles_and_volume(&linear.mesh) / surface.volume() - 1.0;
+            assert!(volume.abs() < 2e-3, "{name} {nodes}: {volume}");
+            let quadratic = stuff_quadratic_with_nodes(surface, nodes).unwrap().mesh;
+            let quality = quality::check(&quadratic).unwrap();
+            let volume = quality.volume / surface.volume() - 1.0;
+            assert!(quality.min_det_ratio.value > 0.149, "{name} {nodes}: {:?}", quality.min_det_ratio);
+            // The bumps are narrower than the cells of the coarsest mesh.
+            let allowed = if *name == "bumpy" && nodes == 400 { 0.05 } else { 2e-3 };
+            assert!(volume.abs() < allowed, "{name} {nodes}: {volume}");
+        }
+    }
+}
+
+fn angles_and_volume(mesh: &Mesh) -> f64 {
+    angles(mesh);
+    quality::check(mesh).unwrap().volume
 }

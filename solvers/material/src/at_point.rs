@@ -39,10 +39,17 @@ impl<'a> AtPoint<'a> {
         self.axes.map_or_else(Vector3::x, |axes| axes.column(0).into())
     }
 
-    /// Active stress `T F f x f`, Pa.
-    fn active_stress(&self, H: &Matrix3) -> Matrix3 {
+    /// Active stress `T F f x f` alone, Pa: the first Piola-Kirchhoff stress.
+    pub fn active_stress(&self, H: &Matrix3) -> Matrix3 {
         let f = self.fibre();
         (f + H * f) * (self.active * f).transpose()
+    }
+
+    /// Energy of the active stress alone, `T/2 (|F f|^2 - 1)`, Pa.
+    pub fn active_energy(&self, H: &Matrix3) -> f64 {
+        let f = self.fibre();
+        let stretched = H * f;
+        0.5 * self.active * (2.0 * f.dot(&stretched) + stretched.norm_squared())
     }
 
     /// Adds the tangent `T delta_ik f_j f_l` of the active stress, Pa.
@@ -76,12 +83,7 @@ impl Material for AtPoint<'_> {
             None => self.law.energy(H),
             Some(Q) => self.law.energy(&(Q.transpose() * H * Q)),
         };
-        if self.active == 0.0 {
-            return passive;
-        }
-        let f = self.fibre();
-        let stretched = H * f;
-        passive + 0.5 * self.active * (2.0 * f.dot(&stretched) + stretched.norm_squared())
+        if self.active == 0.0 { passive } else { passive + self.active_energy(H) }
     }
 
     fn stress(&self, H: &Matrix3) -> Matrix3 {

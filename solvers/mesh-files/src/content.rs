@@ -9,6 +9,7 @@ use std::path::Path;
 use geometry::{CellKind, Facet, Mesh, Point3};
 
 use self::node_groups::{faces_of, of_cell, with_further_nodes, within};
+use crate::data_array::DataArray;
 use crate::error::{FileError, Parsed, Place, Problem};
 use crate::left_out::LeftOut;
 use crate::middles::turn_if_inverted;
@@ -46,6 +47,8 @@ pub(super) struct Content {
     /// Whether a cell may be listed once for each of its regions.
     repeats: bool,
     left_out: Vec<LeftOut>,
+    /// Arrays of cells and nodes, if one is requested.
+    pub(super) arrays: Vec<DataArray>,
 }
 
 /// Kind of item that a name belongs to.
@@ -225,16 +228,19 @@ impl Content {
     /// later.
     pub(super) fn face(&mut self, row: Row, groups: &[usize], list: &[u64], corners: usize) -> Parsed<()> {
         self.element(row, list)?;
-        let corners = self.corners(row, &list[..corners])?;
-        let face = |&group: &usize| Face { place: row.place, element: row.tag, corners, group, loose: false };
-        self.faces.extend(groups.iter().map(face));
-        Ok(())
+        groups.iter().try_for_each(|&group| self.cell_face(row, group, &list[..corners], false))
     }
 
     /// Adds a shell whose number is known to a group if it lies on the face of a cell.
     pub(super) fn shell(&mut self, row: Row, group: usize, corners: &[u64]) -> Parsed<()> {
+        self.cell_face(row, group, corners, true)
+    }
+
+    /// Adds the face of a cell, which may be added later, to a group by its corners. `loose` allows a face that
+    /// belongs to no cell.
+    pub(super) fn cell_face(&mut self, row: Row, group: usize, corners: &[u64], loose: bool) -> Parsed<()> {
         let corners = self.corners(row, corners)?;
-        self.faces.push(Face { place: row.place, element: row.tag, corners, group, loose: true });
+        self.faces.push(Face { place: row.place, element: row.tag, corners, group, loose });
         Ok(())
     }
 

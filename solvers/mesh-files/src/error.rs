@@ -88,6 +88,14 @@ pub enum FileError {
         /// The name.
         name: String,
     },
+    /// An array that the file does not have.
+    #[error("{file}: {problem}", file = file.display())]
+    Array {
+        /// The file.
+        file: PathBuf,
+        /// Problem of the array.
+        problem: Problem,
+    },
     /// A length unit that is not a positive number.
     #[error("{file}: the length unit is {unit} m; it has to be positive", file = file.display())]
     Unit {
@@ -119,7 +127,7 @@ pub enum Problem {
     /// A file in none of the supported formats.
     #[error(
         "no supported mesh format begins with '{found}'; supported: Gmsh .msh ($MeshFormat, 2.2, 4.0 or 4.1; \
-         $NOD), Abaqus .inp (*HEADING, *NODE), VTK .vtu (<VTKFile) and .vtk (# vtk DataFile), and the \
+         $NOD), Abaqus .inp (*HEADING, *NODE), FEBio .feb (<febio_spec), VTK .vtu (<VTKFile) and .vtk (# vtk DataFile), and the \
          surfaces STL, OBJ, PLY"
     )]
     Format {
@@ -417,6 +425,33 @@ pub enum Problem {
         cell: usize,
         /// Values of the two arrays at this cell.
         values: [i64; 2],
+    },
+    /// A requested array that the file does not have.
+    #[error("has no array '{array}'{}", match known.is_empty() {
+        true => ", and no other array of vectors with three components".to_string(),
+        false => format!("; its arrays of vectors are {}", known.join(", ")),
+    })]
+    NoArray {
+        /// Name of the array.
+        array: String,
+        /// Names of the arrays with three components.
+        known: Vec<String>,
+    },
+    /// Two arrays of one name.
+    #[error(
+        "the array '{array}' occurs a second time, of other items or with other components: give each its own name"
+    )]
+    TwoArrays {
+        /// Name of the array.
+        array: String,
+    },
+    /// An array of vectors without three components.
+    #[error("the array '{array}' has {found} component{}; a direction has three", if *found == 1 { "" } else { "s" })]
+    Components {
+        /// Name of the array.
+        array: String,
+        /// Number of components.
+        found: usize,
     },
     /// A problem in an included file.
     #[error("in {file}, {place}: {problem}")]

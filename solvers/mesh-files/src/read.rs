@@ -11,15 +11,15 @@ use crate::left_out::LeftOut;
 use crate::open::{bytes, check_unit, suffix};
 use crate::rows::Row;
 use crate::text::{unknown, unmarked};
-use crate::{abaqus, gmsh, surface, vtk, vtu};
+use crate::{abaqus, febio, gmsh, surface, vtk, vtu};
 
 /// Mesh formats accepted by [`read`], for messages.
 pub const READ: &str =
-    "give a mesh file: Gmsh .msh (1, 2.2, 4.0 or 4.1), Abaqus or CalculiX .inp, VTK .vtu or .vtk";
+    "give a mesh file: Gmsh .msh (1, 2.2, 4.0 or 4.1), Abaqus or CalculiX .inp, FEBio .feb, VTK .vtu or .vtk";
 
 /// Whether a file is a mesh according to its suffix, in contexts that also accept lists of points.
 pub fn is_mesh(file: &Path) -> bool {
-    ["msh", "inp", "vtu", "vtk"].iter().any(|known| suffix(file) == *known)
+    ["msh", "inp", "feb", "vtu", "vtk"].iter().any(|known| suffix(file) == *known)
 }
 
 /// Files included by a mesh file, by their names in it, as far as they can be read. Most files include none.
@@ -50,7 +50,7 @@ pub fn read(file: &Path, unit: f64) -> Result<Mesh, FileError> {
 pub fn read_bytes(bytes: &[u8], file: &Path, unit: f64) -> Result<(Mesh, Vec<Row>), FileError> {
     check_unit(file, unit)?;
     let at = |(place, problem)| FileError::At { file: file.to_path_buf(), place, problem };
-    let content = parse(bytes, file).map_err(at)?;
+    let content = parse(bytes, file, None).map_err(at)?;
     content.into_mesh(unit, file, Unused::Refused)
 }
 
@@ -61,7 +61,7 @@ pub fn read_bytes(bytes: &[u8], file: &Path, unit: f64) -> Result<(Mesh, Vec<Row
 pub fn read_without_unused(file: &Path, unit: f64) -> Result<Mesh, FileError> {
     check_unit(file, unit)?;
     let at = |(place, problem)| FileError::At { file: file.to_path_buf(), place, problem };
-    let content = parse(&bytes(file)?, file).map_err(at)?;
+    let content = parse(&bytes(file)?, file, None).map_err(at)?;
     Ok(content.into_mesh(unit, file, Unused::LeftOut)?.0)
 }
 
@@ -90,21 +90,22 @@ pub fn inverted(file: &Path, bad: &InvertedElement) -> String {
 /// Returns the parts of a file that its mesh omits or changes; empty for a surface or for a file that cannot
 /// be read.
 pub fn left_out(file: &Path) -> Vec<LeftOut> {
-    let content = bytes(file).ok().and_then(|bytes| parse(&bytes, file).ok());
+    let content = bytes(file).ok().and_then(|bytes| parse(&bytes, file, None).ok());
     content.map(Content::into_left_out).unwrap_or_default()
 }
 
-/// Parses a file by its first characters: `$` for Gmsh, `*KEYWORD` for Abaqus, `<` for XML, `# vtk` for
-/// legacy VTK.
-fn parse(bytes: &[u8], file: &Path) -> Parsed<Content> {
+/// Parses a file by its first characters: `$` for Gmsh, `*KEYWORD` for Abaqus, `<` for XML (FEBio or VTK), `# vtk` for
+/// legacy VTK. The values of the array `wanted` are kept.
+pub(crate) fn parse(bytes: &[u8], file: &Path, wanted: Option<&str>) -> Parsed<Content> {
     let whole = bytes;
     let bytes = unmarked(bytes);
     let start = bytes.iter().position(|b| !b.is_ascii_whitespace()).unwrap_or(bytes.len());
     match &bytes[start..] {
-        [b'$', next, ..] if next.is_ascii_alphabetic() => gmsh::parse(bytes),
+        [b'$', next, ..] if next.is_ascii_alphabetic() => gmsh::parse(bytes, wanted),
         [b'*', ..] => abaqus::parse(bytes, file),
-        [b'<', ..] => vtu::parse(bytes),
-        rest if rest.starts_with(b"# vtk") => vtk::parse(bytes),
+        [b'<', ..] if febio::is_model(bytes) => febio::parse(bytes),
+        [b'<', ..] => vtu::parse(bytes, wanted),
+        rest if rest.starts_with(b"# vtk") => vtk::parse(bytes, wanted),
         _ if surface::holds_surface(whole, file) => Err((Place::Line(1), Problem::Surface)),
         _ => unknown(bytes),
     }

@@ -3,6 +3,7 @@
 use geometry::Point3;
 
 use crate::content::Content;
+use crate::data_array::DataArray;
 use crate::error::{Parsed, Place, Problem};
 use crate::vtk_cells::{Array, Cells, lost, regions};
 
@@ -37,6 +38,10 @@ struct Found {
     arrays: Vec<Array>,
     /// All other arrays, without their values, and whether they belong to cells.
     others: Vec<(Array, bool)>,
+    /// Name of the array whose values are kept.
+    wanted: Option<String>,
+    /// All arrays, if one is wanted.
+    data: Vec<DataArray>,
 }
 
 impl Found {
@@ -44,7 +49,14 @@ impl Found {
     /// `place` is the place of its description.
     fn keep(&mut self, of: Of, parts: usize, name: &str, place: Place, values: Vec<f64>) {
         // Blanks in names are written as %20.
-        let array = Array { name: name.replace("%20", " "), place, values };
+        let name = name.replace("%20", " ");
+        if self.wanted.is_some() && of != Of::Grid {
+            let values = if self.wanted.as_ref() == Some(&name) { values.clone() } else { Vec::new() };
+            let (of_cells, numbers) = (matches!(of, Of::Cells(_)), Vec::new());
+            let (name, components) = (name.clone(), parts);
+            self.data.push(DataArray { name, place, of_cells, components, numbers, values });
+        }
+        let array = Array { name, place, values };
         match (of, parts) {
             (Of::Grid, _) => {}
             (Of::Cells(_), 1) => self.arrays.push(array),
@@ -53,7 +65,7 @@ impl Found {
     }
 }
 
-pub(super) fn parse(bytes: &[u8]) -> Parsed<Content> {
+pub(super) fn parse(bytes: &[u8], wanted: Option<&str>) -> Parsed<Content> {
     let mut scanner = Scanner { bytes, at: 0, line: 1, binary: false };
     let version = scanner.rest_of_line();
     if !version.starts_with("# vtk DataFile Version") {
@@ -75,7 +87,7 @@ pub(super) fn parse(bytes: &[u8]) -> Parsed<Content> {
     if !dataset.eq_ignore_ascii_case("UNSTRUCTURED_GRID") {
         return scanner.fail("UNSTRUCTURED_GRID (a mesh of cells)", &dataset);
     }
-    let mut found = Found::default();
+    let mut found = Found { wanted: wanted.map(str::to_string), ..Found::default() };
     let mut of = Of::Grid;
     while let Some(word) = scanner.word() {
         of = section(&mut scanner, &mut found, of, &word)?;
@@ -232,6 +244,14 @@ fn content(scanner: &Scanner, found: Found) -> Parsed<Content> {
     for (number, x) in points.chunks_exact(3).enumerate() {
         content.node(Place::Node(number), number as u64, Point3::new(x[0], x[1], x[2]))?;
     }
+    for array in found.data.iter().filter(|array| !array.values.is_empty()) {
+        let items = if array.of_cells { types.len() } else { points.len() / 3 };
+        let lengths = Problem::ArrayLength { found: array.values.len(), expected: array.components * items };
+        if array.values.len() != array.components * items {
+            return Err((array.place, lengths));
+        }
+    }
+    found.data.into_iter().for_each(|array| content.arrays.push(array.numbered_from(0)));
     let array = |name: &str| -> Parsed<Option<Array>> {
         let found = found.arrays.iter().find(|array| array.name.eq_ignore_ascii_case(name));
         found.map_or(Ok(()), |array| counted(array.values.len(), types.len()))?;

@@ -2,6 +2,9 @@
 
 use thiserror::Error;
 
+/// Bisections for the time at which a smooth curve passes a factor: to the last digit.
+const HALVINGS: usize = 60;
+
 /// Factor of a condition as a function of time: given at some times, constant before the first and after the
 /// last.
 ///
@@ -119,6 +122,29 @@ impl Curve {
         ]
     }
 
+    /// Returns the curve with `by` added to all factors.
+    pub fn plus(&self, by: f64) -> Curve {
+        Curve { points: self.points.iter().map(|[time, factor]| [*time, factor + by]).collect(), ..*self }
+    }
+
+    /// Returns the times at which the factor passes from one side of a value to the other, in order.
+    pub fn passes(&self, factor: f64) -> Vec<f64> {
+        let pieces = self.points.windows(2).map(|pair| (pair[0], pair[1]));
+        let passing = pieces.filter(|([_, from], [_, to])| (from - factor) * (to - factor) < 0.0);
+        let time = |([start, from], [end, to]): ([f64; 2], [f64; 2])| {
+            if !self.smooth {
+                return start + (factor - from) / (to - from) * (end - start);
+            }
+            let (mut low, mut high) = (start, end);
+            for _ in 0..HALVINGS {
+                let middle = 0.5 * (low + high);
+                *(if (self.value(middle) < factor) == (from < to) { &mut low } else { &mut high }) = middle;
+            }
+            0.5 * (low + high)
+        };
+        passing.map(time).collect()
+    }
+
     /// Returns the largest factor.
     pub fn largest(&self) -> f64 {
         self.points.iter().map(|point| point[1]).fold(f64::NEG_INFINITY, f64::max)
@@ -137,6 +163,21 @@ mod tests {
 
     fn up_and_down(smooth: bool) -> Curve {
         Curve::new(vec![[0.5, 0.0], [1.0, 2.0], [3.0, -1.0]], smooth).unwrap()
+    }
+
+    #[test]
+    fn a_curve_passes_a_factor_at_these_times() {
+        let up_and_down = up_and_down(false);
+        let near = |found: Vec<f64>, expected: &[f64]| {
+            assert_eq!(found.len(), expected.len(), "{found:?}");
+            assert!(found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-14), "{found:?}");
+        };
+        near(up_and_down.passes(0.5), &[0.625, 2.0]);
+        near(up_and_down.passes(-0.5), &[8.0 / 3.0]);
+        near(up_and_down.passes(2.5), &[]);
+        near(Curve::smooth_growth(2.0).passes(0.5), &[1.0]);
+        let smooth = Curve::smooth_growth(2.0);
+        assert!((smooth.value(smooth.passes(0.2)[0]) - 0.2).abs() < 1e-14);
     }
 
     #[test]

@@ -68,6 +68,7 @@ mod error;
 mod grad_table;
 mod hourglass;
 mod implicit;
+mod laplace;
 mod load;
 mod modes;
 mod nonlinear;
@@ -89,6 +90,7 @@ pub use error::SolveError;
 pub use implicit::{
     Energy, Inertia, Mass, Motion, TimeError, TimeParams, TimePath, TimeProblem, TimeStep, solve_in_time,
 };
+pub use laplace::{LaplaceProblem, solve_laplace};
 pub use load::{Load, nodal_forces, nodal_forces_by_curve};
 pub use modes::{ALL_MODES_LIMIT, Modes, lowest_modes, modes};
 pub use nonlinear::{

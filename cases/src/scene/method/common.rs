@@ -22,7 +22,7 @@ pub(crate) struct SizeKeys {
     cells: Option<[u32; 3]>,
     /// Ratio of the last to the first cell along each axis, with cells
     grading: Option<[f64; 3]>,
-    /// A mesh file: Gmsh .msh, Abaqus or CalculiX .inp, VTK .vtu or .vtk
+    /// A mesh file: Gmsh .msh, Abaqus or CalculiX .inp, FEBio .feb, VTK .vtu or .vtk
     file: Option<String>,
     /// Unit of the numbers in the file; mm unless given
     unit: Option<Unit<Length>>,

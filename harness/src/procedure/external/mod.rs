@@ -178,7 +178,7 @@ fn supports(
 ) -> Vec<Resultant> {
     let nodes: Vec<Vector3> = inner.iter().zip(outer).map(|(inner, outer)| inner - outer * load).collect();
     let at = |i: usize| problem.method.nodes()[i] + u[i];
-    let forces = ConditionForces { at: &at, nodes: &nodes, rows: &[], weak: &[] };
+    let forces = ConditionForces { at: &at, nodes: &nodes, rows: &[], weak: &[], time: None };
     let found = problem.prepared.support_forces(&forces);
     if found.iter().all(|sum| sum.force.iter().all(|f| f.is_finite())) { found } else { Vec::new() }
 }

@@ -212,6 +212,9 @@ metrics! {
         "time of the recorded state with the largest displacement";
     PERIOD: "period", "period", Time, Value, Motion,
         "mean period of the first probe, between upward crossings of the middle of its recorded displacement range";
+    DAMPING_RATIO: "damping-ratio", "damping ratio", None, Value, Motion,
+        "damping of the first probe's vibration as a part of critical damping, from the logarithmic decrement of \
+         the second half of its swings; with damping only";
     MASS: "mass", "mass", Mass, Value, Dynamics,
         "mass of the body";
     TOOL_MASS: "tool-mass", "tool mass", Mass, Value, Explicit,

@@ -7,6 +7,7 @@
 //! cell.
 
 mod cuts;
+mod fitted;
 mod lattice;
 mod measure;
 mod names;
@@ -19,6 +20,7 @@ use rayon::prelude::*;
 
 use crate::Point3;
 use crate::element::CellKind;
+use crate::generate::raise_order;
 use crate::mesh::{Facet, Mesh};
 use crate::surface::Surface;
 use cuts::Cuts;
@@ -28,7 +30,7 @@ use octree::{Frame, Octree};
 use stencil::{Side, Tet};
 
 pub use measure::{Fit, fit};
-pub use nodes::{stuff_with_nodes, stuff_with_quadratic_nodes};
+pub use nodes::{stuff_quadratic_with_nodes, stuff_with_nodes};
 
 /// Mean edge length of the lattice over the edge of its cubes: each node has six edges of a full edge length
 /// and eight of half a diagonal.
@@ -94,11 +96,35 @@ pub fn expected_nodes(volume: f64, area: f64, spacing: f64) -> f64 {
     2.0 * volume / edge.powi(3) + area / edge.powi(2)
 }
 
-/// Fills a surface with linear tetrahedra.
+/// Fills a surface with linear tetrahedra, which enclose about the volume of the surface.
 ///
 /// # Errors
 /// A spacing that is not positive and finite, or too fine or too coarse for the surface.
 pub fn stuff(surface: &Surface, how: Stuffing) -> Result<Stuffed, StuffingError> {
+    Ok(fill(surface, how)?.linear(surface))
+}
+
+/// Fills a surface with quadratic tetrahedra, whose nodes on the boundary lie on the surface. `how.spacing` is that of
+/// the corners.
+///
+/// # Errors
+/// As for [`stuff`].
+pub fn stuff_quadratic(surface: &Surface, how: Stuffing) -> Result<Stuffed, StuffingError> {
+    Ok(fill(surface, how)?.quadratic(surface))
+}
+
+impl Stuffed {
+    fn linear(self, surface: &Surface) -> Stuffed {
+        Stuffed { mesh: fitted::linear(self.mesh, surface), ..self }
+    }
+
+    fn quadratic(self, surface: &Surface) -> Stuffed {
+        Stuffed { mesh: fitted::quadratic(raise_order(&self.mesh), surface), ..self }
+    }
+}
+
+/// Fills a surface with linear tetrahedra, whose corners on the boundary lie on the surface.
+fn fill(surface: &Surface, how: Stuffing) -> Result<Stuffed, StuffingError> {
     let Stuffing { spacing, doublings } = how;
     if !(spacing > 0.0 && spacing.is_finite()) {
         return Err(StuffingError::Spacing { spacing });

@@ -7,7 +7,7 @@
 //! part, both have tried a spacing whose number of nodes lies between the two requests. So a larger request
 //! never gives fewer nodes.
 
-use super::{MEAN_EDGE, Stuffed, Stuffing, StuffingError, expected_nodes, stuff};
+use super::{MEAN_EDGE, Stuffed, Stuffing, StuffingError, expected_nodes, fill};
 use crate::mesh::Mesh;
 use crate::quality;
 use crate::surface::Surface;
@@ -40,22 +40,27 @@ const HOPELESS: [f64; 2] = [2e5, 16.0];
 ///
 /// # Errors
 /// As for [`stuff`].
+///
+/// [`stuff`]: super::stuff
 pub fn stuff_with_nodes(
     surface: &Surface,
     nodes: usize,
     doublings: u32,
 ) -> Result<(Stuffed, f64), StuffingError> {
-    Search::new(surface, nodes, doublings, |mesh| mesh.points().len()).nearest()
+    let found = Search::new(surface, nodes, doublings, |mesh| mesh.points().len()).nearest();
+    found.map(|(stuffed, spacing)| (stuffed.linear(surface), spacing))
 }
 
-/// Fills a surface with linear tetrahedra of one size that have about `nodes` corners and edges in total.
-/// Raised to quadratic order, the mesh then has about `nodes` nodes.
+/// Fills a surface with quadratic tetrahedra of one size that have about `nodes` nodes, as [`stuff_quadratic`] does.
 ///
 /// # Errors
 /// As for [`stuff`].
-pub fn stuff_with_quadratic_nodes(surface: &Surface, nodes: usize) -> Result<Stuffed, StuffingError> {
+///
+/// [`stuff`]: super::stuff
+/// [`stuff_quadratic`]: super::stuff_quadratic
+pub fn stuff_quadratic_with_nodes(surface: &Surface, nodes: usize) -> Result<Stuffed, StuffingError> {
     let count = |mesh: &Mesh| mesh.points().len() + edge_count(mesh);
-    Search::new(surface, nodes, 0, count).nearest().map(|(stuffed, _)| stuffed)
+    Search::new(surface, nodes, 0, count).nearest().map(|(stuffed, _)| stuffed.quadratic(surface))
 }
 
 /// Number of edges of a tetrahedral mesh.
@@ -136,7 +141,7 @@ impl<'a, F: Fn(&Mesh) -> usize> Search<'a, F> {
     /// Fills the surface at the spacing of a step, and keeps the mesh if it is the best.
     fn attempt(&mut self, step: f64) -> Result<Found, StuffingError> {
         let spacing = self.spacing(step);
-        let stuffed = match stuff(self.surface, Stuffing { spacing, doublings: self.doublings }) {
+        let stuffed = match fill(self.surface, Stuffing { spacing, doublings: self.doublings }) {
             Ok(stuffed) if self.is_whole(&stuffed.mesh) => stuffed,
             Ok(_) | Err(StuffingError::TooCoarse { .. }) => return self.hoped(spacing),
             // The best mesh so far is used.

@@ -95,6 +95,11 @@ impl Card<'_> {
         self.parameters.iter().find(|(known, _)| known == key).map(|(_, value)| value.as_str())
     }
 
+    /// All parameters with their values.
+    pub(super) fn parameters(&self) -> &[(String, String)] {
+        &self.parameters
+    }
+
     /// Values of all parameters.
     pub(super) fn values(&self) -> Vec<String> {
         self.parameters.iter().map(|(_, value)| value.clone()).collect()

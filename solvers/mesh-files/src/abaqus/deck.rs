@@ -73,6 +73,9 @@ impl Deck {
         for card in cards(text)? {
             self.left_out.extend(lost(&card, depth));
             if self.ended {
+                if card.keyword == "DLOAD" && self.parts.is_empty() {
+                    self.flat.loaded_faces(&card);
+                }
                 self.flat.read_over(&card);
             } else {
                 self.card(&card, depth)?;

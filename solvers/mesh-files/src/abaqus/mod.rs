@@ -4,7 +4,8 @@
 //! smallest set that contains the element, the last of equally large sets, or else "body". Content that an
 //! instance adds to its part, even the whole mesh, belongs to this instance alone. `*SURFACE`, `*NSET` and
 //! sets of shells on the faces of solids become facet groups. Names that occur in several instances become
-//! `INSTANCE.NAME`. Reading ends at the first `*STEP`. Before this line, a keyword unknown to both programs
+//! `INSTANCE.NAME`. Reading ends at the first `*STEP`, except for the
+//! element faces of `*DLOAD`, which become facet groups. Before this line, a keyword unknown to both programs
 //! is rejected. (Abaqus keywords reference; CalculiX CrunchiX manual, chapter 7.)
 
 mod assembly;
@@ -13,12 +14,15 @@ mod deck;
 mod include;
 mod keywords;
 mod kinds;
+mod model;
 mod names;
 mod ranges;
 mod scope;
 pub(super) mod write;
 
 use std::path::{Path, PathBuf};
+
+pub use model::{DeckCard, deck_cards, load_group};
 
 use crate::content::Content;
 use crate::error::Parsed;

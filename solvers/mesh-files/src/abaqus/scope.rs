@@ -6,6 +6,7 @@ use geometry::{CellKind, Point3};
 
 use super::cards::{Card, real, split, unquoted, whole};
 use super::kinds::{Type, element_type, known};
+use super::model::load_group;
 use super::ranges::Range;
 use crate::content::{Content, NO_REGION};
 use crate::error::{Parsed, Place, Problem};
@@ -259,6 +260,30 @@ impl Scope {
             }
         }
         Ok(())
+    }
+
+    /// Adds a group for the element faces that each line of a `*DLOAD` loads, if the mesh has them.
+    pub(super) fn loaded_faces(&mut self, card: &Card) {
+        for &(place, line) in &card.data {
+            let words = split(line);
+            let (of, Some(label)) =
+                (unquoted(&words[0]), words.get(1).map(|label| label.to_ascii_uppercase()))
+            else {
+                continue;
+            };
+            let Some(face) = label.strip_prefix('P').filter(|face| face.parse::<u8>().is_ok()) else {
+                continue;
+            };
+            let numbers = match of.parse::<u64>() {
+                Ok(number) => vec![number],
+                Err(_) => self.elsets.get(&of).map(|(_, members)| members.clone()).unwrap_or_default(),
+            };
+            let known = !numbers.is_empty() && numbers.iter().all(|&n| self.content.cell_of(n).is_some());
+            if known {
+                // Elements without this face are reported where the load is read.
+                let _ = self.faces(place, &load_group(&of, &label), &numbers, &format!("S{face}"));
+            }
+        }
     }
 
     /// Adds a face of each element, `S1` and so on, to a surface.

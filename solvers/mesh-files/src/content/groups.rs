@@ -46,6 +46,14 @@ impl Content {
     }
 
     /// Parts of the file that are not in the mesh.
+    /// Numbers of the nodes that cells use, in their order in the file: the nodes of the mesh.
+    pub(crate) fn used_nodes(&self) -> Vec<u64> {
+        let mut used = vec![false; self.points.len()];
+        self.nodes.iter().for_each(|&node| used[node as usize] = true);
+        let rows = self.node_rows.iter().zip(used);
+        rows.filter(|(_, used)| *used).map(|((row, _), _)| row.tag).collect()
+    }
+
     pub(crate) fn into_left_out(mut self) -> Vec<LeftOut> {
         self.put_middles_in_order();
         self.left_out

@@ -5,6 +5,7 @@
 //! Groups without a name are called "region-TAG" and "surface-TAG", solids without a group "body". (Gmsh
 //! reference manual, "MSH file format".)
 
+mod data;
 mod groups;
 mod order;
 mod scanner;
@@ -19,9 +20,16 @@ use crate::content::Content;
 use crate::error::{Parsed, Place, Problem};
 use crate::text::text;
 
-/// Parses a file of any version. Version 2 in text is read line by line, so that hand-edited files keep line
+/// Parses a file of any version, and the values of the array `wanted`.
+pub(super) fn parse(bytes: &[u8], wanted: Option<&str>) -> Parsed<Content> {
+    let mut content = mesh(bytes)?;
+    wanted.map_or(Ok(()), |name| data::read(bytes, name, &mut content))?;
+    Ok(content)
+}
+
+/// Parses the mesh of a file of any version. Version 2 in text is read line by line, so that hand-edited files keep line
 /// numbers in errors; all other versions are read number by number.
-pub(super) fn parse(bytes: &[u8]) -> Parsed<Content> {
+fn mesh(bytes: &[u8]) -> Parsed<Content> {
     let mut lines = bytes.split(|&b| b == b'\n').enumerate();
     let mut next = || {
         let blank = |line: &[u8]| line.iter().all(u8::is_ascii_whitespace);

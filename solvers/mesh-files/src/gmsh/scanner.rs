@@ -65,6 +65,26 @@ impl<'a> Scanner<'a> {
         Ok(())
     }
 
+    /// Moves past the next line that begins one of these sections, and returns the index of its name; `None` if the
+    /// rest of the file has none.
+    pub(super) fn find(&mut self, names: &[&str]) -> Option<usize> {
+        while let Some(found) = self.bytes[self.at..].iter().position(|&b| b == b'$') {
+            let skipped = &self.bytes[self.at..self.at + found];
+            self.line += skipped.iter().filter(|&&b| b == b'\n').count();
+            self.at += found;
+            let rest = &self.bytes[self.at..];
+            let is_it = |name: &str| {
+                rest.starts_with(name.as_bytes()) && rest.get(name.len()).is_none_or(u8::is_ascii_whitespace)
+            };
+            if let Some(index) = names.iter().position(|name| is_it(name)) {
+                self.at += names[index].len();
+                return Some(index);
+            }
+            self.at += 1;
+        }
+        None
+    }
+
     /// Detects the byte order by the number 1 after the version.
     pub(super) fn byte_order(&mut self) -> Parsed<()> {
         // Skips the line break after the version.

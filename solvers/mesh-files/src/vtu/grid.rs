@@ -5,10 +5,12 @@ use roxmltree::{Document, Node};
 
 use super::array::{Coding, Compressor, Numbers, Source, read};
 use crate::content::Content;
+use crate::data_array::DataArray;
 use crate::error::{Parsed, Place, Problem};
 use crate::left_out::LeftOut;
 use crate::text::line_of;
 use crate::vtk_cells::{Array, Cells, lost, regions};
+use crate::xml::{line_of_fault, refuse_long_tags};
 
 /// Prefix of the arrays that mark cells in groups across the regions; the number of the group follows.
 pub(super) const GROUP: &str = "group-";
@@ -19,9 +21,11 @@ struct File<'a> {
     coding: Coding,
     /// Position after the `_` of appended data, and whether these are base64.
     appended: Option<(usize, bool)>,
+    /// Name of the array whose values are kept.
+    wanted: Option<&'a str>,
 }
 
-pub(crate) fn parse(bytes: &[u8]) -> Parsed<Content> {
+pub(crate) fn parse(bytes: &[u8], wanted: Option<&str>) -> Parsed<Content> {
     // Raw data are not XML, so the text before them is parsed with a closing tag added.
     let tag = b"<AppendedData";
     let cut = bytes.windows(tag.len()).position(|w| w == tag);
@@ -29,10 +33,7 @@ pub(crate) fn parse(bytes: &[u8]) -> Parsed<Content> {
         let place = Place::Line(line_of(bytes, bad.valid_up_to()));
         (place, Problem::Expected { expected: "text in UTF-8", found: "other bytes".into() })
     })?;
-    if let Some(at) = long_tag(text) {
-        let problem = Problem::TooMany { what: "bytes of an XML tag", count: LONGEST_TAG };
-        return Err((Place::Line(line_of(bytes, at)), problem));
-    }
+    refuse_long_tags(text)?;
     let closed = if cut.is_some() { format!("{text}</VTKFile>") } else { text.to_string() };
     let document = Document::parse(&closed)
         .map_err(|bad| (Place::Line(line_of_fault(&bad, text)), Problem::Xml { problem: bad.to_string() }))?;
@@ -57,38 +58,7 @@ pub(crate) fn parse(bytes: &[u8]) -> Parsed<Content> {
     let head = if root.attribute("header_type") == Some("UInt64") { 8 } else { 4 };
     let coding = Coding { big_endian: root.attribute("byte_order") == Some("BigEndian"), head, compressor };
     let appended = cut.map(|cut| appended(bytes, cut)).transpose()?;
-    File { bytes, document: &document, coding, appended }.content()
-}
-
-/// Line of an XML error; for a missing element, the last line.
-fn line_of_fault(bad: &roxmltree::Error, text: &str) -> usize {
-    use roxmltree::Error::{NoRootNode, UnclosedRootNode, UnexpectedEndOfStream};
-    match bad {
-        NoRootNode | UnclosedRootNode | UnexpectedEndOfStream => text.lines().count(),
-        _ => bad.pos().row as usize,
-    }
-}
-
-/// Largest size in bytes of a tag with its attributes, each of which the parser compares with all others.
-const LONGEST_TAG: usize = 1 << 14;
-
-/// Position of the first tag that is too long.
-fn long_tag(text: &str) -> Option<usize> {
-    let (mut open, mut quote) = (None, None);
-    for (at, byte) in text.bytes().enumerate() {
-        match (open, quote) {
-            (None, _) if byte == b'<' => {
-                let is_tag = !matches!(text.as_bytes().get(at + 1), Some(b'!' | b'?'));
-                open = is_tag.then_some(at);
-            }
-            (Some(start), _) if at - start > LONGEST_TAG => return Some(start),
-            (Some(_), Some(end)) if byte == end => quote = None,
-            (Some(_), None) if matches!(byte, b'"' | b'\'') => quote = Some(byte),
-            (Some(_), None) if byte == b'>' => open = None,
-            _ => {}
-        }
-    }
-    None
+    File { bytes, document: &document, coding, appended, wanted }.content()
 }
 
 /// Position after the `_` of the appended data, and whether these are base64.
@@ -142,6 +112,7 @@ impl<'a> File<'a> {
     ) -> Parsed<()> {
         let (points, cells) = (self.count(piece, "NumberOfPoints")?, self.count(piece, "NumberOfCells")?);
         let first = content.node_count() as u64;
+        self.data(piece, [cells, points], [content.element_count() as u64, first], content)?;
         let section = |name: &'static str| {
             let found = piece.children().find(|node| node.has_tag_name(name));
             found.ok_or((self.place(piece), Problem::Missing { section: name }))
@@ -192,6 +163,34 @@ impl<'a> File<'a> {
         }
         let cells = Cells { first, types, ends, list, regions, surfaces, further };
         cells.add_to(content, region_names, surface_names)
+    }
+
+    /// Adds the arrays of cells and points, if one is wanted: with the number of items and the first number of each.
+    fn data(&self, piece: Node, counts: [usize; 2], first: [u64; 2], content: &mut Content) -> Parsed<()> {
+        let Some(wanted) = self.wanted else { return Ok(()) };
+        for (k, section) in ["CellData", "PointData"].into_iter().enumerate() {
+            let data =
+                piece.children().filter(|node| node.has_tag_name(section)).flat_map(|data| data.children());
+            for node in data.filter(|node| node.has_tag_name("DataArray")) {
+                let name = node.attribute("Name").unwrap_or_default().to_string();
+                let place = self.place(node);
+                let given = node.attribute("NumberOfComponents").unwrap_or("1");
+                let expected = "a number of components";
+                let wrong = |_| (place, Problem::Expected { expected, found: given.to_string() });
+                let components: usize = given.trim().parse().map_err(wrong)?;
+                let mut values = Vec::new();
+                if name == wanted {
+                    let count = counts[k].checked_mul(components);
+                    let count =
+                        count.ok_or((place, Problem::TooMany { what: "numbers", count: counts[k] }))?;
+                    values = reals(self.array(node, count)?);
+                }
+                let (of_cells, numbers) = (k == 0, Vec::new());
+                let array = DataArray { name, place, of_cells, components, numbers, values };
+                content.arrays.push(array.numbered_from(first[k]));
+            }
+        }
+        Ok(())
     }
 
     /// Arrays of cells and points that are not used.

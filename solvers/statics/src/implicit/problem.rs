@@ -2,7 +2,7 @@
 
 use contact::ContactCounts;
 use material::Prony;
-use shape::Vector3;
+use shape::{Resultant, Vector3};
 
 use super::energy::Energy;
 use super::error::TimeError;
@@ -27,6 +27,9 @@ pub struct Inertia<'a> {
     pub mass: &'a Mass,
     /// Factor `c` of the mass-proportional damping force `c M v`, 1/s.
     pub damping: f64,
+    /// Factor `beta` of the stiffness-proportional damping force `beta K v`, s, with the tangent `K` of the internal
+    /// forces in the current state.
+    pub stiffness_damping: f64,
     /// Initial displacement, m; empty for zero. Constrained degrees of freedom take their prescribed values.
     pub displacement: &'a [Vector3],
     /// Initial velocity, m/s; empty for rest.
@@ -54,16 +57,17 @@ pub struct TimeParams {
     pub augmentations: usize,
 }
 
-/// Displacement (m), velocity (m/s) and acceleration (m/s^2) of every node, and the reaction force of the
-/// supports (N). Velocity and acceleration are zero without inertia; the reaction is zero in free degrees of
-/// freedom.
-#[derive(Clone, Debug, PartialEq)]
+/// Displacement (m), velocity (m/s) and acceleration (m/s^2) of every node, the reaction force of the supports
+/// (N), and the force of each surface constrained by penalty, without damping. Velocity and acceleration are zero
+/// without inertia; the reaction is zero in free degrees of freedom.
+#[derive(Clone, Debug, Default, PartialEq)]
 #[allow(missing_docs)]
 pub struct Motion {
     pub u: Vec<Vector3>,
     pub v: Vec<Vector3>,
     pub a: Vec<Vector3>,
     pub reaction: Vec<Vector3>,
+    pub penalties: Vec<Resultant>,
 }
 
 /// A converged step.
@@ -128,6 +132,19 @@ impl TimeProblem<'_> {
         let Some(inertia) = &self.inertia else { return Ok(()) };
         if !(inertia.damping >= 0.0 && inertia.damping.is_finite()) {
             return refuse("the damping", inertia.damping, "it must not be negative");
+        }
+        let beta = inertia.stiffness_damping;
+        if !(beta >= 0.0 && beta.is_finite()) {
+            return refuse("the stiffness-proportional damping", beta, "it must not be negative");
+        }
+        if beta > 0.0 && !inertia.velocity.is_empty() {
+            let need =
+                "a body with an initial velocity has forces of damping at the start, which are not computed";
+            return refuse("the stiffness-proportional damping", beta, need);
+        }
+        if beta > 0.0 && self.relaxation.iter().any(Option::is_some) {
+            let need = "tissue that relaxes has rates of its own";
+            return refuse("the stiffness-proportional damping", beta, need);
         }
         let at_start = |index: usize| self.body.curves.fixed.of(index).value(0.0);
         let fixed = self.body.fixed.iter().enumerate();

@@ -11,6 +11,9 @@ pub struct Timing<'a> {
     pub usual: Curve,
     /// Curve of each condition; empty if none has its own.
     pub own: &'a [Option<Arc<Curve>>],
+    /// Start and end of the time in which each condition acts, `None` for all of it; empty if all conditions act
+    /// throughout. Supports alone may have it.
+    pub during: &'a [Option<[f64; 2]>],
 }
 
 /// Curves of all conditions of a problem. Time is the fraction of the loading in statics, and in seconds in
@@ -46,7 +49,7 @@ impl Timing<'_> {
 impl Curves<'static> {
     /// Uses one curve for all loads, one for all supports, and one for all tools.
     pub fn new(loads: Curve, supports: Curve, tools: Curve) -> Curves<'static> {
-        let usual = |curve: &Curve| Timing { usual: curve.clone(), own: &[] };
+        let usual = |curve: &Curve| Timing { usual: curve.clone(), own: &[], during: &[] };
         Curves {
             loads: usual(&loads),
             following: usual(&loads),
@@ -74,17 +77,28 @@ impl Curves<'_> {
         [loads, following, active, fixed, penalties, tools]
     }
 
-    /// Returns the times of the points of all curves that a condition has of its own, in order.
+    /// Returns the times of the points of all curves that a condition has of its own, and of the changes of
+    /// supports, in order.
     pub(crate) fn points(&self) -> Vec<f64> {
         let own = self.all_timings().into_iter().flat_map(|timing| timing.own).flatten();
-        let mut times: Vec<f64> = own.flat_map(|curve| curve.points()).map(|point| point[0]).collect();
-        times.sort_by(f64::total_cmp);
-        times.dedup();
-        times
+        let points = own.flat_map(|curve| curve.points()).map(|point| point[0]);
+        in_order(points.chain(self.changes()).collect())
+    }
+
+    /// Returns the times at which supports begin or end to act, in order.
+    pub(crate) fn changes(&self) -> Vec<f64> {
+        let during = self.fixed.during.iter().chain(self.penalties.during);
+        in_order(during.flatten().flatten().copied().collect())
     }
 
     /// Whether any condition acts at a time.
     pub(crate) fn act_at(&self, time: f64) -> bool {
         self.all_timings().iter().any(|timing| timing.acts_at(time))
     }
+}
+
+fn in_order(mut times: Vec<f64>) -> Vec<f64> {
+    times.sort_by(f64::total_cmp);
+    times.dedup();
+    times
 }

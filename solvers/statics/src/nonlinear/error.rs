@@ -95,6 +95,14 @@ pub enum StaticError {
         /// Reason for the failure of the last trial.
         cause: Box<StaticError>,
     },
+    /// Supports that act after a time do not hold the body.
+    #[error("stopped at {time:.4} of the load, after which {cause}")]
+    Loose {
+        /// Applied load fraction reached, 0 to 1.
+        time: f64,
+        /// Motion that nothing prevents.
+        cause: Box<StaticError>,
+    },
     /// A parameter that is not usable.
     #[error("{what} is {value}; {need}")]
     Parameter {

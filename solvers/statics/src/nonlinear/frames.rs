@@ -82,7 +82,7 @@ impl<'a> Frames<'a> {
 
     /// Returns the counters of all frames.
     pub fn work(&self) -> StaticWork {
-        self.newton.work()
+        self.newton.totals().work
     }
 
     /// Returns the nodal parameters of the last frame, m.

@@ -13,6 +13,29 @@ pub(crate) struct TimeTerms {
     pub relaxing: Option<Relaxing>,
     /// Velocities at the end of the step, for dampers; `None` without dampers.
     pub rate: Option<Rate>,
+    /// Stiffness-proportional damping; `None` without.
+    pub damping: Option<StiffnessDamping>,
+}
+
+/// Stiffness-proportional damping of one step: the force `factor (f(u) - from)` beside the internal force `f(u)`.
+///
+/// The damping `beta K v` with the tangent `K` of the current state is the rate of the internal forces times
+/// `beta`, and their change over a step is `dt` times the mean of this rate.
+#[derive(Clone, Debug)]
+pub(crate) struct StiffnessDamping {
+    /// `beta / dt`, divided as the balance is.
+    pub factor: f64,
+    /// Internal forces at the start of the step, N.
+    pub from: Vec<Vector3>,
+}
+
+impl TimeTerms {
+    /// Factor by which all terms but the internal forces are multiplied: the balance is divided by the factor of
+    /// the internal forces, so that their tangent stays that of statics.
+    pub fn beside_internal(terms: Option<&TimeTerms>) -> Option<f64> {
+        let damping = terms?.damping.as_ref()?;
+        Some(1.0 / (1.0 + damping.factor))
+    }
 }
 
 /// Inertia and damping of one step of an implicit scheme: the force `carried - M r`. In free degrees of

@@ -18,6 +18,7 @@ mod shared;
 mod solid;
 mod sorted_rows;
 mod split;
+mod stages;
 mod statics;
 mod step;
 mod stepper;
@@ -25,10 +26,11 @@ mod system;
 #[cfg(test)]
 mod tests;
 
-pub(crate) use in_time::{Ended, InertiaTerms, TimeTerms};
-pub(crate) use newton::{Descent, Newton, State, near, shortest_travel};
+pub(crate) use in_time::{Ended, InertiaTerms, StiffnessDamping, TimeTerms};
+pub(crate) use newton::{Descent, Newton, State, Totals, near, shortest_travel};
 pub(crate) use penalty::Rate;
 pub(crate) use relaxing::Memory;
+pub(crate) use stages::Stages;
 pub(crate) use stepper::{Attempt, Stepper};
 pub(crate) use system::SurfaceTable;
 

@@ -1,7 +1,7 @@
 //! Surfaces held by stiffness and damping per area: supports by penalty, and springs and dampers (an elastic
 //! foundation).
 
-use shape::{Matrix3, SurfaceRows, Vector3};
+use shape::{Matrix3, Resultant, SurfaceRows, Vector3};
 
 use super::system::SurfaceTable;
 
@@ -17,6 +17,8 @@ pub struct PenaltySurface<'a> {
     pub along_normal: bool,
     /// Prescribed displacement at each point at the end of the loading, m.
     pub values: Vec<Vector3>,
+    /// Displacement at each point to which the prescribed one is added, m; empty for none.
+    pub from: Vec<Vector3>,
     /// Penalty, or stiffness per undeformed area, Pa/m.
     pub beta: f64,
     /// Damping per undeformed area, Pa s/m.
@@ -66,6 +68,9 @@ impl PenaltySurface<'_> {
         let mut tractions: Vec<Vector3> = each
             .map(|(q, (u, g))| self.held(q, &Vector3::from_fn(|a, _| self.beta * (g[a] * part - u[a]))))
             .collect();
+        for (q, (traction, from)) in tractions.iter_mut().zip(&self.from).enumerate() {
+            *traction += self.held(q, &(from * self.beta));
+        }
         for (q, (traction, v)) in tractions.iter_mut().zip(v).enumerate() {
             *traction -= self.held(q, &(v * self.damping));
         }
@@ -83,6 +88,19 @@ impl PenaltySurface<'_> {
         }
         let held = Vector3::from_fn(|a, _| if self.axes[a] { stiffness } else { 0.0 });
         weights.map(|w| Matrix3::from_diagonal(&(held * *w))).collect()
+    }
+
+    /// Returns the resultant of the forces on the body, without damping, for the nodal parameters `u` (m) and
+    /// `part` of the prescribed displacements.
+    pub(crate) fn resultant(&self, u: &[Vector3], part: f64) -> Resultant {
+        let mut sum = Resultant::default();
+        let moved = self.surface.rows().apply(u);
+        let points = self.surface.points().iter().zip(&moved).zip(&self.values);
+        for (q, (((x, u), g), w)) in points.zip(self.surface.weights()).enumerate() {
+            let from = self.from.get(q).copied().unwrap_or_default();
+            sum.add(&(x + u), &self.held(q, &((g * part + from - u) * (self.beta * w))));
+        }
+        sum
     }
 
     /// Adds to `right` the damping force (N) of the displacement increments `moves` (m) of constrained degrees of
@@ -127,6 +145,7 @@ mod tests {
                 axes: [true, true, false],
                 along_normal,
                 values: vec![Vector3::new(1e-3, -2e-3, 3e-3); points],
+                from: Vec::new(),
                 beta: 2e5,
                 damping: 30.0,
             };

@@ -1,6 +1,6 @@
 //! A body with loads, supports and tools.
 
-use contact::{ContactSurface, DrivenTool};
+use contact::{ContactSurface, Drive, DrivenTool};
 use shape::{Coarser, FixedDof, Point3};
 
 use super::curves::Curves;
@@ -46,4 +46,21 @@ pub struct StaticProblem<'a> {
     pub curves: Curves<'a>,
     /// Solver of the linear systems.
     pub systems: LinearSystems<'a>,
+}
+
+impl StaticProblem<'_> {
+    /// Returns the times at which a step has to end: those of the points of curves, and those at which a tool
+    /// passes a bend of its path. A step across a bend would cut it, and friction would act along the cut.
+    pub(crate) fn stops(&self) -> Vec<f64> {
+        let mut times = self.curves.points();
+        for (index, driven) in self.tools.iter().enumerate() {
+            if let Drive::Closure(full) = driven.drive {
+                let bends = driven.tool.bends();
+                times.extend(bends.flat_map(|bend| self.curves.tools.of(index).passes(bend / full)));
+            }
+        }
+        times.sort_by(f64::total_cmp);
+        times.dedup();
+        times
+    }
 }

@@ -50,7 +50,8 @@ impl<'a> Shared<'a> {
     ) -> Result<Shared<'a>, Inverted> {
         let theta = solid.group_dilations(groups, &kinematics.j_minus_1)?;
         let parts = match solid.laws {
-            [law] => theta.iter().map(|&theta| law.separated(theta)).collect(),
+            // The law at a point has the active stress, with which it is not separable.
+            [_] => theta.iter().map(|&theta| solid.law(0).separated(theta)).collect(),
             _ => None,
         };
         Ok(Shared { solid, groups, pairs, kinematics, theta, parts })

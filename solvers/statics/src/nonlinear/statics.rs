@@ -2,13 +2,14 @@
 
 use algebra::SolverPath;
 use contact::{ContactCounts, ContactHistory};
-use shape::Vector3;
+use shape::{Resultant, Vector3};
 
 use super::error::StaticError;
-use super::newton::{Descent, Newton, NewtonParams, State, near, shortest_travel};
+use super::newton::{Descent, Newton, NewtonParams, State, Totals, near, shortest_travel};
 use super::problem::StaticProblem;
+use super::stages::Stages;
 use super::step::{StaticWork, Step};
-use super::stepper::Stepper;
+use super::stepper::{Attempt, Stepper};
 
 /// Parameters of load stepping.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -59,14 +60,16 @@ impl StaticPath {
     }
 }
 
-/// Equilibrium at the end of a step: nodal parameters (m), parameters of a pressure field (Pa), and the
-/// reaction force of the nodal supports on every node (N), zero in free degrees of freedom.
+/// Equilibrium at the end of a step: nodal parameters (m), parameters of a pressure field (Pa), the reaction
+/// force of the nodal supports on every node (N), zero in free degrees of freedom, and the force of each surface
+/// constrained by penalty.
 #[derive(Clone, Copy, Debug)]
 #[allow(missing_docs)]
 pub struct Rest<'a> {
     pub u: &'a [Vector3],
     pub pressure: &'a [f64],
     pub reaction: &'a [Vector3],
+    pub penalties: &'a [Resultant],
 }
 
 /// Solves a static problem in load steps. `observe` is called after every converged step with the step and
@@ -81,76 +84,145 @@ pub fn solve_static(
     params: &StaticParams,
     mut observe: impl FnMut(&Step, Rest),
 ) -> Result<StaticPath, StaticError> {
-    let mut newton = Newton::new(problem, &params.newton)?;
-    let mut state = State::start(problem);
-    if problem.tools.is_empty() {
-        newton.check_rigid(&state)?;
+    let mut stages = Stages::new(problem, 1.0);
+    let mut course = Course::new(problem, params);
+    let mut totals = Totals::default();
+    loop {
+        let stage = stages.stage(&course.state.u);
+        let staged = stage.as_ref().map(|stage| stage.problem(problem));
+        let body = staged.as_ref().unwrap_or(problem);
+        let mut newton = Newton::new(body, &params.newton)?.continuing(&totals);
+        if body.tools.is_empty() {
+            match newton.check_rigid(&course.state) {
+                // The equilibria of the earlier stages are results nevertheless.
+                Err(cause) if !stages.is_first() => course.loosen(cause),
+                checked => checked?,
+            }
+        }
+        course.follow(&mut newton, stages.until(), &mut observe);
+        totals = newton.totals();
+        let gone = course.stepper.next_output();
+        if course.failure.is_some() || !stages.advance(&course.state.u, newton.reaction(), Some(gone)) {
+            if course.failure.is_none() && !body.tools.is_empty() {
+                newton.check_rigid(&course.state)?;
+            }
+            break;
+        }
     }
-    let mut before: Option<State> = None;
-    let (mut steps, mut failure) = (Vec::new(), None);
-    let mut stepper = Stepper::new(1.0, params.steps, params.smallest, problem.curves.points());
-    let shortest = shortest_travel(problem);
-    // At least a step that can still be halved once: a step that cannot be halved has to accept any
-    // equilibrium.
-    let finest = 2.0 * stepper.smallest;
-    let mut within = params.limit_within.map(|within| within.max(finest));
-    let mut near_limit = false;
-    let is_curved = !problem.curves.points().is_empty();
-    while let Some(attempt) = stepper.attempt() {
-        // The displacement so far gives the best guess. Without a converged step, or if the guess inverts a
-        // point, the last state is the guess.
-        let guess = before.as_ref();
-        let rounds = params.augmentations;
-        let mut to = |descent| newton.find(&state, guess, attempt.time, rounds, descent);
-        let reached = if within.is_some_and(|within| attempt.length > within) {
-            to(Descent::Smooth)
-        } else {
-            match near(!state.pressure.is_empty(), &mut to) {
-                // The sought limit point: the solution continues to the next stable equilibrium.
-                Ok((_, done)) if within.is_some() && !done.stable => {
-                    to(Descent::Down).map(|(reached, done)| (reached, Step { gave_way: true, ..done }))
+    Ok(course.path(&totals))
+}
+
+/// The course of the load steps.
+struct Course<'a> {
+    params: &'a StaticParams,
+    stepper: Stepper,
+    state: State,
+    /// State before the last step of the current stage.
+    before: Option<State>,
+    steps: Vec<Step>,
+    failure: Option<StaticError>,
+    /// Accuracy of the sought limit point, until it is found.
+    within: Option<f64>,
+    near_limit: bool,
+    /// Shortest travel of a tool, as a step.
+    shortest: f64,
+    is_curved: bool,
+}
+
+impl<'a> Course<'a> {
+    fn new(problem: &StaticProblem, params: &'a StaticParams) -> Course<'a> {
+        let is_curved = !problem.curves.points().is_empty();
+        let stepper = Stepper::new(1.0, params.steps, params.smallest, problem.stops());
+        // At least a step that can still be halved once: a step that cannot be halved has to accept any
+        // equilibrium.
+        let finest = 2.0 * stepper.smallest;
+        Course {
+            params,
+            stepper,
+            state: State::start(problem),
+            before: None,
+            steps: Vec::new(),
+            failure: None,
+            within: params.limit_within.map(|within| within.max(finest)),
+            near_limit: false,
+            shortest: shortest_travel(problem),
+            is_curved,
+        }
+    }
+
+    /// Makes the steps until the time `until`, or until one fails for good.
+    fn follow(&mut self, newton: &mut Newton, until: f64, observe: &mut impl FnMut(&Step, Rest)) {
+        self.before = None;
+        while self.failure.is_none() && self.stepper.is_before(until) {
+            let Some(attempt) = self.stepper.attempt() else { return };
+            match self.find(newton, attempt) {
+                Ok((reached, mut done)) => {
+                    done.wanted = attempt.output.is_some();
+                    if done.gave_way {
+                        self.within = None;
+                    }
+                    let grows = done.is_quick() && !std::mem::take(&mut self.near_limit);
+                    let penalties = newton.penalty_forces(&reached);
+                    let State { u, pressure, .. } = &reached;
+                    let (reaction, penalties) = (newton.reaction(), &penalties);
+                    observe(&done, Rest { u, pressure, reaction, penalties });
+                    self.steps.push(done);
+                    self.before = Some(std::mem::replace(&mut self.state, reached));
+                    // The forces so far are the only scale once all curves have returned to zero.
+                    if self.is_curved {
+                        newton.keep_scale();
+                    }
+                    self.stepper.accept(attempt, if grows { 2.0 } else { 1.0 });
                 }
-                nearest => nearest.or_else(|_| to(Descent::Down)),
-            }
-        };
-        let reached = reached.and_then(|(reached, done)| match attempt.output {
-            Some(ends) => newton.check_overlap(&reached, &done, ends).map(|()| (reached, done)),
-            None => Ok((reached, done)),
-        });
-        match reached {
-            Ok((reached, mut done)) => {
-                done.wanted = attempt.output.is_some();
-                if done.gave_way {
-                    within = None;
-                }
-                let grows = done.is_quick() && !std::mem::take(&mut near_limit);
-                let State { u, pressure, .. } = &reached;
-                observe(&done, Rest { u, pressure, reaction: newton.reaction() });
-                steps.push(done);
-                before = Some(std::mem::replace(&mut state, reached));
-                // The forces so far are the only scale once all curves have returned to zero.
-                if is_curved {
-                    newton.keep_scale();
-                }
-                stepper.accept(attempt, if grows { 2.0 } else { 1.0 });
-            }
-            Err(cause) => {
-                near_limit = within.is_some();
-                if !stepper.cut(attempt, 0.5, cause.finest(stepper.smallest, shortest)) {
-                    let (time, step) = (stepper.time, attempt.length);
-                    failure = Some(StaticError::Stalled { time, step, cause: Box::new(cause) });
-                    break;
+                Err(cause) => {
+                    self.near_limit = self.within.is_some();
+                    let finest = cause.finest(self.stepper.smallest, self.shortest);
+                    if !self.stepper.cut(attempt, 0.5, finest) {
+                        self.stall(attempt.length, cause);
+                    }
                 }
             }
         }
     }
-    let counts = newton.counts();
-    let work = newton.work();
-    let solver = newton.solver();
-    let cut_back = stepper.cut_back;
-    if failure.is_none() && !problem.tools.is_empty() {
-        newton.check_rigid(&state)?;
+
+    fn stall(&mut self, step: f64, cause: StaticError) {
+        let time = self.stepper.time;
+        self.failure = Some(StaticError::Stalled { time, step, cause: Box::new(cause) });
     }
-    let State { u, pressure, history, .. } = state;
-    Ok(StaticPath { steps, u, pressure, history, cut_back, counts, work, solver, failure })
+
+    fn loosen(&mut self, cause: StaticError) {
+        self.failure = Some(StaticError::Loose { time: self.stepper.time, cause: Box::new(cause) });
+    }
+
+    /// Finds the equilibrium at the end of a step.
+    fn find(&self, newton: &mut Newton, attempt: Attempt) -> Result<(State, Step), StaticError> {
+        let Course { params, state, within, .. } = self;
+        // The displacement so far gives the best guess. Without a converged step, or if the guess inverts a
+        // point, the last state is the guess.
+        let guess = self.before.as_ref();
+        let rounds = params.augmentations;
+        let mut to = |descent| newton.find(state, guess, attempt.time, rounds, descent);
+        let (reached, done) = if within.is_some_and(|within| attempt.length > within) {
+            to(Descent::Smooth)?
+        } else {
+            match near(!state.pressure.is_empty(), &mut to) {
+                // The sought limit point: the solution continues to the next stable equilibrium.
+                Ok((_, done)) if within.is_some() && !done.stable => {
+                    to(Descent::Down).map(|(reached, done)| (reached, Step { gave_way: true, ..done }))?
+                }
+                nearest => nearest.or_else(|_| to(Descent::Down))?,
+            }
+        };
+        if let Some(ends) = attempt.output {
+            newton.check_overlap(&reached, &done, ends)?;
+        }
+        Ok((reached, done))
+    }
+
+    fn path(self, totals: &Totals) -> StaticPath {
+        let Course { stepper, state, steps, failure, .. } = self;
+        let State { u, pressure, history, .. } = state;
+        let &Totals { counts, work, solver, .. } = totals;
+        StaticPath { steps, u, pressure, history, cut_back: stepper.cut_back, counts, work, solver, failure }
+    }
 }

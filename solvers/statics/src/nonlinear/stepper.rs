@@ -11,7 +11,8 @@ pub(crate) struct Stepper {
     longest: f64,
     /// Shortest step.
     pub smallest: f64,
-    /// Times between outputs at which a step ends too: a step across them would not see the points of a curve.
+    /// Times between outputs at which a step ends too: a step across them would not see the points of a curve or the
+    /// bends of a path.
     stops: Vec<f64>,
     /// Number of the next output.
     next: usize,
@@ -58,6 +59,16 @@ impl Stepper {
         let time = if reaches { target } else { self.time + self.step };
         let output = (reaches && stop.is_none()).then_some(self.next == self.intervals);
         Some(Attempt { time, length: time - self.time, output })
+    }
+
+    /// Whether the last accepted step ended before a time.
+    pub fn is_before(&self, time: f64) -> bool {
+        self.time < time - NEAR * self.longest
+    }
+
+    /// Time of the next output.
+    pub fn next_output(&self) -> f64 {
+        self.next as f64 * self.longest
     }
 
     /// Accepts a step. The next step is longer by the factor `growth`, up to the output interval.

@@ -130,6 +130,12 @@ impl<'a> Equations<'a> {
         })
     }
 
+    /// Factor of all terms of the balance but the internal forces; `None` for 1. See
+    /// [`TimeTerms::beside_internal`].
+    pub fn beside_internal(&self) -> Option<f64> {
+        TimeTerms::beside_internal(self.terms.as_ref())
+    }
+
     /// Returns the body with the active stress at `time`.
     pub fn solid(&self, time: f64) -> Solid<'a> {
         let Solid { active: Active { full, .. }, .. } = self.problem.solid;
@@ -293,6 +299,13 @@ impl<'a> Equations<'a> {
         if let Some(inertia) = self.terms.as_ref().and_then(|t| t.inertia.as_ref()) {
             let mass = self.system.surfaces.last().expect("inertia has a mass table");
             scale = scale.max(inertia.add_force(mass, &self.prescribed, &state.u, &mut out));
+        }
+        if let Some(damping) = self.terms.as_ref().and_then(|t| t.damping.as_ref()) {
+            let part = self.beside_internal().unwrap_or(1.0);
+            for (out, from) in out.iter_mut().zip(&damping.from) {
+                *out = (*out + from * damping.factor) * part;
+            }
+            scale *= part;
         }
         for (out, inner) in out.iter_mut().zip(&inner) {
             *out -= inner;

@@ -18,7 +18,7 @@ mod tools;
 
 use algebra::SolverPath;
 use contact::{ContactCounts, Drive, ToolState};
-use shape::Vector3;
+use shape::{Resultant, Vector3};
 
 use self::direction::{Direction, Factored};
 use self::equations::{Balance, Equations};
@@ -47,6 +47,19 @@ pub(crate) struct Newton<'a> {
     reaction: Vec<Vector3>,
     /// Norm of the forces at the end of the last step, N.
     reached: f64,
+}
+
+/// What adds up over the stages of a solution.
+#[derive(Clone, Copy, Default)]
+pub(crate) struct Totals {
+    /// Counters of the contact search.
+    pub counts: ContactCounts,
+    /// Counters of the solution, including failed steps and trials.
+    pub work: StaticWork,
+    /// Iterative solver of tangents, if it has found a step.
+    pub solver: Option<SolverPath>,
+    /// Largest forces so far, N.
+    peak: f64,
 }
 
 impl<'a> Newton<'a> {
@@ -82,18 +95,24 @@ impl<'a> Newton<'a> {
         self
     }
 
-    pub fn counts(&self) -> ContactCounts {
-        self.equations.counts
+    /// Goes on from the method of an earlier stage, whose totals are `before`.
+    pub fn continuing(mut self, before: &Totals) -> Newton<'a> {
+        self.equations.counts = before.counts;
+        self.equations.evaluations = before.work.forces;
+        self.equations.peak = before.peak;
+        self.factors.work = before.work;
+        self.factors.levels.path = before.solver;
+        self
     }
 
-    /// Returns the counters so far, including failed steps and trials.
-    pub fn work(&self) -> StaticWork {
-        StaticWork { forces: self.equations.evaluations, ..self.factors.work }
-    }
-
-    /// Returns the iterative solver of tangents, if it has found a step.
-    pub fn solver(&self) -> Option<SolverPath> {
-        self.factors.levels.path
+    /// Returns what adds up over the whole solution.
+    pub fn totals(&self) -> Totals {
+        Totals {
+            counts: self.equations.counts,
+            work: StaticWork { forces: self.equations.evaluations, ..self.factors.work },
+            solver: self.factors.levels.path,
+            peak: self.equations.peak,
+        }
     }
 
     /// Sets the terms that the next step adds to the forces of statics.
@@ -112,6 +131,13 @@ impl<'a> Newton<'a> {
     /// force that statics leaves unbalanced there, zero in free degrees of freedom.
     pub fn reaction(&self) -> &[Vector3] {
         &self.reaction
+    }
+
+    /// Returns the force of each surface constrained by penalty on the body in a state, without damping.
+    pub fn penalty_forces(&self, state: &State) -> Vec<Resultant> {
+        let StaticProblem { penalties, curves, .. } = self.equations.problem;
+        let part = |index: usize| curves.penalties.of(index).value(state.time);
+        penalties.iter().enumerate().map(|(index, held)| held.resultant(&state.u, part(index))).collect()
     }
 
     /// Makes the forces at the end of the last step the smallest scale of all following residuals.

@@ -34,7 +34,12 @@ impl Equations<'_> {
             let mass = &self.system.surfaces[blocks.len()];
             blocks.push(inertia.blocks(mass));
         }
-        let part = |index| self.problem.curves.following.of(index).value(state.time);
+        let beside = self.beside_internal();
+        if let Some(part) = beside {
+            blocks.iter_mut().flatten().for_each(|block| *block *= part);
+        }
+        let beside = beside.unwrap_or(1.0);
+        let part = |index| beside * self.problem.curves.following.of(index).value(state.time);
         let following = self.problem.following.iter().enumerate();
         let pressed = following.map(|(index, load)| load.pressed(&state.u, part(index))).collect();
         SurfaceStiffness { blocks, pressed }
@@ -78,6 +83,14 @@ impl Equations<'_> {
             for (r, k) in right.iter_mut().zip(self.system.held_part(moves)) {
                 *r -= k;
             }
+            let scaled: Vec<Vector3>;
+            let moves = match self.beside_internal() {
+                None => moves,
+                Some(part) => {
+                    scaled = moves.iter().map(|by| by * part).collect();
+                    &scaled
+                }
+            };
             // The accelerations of constrained degrees of freedom are given, so they do not depend on this
             // move.
             if let Some(inertia) = self.terms.as_ref().and_then(|t| t.inertia.as_ref()) {

@@ -73,6 +73,9 @@ impl Equations<'_> {
                 }
             }
             if corner > 0.0 {
+                if let Some(part) = self.beside_internal() {
+                    sides[0].iter_mut().for_each(|column| *column *= part);
+                }
                 let [column, row] = sides.map(|side| self.system.gather(&side, &none));
                 borders.push((k, Border { column, row, corner }));
             }
