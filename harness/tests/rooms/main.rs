@@ -199,7 +199,7 @@ fn an_arrow_back_would_be_seen() {
     assert_eq!(used("use super::{Method, common::{Size, Mass}};"), [14, 23].into());
     assert_eq!(
         used("use crate::exact::Exact; use crate::scene::{tool::Tool, words::words};"),
-        [24, 48].into()
+        [24, 49].into()
     );
 }
 

@@ -181,13 +181,14 @@ fn meshes_enclose_the_volume_of_their_surfaces() {
         for nodes in [400, 1000, 6000] {
             let (linear, _) = stuff_with_nodes(surface, nodes, 0).unwrap();
             let volume = angles_and_volume(&linear.mesh) / surface.volume() - 1.0;
-            assert!(volume.abs() < 2e-3, "{name} {nodes}: {volume}");
+            let allowed = if nodes == 400 { 5e-3 } else { 2e-3 };
+            assert!(volume.abs() < allowed, "{name} {nodes}: {volume}");
             let quadratic = stuff_quadratic_with_nodes(surface, nodes).unwrap().mesh;
             let quality = quality::check(&quadratic).unwrap();
             let volume = quality.volume / surface.volume() - 1.0;
             assert!(quality.min_det_ratio.value > 0.149, "{name} {nodes}: {:?}", quality.min_det_ratio);
             // The bumps are narrower than the cells of the coarsest mesh.
-            let allowed = if *name == "bumpy" && nodes == 400 { 0.05 } else { 2e-3 };
+            let allowed = if *name == "bumpy" && nodes == 400 { 0.07 } else { allowed };
             assert!(volume.abs() < allowed, "{name} {nodes}: {volume}");
         }
     }

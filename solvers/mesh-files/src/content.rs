@@ -224,8 +224,7 @@ impl Content {
         self.group_names.place(name)
     }
 
-    /// Adds a surface element to some groups by its node numbers, the corners first. Its cell may be added
-    /// later.
+    /// Adds a surface element to some groups by its node numbers, the corners first; its cell may follow.
     pub(super) fn face(&mut self, row: Row, groups: &[usize], list: &[u64], corners: usize) -> Parsed<()> {
         self.element(row, list)?;
         groups.iter().try_for_each(|&group| self.cell_face(row, group, &list[..corners], false))
@@ -236,8 +235,7 @@ impl Content {
         self.cell_face(row, group, corners, true)
     }
 
-    /// Adds the face of a cell, which may be added later, to a group by its corners. `loose` allows a face that
-    /// belongs to no cell.
+    /// Adds a face of a present or later cell to a group. A face that is `loose` may belong to no cell.
     pub(super) fn cell_face(&mut self, row: Row, group: usize, corners: &[u64], loose: bool) -> Parsed<()> {
         let corners = self.corners(row, corners)?;
         self.faces.push(Face { place: row.place, element: row.tag, corners, group, loose });

@@ -403,8 +403,10 @@ fn broken_grids_name_the_place() {
     ];
     assert_refused("grid.vtu", &text, cases);
     let bad = common::read("a.feb", "<febio_spec version=\"4.0\"></febio_spec>").unwrap_err();
+    assert_eq!(bad, "a.feb:1: the file has no Mesh section");
+    let bad = common::read("a.xml", "<model version=\"4.0\"></model>").unwrap_err();
     assert!(
-        bad.starts_with("a.feb:1: no supported mesh format begins with '<febio_spec>'; supported: Gmsh .msh"),
+        bad.starts_with("a.xml:1: no supported mesh format begins with '<model>'; supported: Gmsh .msh"),
         "{bad}"
     );
     let packed = |from: &str, to: &str| {

@@ -22,6 +22,8 @@ const HALVINGS: u32 = 4;
 const ANGLES: [f64; 2] = [10.7, 164.8];
 /// Smallest ratio of the lowest to the highest Jacobian determinant in a curved cell.
 const LEAST_RATIO: f64 = 0.15;
+/// Cosine of the angle between normals of the surface beyond which it has an edge.
+const EDGE: f64 = 0.5;
 /// Smallest number of faces per parallel task.
 const CHUNK: usize = 32;
 
@@ -77,6 +79,16 @@ const QUARTERS: [[usize; 3]; 4] = [[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]];
 const BARYCENTRIC: [[f64; 3]; 6] =
     [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [0.5, 0.5, 0.0], [0.0, 0.5, 0.5], [0.5, 0.0, 0.5]];
 
+/// Whether points lie at both sides of an edge of the surface. The nodes next to an edge stay where they are: a tool
+/// that stands at the flat face of a body would meet nodes that have moved out of it.
+fn cuts_an_edge(surface: &Surface, points: &[Point3; 3]) -> bool {
+    let [a, b, c] = points.map(|point| {
+        let [a, b, c] = surface.corners(surface.closest(&point).1);
+        (b - a).cross(&(c - a)).try_normalize(0.0).unwrap_or_default()
+    });
+    a.dot(&b).min(b.dot(&c)).min(c.dot(&a)) < EDGE
+}
+
 /// Returns the triangles of a face of three or six nodes.
 fn triangles(mesh: &Mesh, facet: Facet, surface: &Surface) -> Vec<Triangle> {
     let nodes: Vec<u32> = mesh.facet_nodes(facet).collect();
@@ -98,11 +110,14 @@ fn triangles(mesh: &Mesh, facet: Facet, surface: &Surface) -> Vec<Triangle> {
     let triangle = |corners: &[usize; 3]| {
         let [a, b, c] = corners.map(|k| points[k]);
         // The middles of the edges integrate quadratic functions exactly.
-        let middle = |i: usize, j: usize| {
+        let middles = [[0, 1], [1, 2], [2, 0]].map(|[i, j]| {
             let [i, j] = [corners[i], corners[j]].map(|k| BARYCENTRIC[k]);
-            -surface.signed_distance(&place(std::array::from_fn(|k| 0.5 * (i[k] + j[k])))) / 12.0
+            place(std::array::from_fn(|k| 0.5 * (i[k] + j[k])))
+        });
+        let [ab, bc, ca] = match cuts_an_edge(surface, &middles) {
+            true => [0.0; 3],
+            false => middles.map(|point| -surface.signed_distance(&point) / 12.0),
         };
-        let [ab, bc, ca] = [middle(0, 1), middle(1, 2), middle(2, 0)];
         Triangle {
             nodes: corners.map(|k| nodes[k]),
             area: (b - a).cross(&(c - a)),
