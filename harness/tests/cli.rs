@@ -82,7 +82,7 @@ fn a_run_that_fails_says_so_on_both_streams() {
     let object: Value = serde_json::from_str(&done.stdout).unwrap();
     assert_eq!(object["status"], "could-not-run");
     assert!(object["message"].as_str().unwrap().contains("rigid motion"));
-    // The linear solver is known only for a run that solved.
+    // Solver and norm are known only for a run that solved.
     assert!(
         KEYS.iter().all(|&key| matches!(key, "free_norm" | "linear_solver") != object.get(key).is_some())
     );

@@ -12,7 +12,7 @@ pub struct Finding {
     pub line: usize,
     /// The part, and for a refused one the reason.
     pub what: String,
-    /// What would be right.
+    /// Advice: the form that would be right.
     pub help: Option<String>,
 }
 

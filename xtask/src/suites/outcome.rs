@@ -6,7 +6,7 @@ use std::path::Path;
 
 use super::call::Run;
 
-/// What became of a model.
+/// Outcome of a model.
 pub(super) enum Verdict {
     /// The numbers agree, with the relative difference and what it was compared with.
     Agrees { difference: f64, within: String },

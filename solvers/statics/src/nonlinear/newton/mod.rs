@@ -49,7 +49,7 @@ pub(crate) struct Newton<'a> {
     reached: f64,
 }
 
-/// What adds up over the stages of a solution.
+/// Sums and extremes over the stages of a solution.
 #[derive(Clone, Copy, Default)]
 pub(crate) struct Totals {
     /// Counters of the contact search.
