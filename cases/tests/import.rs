@@ -10,7 +10,11 @@ fn model(name: &str) -> std::path::PathBuf {
 }
 
 fn imported(name: &str, units: Units) -> Imported {
-    import(&model(name), name, units).unwrap_or_else(|findings| panic!("{}", lines(&findings)))
+    step(name, units, None)
+}
+
+fn step(name: &str, units: Units, step: Option<usize>) -> Imported {
+    import(&model(name), name, units, step).unwrap_or_else(|findings| panic!("{}", lines(&findings)))
 }
 
 fn lines(findings: &[Finding]) -> String {
@@ -19,7 +23,7 @@ fn lines(findings: &[Finding]) -> String {
 
 #[test]
 fn a_model_becomes_a_scene() {
-    for name in ["two-blocks.feb", "beam.inp"] {
+    for name in ["two-blocks.feb", "pressed-block.feb", "beam.inp"] {
         let first = imported(name, Units::Metres);
         insta::assert_snapshot!(name, first.scene);
         assert_eq!(first.scene, imported(name, Units::Metres).scene, "importing twice");
@@ -30,6 +34,83 @@ fn a_model_becomes_a_scene() {
             "{name}: {}",
             scene.unwrap_err().iter().map(|e| format!("{e}\n")).collect::<String>()
         );
+    }
+}
+
+#[test]
+fn each_step_of_a_deck_becomes_a_scene() {
+    for number in [1, 2, 5] {
+        let imported = step("vibration.inp", Units::Metres, Some(number));
+        insta::assert_snapshot!(format!("vibration-step-{number}"), imported.scene);
+        let file = model("vibration.toml").display().to_string();
+        assert!(scene::parse(&imported.scene, &file).is_ok(), "step {number}");
+    }
+    let last = step("vibration.inp", Units::Metres, None).scene;
+    assert_eq!(last, step("vibration.inp", Units::Metres, Some(5)).scene);
+}
+
+#[test]
+fn a_step_that_begins_with_the_state_of_another_is_refused() {
+    for (number, words) in [
+        (0, "vibration.inp: has 5 steps, so no step 0"),
+        (6, "vibration.inp: has 5 steps, so no step 6"),
+        (3, "vibration.inp:57: *STEP 3 begins with the state of *STEP 2"),
+        (3, "vibration.inp:61: a displacement other than zero in a dynamic step"),
+        (4, "vibration.inp:63: PERTURBATION: *STEP 4 begins with the stress of *STEP 2"),
+    ] {
+        let findings = import(&model("vibration.inp"), "vibration.inp", Units::Metres, Some(number));
+        let found = lines(&findings.expect_err("refused"));
+        assert!(found.contains(words), "{words} in {found}");
+    }
+    let found = import(&model("two-blocks.feb"), "two-blocks.feb", Units::Metres, Some(2));
+    assert!(lines(&found.expect_err("refused")).contains("is no deck of CalculiX"));
+}
+
+/// A deck of one element of this type.
+fn one_element(kind: &str, nodes: usize) -> String {
+    let places: String = (1..=nodes).map(|node| format!("{node}, {node}., 0., 0.\n")).collect();
+    let list: Vec<String> = (1..=nodes).map(|node| node.to_string()).collect();
+    format!(
+        "*NODE\n{places}*ELEMENT, TYPE={kind}, ELSET=E\n1, {}\n*MATERIAL, NAME=M\n*ELASTIC\n1., 0.\n\
+         *SOLID SECTION, ELSET=E, MATERIAL=M\n*STEP\n*STATIC\n*END STEP\n",
+        list.join(", ")
+    )
+}
+
+#[test]
+fn elements_have_the_points_of_calculix_or_a_note() {
+    let scene = |kind, nodes| {
+        let deck = one_element(kind, nodes);
+        import_bytes(deck.as_bytes(), "one.inp", "one.inp", Units::Metres, None).expect("imported").scene
+    };
+    for (kind, nodes, reduced) in [
+        ("C3D8", 8, false),
+        ("C3D10", 10, false),
+        ("C3D15", 15, true),
+        ("C3D20", 20, false),
+        ("C3D20R", 20, true),
+    ] {
+        assert_eq!(scene(kind, nodes).contains("reduced = true"), reduced, "{kind}");
+    }
+    assert!(scene("C3D8", 11).contains("# * line 14: nodes after the eight of an element"));
+    assert!(scene("C3D6", 6).contains("# * line 8: the two points of C3D6: wedge6 has six"));
+    for (kind, nodes) in [("C3D8R", 8), ("C3D8I", 8), ("S8", 8), ("B31", 2)] {
+        let deck = one_element(kind, nodes);
+        let refused = import_bytes(deck.as_bytes(), "one.inp", "one.inp", Units::Metres, None);
+        let found = lines(&refused.expect_err("refused"));
+        let line = nodes + 2;
+        assert!(found.contains(&format!("one.inp:{line}: elements {kind} can't be expressed")), "{found}");
+    }
+}
+
+#[test]
+fn the_committed_scene_is_that_of_today() {
+    let folder = Path::new("scenes/import");
+    let deck = folder.join("pulled-in-steps.inp");
+    let committed = std::fs::read_to_string(folder.join("pulled-in-steps.toml")).expect("read");
+    for _ in 0..2 {
+        let today = import(&deck, "pulled-in-steps.inp", Units::Millimetres, None).expect("imported").scene;
+        assert_eq!(committed, today, "import the deck again: tissuebench import --unit mm");
     }
 }
 
@@ -51,7 +132,7 @@ fn lengths_in_millimetres_imply_tonnes_and_megapascals() {
 #[test]
 fn parts_that_change_the_answer_are_refused_with_their_lines() {
     for name in ["hostile.feb", "hostile.inp"] {
-        let findings = import(&model(name), name, Units::Metres).expect_err("refused");
+        let findings = import(&model(name), name, Units::Metres, None).expect_err("refused");
         insta::assert_snapshot!(format!("refused-{name}"), lines(&findings));
     }
 }
@@ -59,14 +140,16 @@ fn parts_that_change_the_answer_are_refused_with_their_lines() {
 /// A model that is cut short or changed in one place is refused or imported, but never panics.
 #[test]
 fn spoilt_models_are_refused_or_imported() {
-    for name in ["two-blocks.feb", "beam.inp", "hostile.feb", "hostile.inp"] {
+    for name in
+        ["two-blocks.feb", "pressed-block.feb", "beam.inp", "vibration.inp", "hostile.feb", "hostile.inp"]
+    {
         let bytes = std::fs::read(model(name)).expect("read");
         for at in 0..bytes.len() {
-            let _ = import_bytes(&bytes[..at], name, name, Units::Metres);
+            let _ = import_bytes(&bytes[..at], name, name, Units::Metres, None);
             for other in [b'0', b'<', b',', b'-', 0xff] {
                 let mut spoilt = bytes.clone();
                 spoilt[at] = other;
-                let _ = import_bytes(&spoilt, name, name, Units::Metres);
+                let _ = import_bytes(&spoilt, name, name, Units::Metres, None);
             }
         }
         // A line that is missing.
@@ -75,7 +158,7 @@ fn spoilt_models_are_refused_or_imported() {
         for gone in 0..all.len() {
             let rest: Vec<&str> =
                 all.iter().enumerate().filter(|(at, _)| *at != gone).map(|(_, l)| *l).collect();
-            let _ = import_bytes(rest.join("\n").as_bytes(), name, name, Units::Metres);
+            let _ = import_bytes(rest.join("\n").as_bytes(), name, name, Units::Metres, None);
         }
     }
 }
@@ -99,10 +182,52 @@ fn nothing_is_dropped_in_silence() {
         ("mat=\"Firm\"/>", "mat=\"Firm\"><laugon>1</laugon></SolidDomain>"),
         ("mat=\"Firm\"/>", "mat=\"Firm\" elem_type=\"HEX8G1\"/>"),
     ];
+    differ("two-blocks.feb", &text, &whole, &changes);
+}
+
+#[track_caller]
+fn differ(name: &str, text: &str, whole: &str, changes: &[(&str, &str)]) {
     for (from, to) in changes {
         assert!(text.contains(from), "{from}");
         let changed = text.replacen(from, to, 1);
-        let now = import_bytes(changed.as_bytes(), "two-blocks.feb", "two-blocks.feb", Units::Metres);
+        let now = import_bytes(changed.as_bytes(), name, name, Units::Metres, None);
+        assert!(now.map_or(true, |now| now.scene != whole), "{from} -> {to}");
+    }
+}
+
+#[test]
+fn nothing_of_a_step_is_dropped_in_silence() {
+    let file = "scenes/import/pulled-in-steps.inp";
+    let text = std::fs::read_to_string(file).expect("read");
+    let whole = import_bytes(text.as_bytes(), file, file, Units::Metres, None).expect("imported").scene;
+    let changes = [
+        ("*BOUNDARY, OP=NEW", "*BOUNDARY"),
+        ("*CLOAD, OP=NEW", "*CLOAD"),
+        ("*CLOAD, OP=NEW", "*CLOAD, OP=KEEP"),
+        ("*DLOAD, AMPLITUDE=GROWTH", "*DLOAD"),
+        ("*DLOAD, AMPLITUDE=GROWTH", "*DLOAD, AMPLITUDE=OTHER"),
+        ("1., 1.5", "2., 1.5"),
+        ("1., 1.5", "1., 1.5, 1., 1.5"),
+        ("LAST, P4, -2.", "3, P4, -2."),
+        ("LAST, P4, -1.", "BAR, P1, -1."),
+        ("LAST, P4, -1.", "BAR, P4, -1."),
+        ("LAST, P4, -2.", "LAST, P4NP, 20"),
+        ("LAST, P4, -2.", "BAR, GRAV, 9.81, 0., 0., -1."),
+        ("LEFT, 1\n", "LEFT, 1, 1, 0.1\n"),
+        ("*STATIC", "*STATIC, RIKS"),
+        ("*STEP\n", "*STEP, NLGEOM\n"),
+        ("*NODE PRINT", "*EQUATION"),
+        ("*ELASTIC\n", "*ELASTIC, TYPE=ORTHO\n"),
+    ];
+    // The last step decides, and each of these words also stands in it.
+    differ(file, &text, &whole, &changes[..6]);
+    let last = text.rfind("*STEP").expect("a step");
+    let (before, step) = text.split_at(last);
+    for (from, to) in &changes[7..] {
+        let (first, second) = (before.replace(from, to), step.replace(from, to));
+        assert!(first != before || second != step, "{from}");
+        let changed = first + &second;
+        let now = import_bytes(changed.as_bytes(), file, file, Units::Metres, None);
         assert!(now.map_or(true, |now| now.scene != whole), "{from} -> {to}");
     }
 }

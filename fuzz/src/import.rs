@@ -4,7 +4,7 @@ use cases::import::{Units, import_bytes};
 
 pub(crate) fn run(data: &[u8]) {
     for units in [Units::Metres, Units::Millimetres] {
-        match import_bytes(data, "fuzz.model", "fuzz.model", units) {
+        match import_bytes(data, "fuzz.model", "fuzz.model", units, None) {
             Err(findings) => {
                 assert!(!findings.is_empty());
                 assert!(findings.iter().all(|finding| !finding.to_string().is_empty()));

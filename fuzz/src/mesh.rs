@@ -4,6 +4,7 @@ use std::path::Path;
 
 use geometry::generate::{raise_order, to_tets};
 use geometry::stuffing::{Stuffing, stuff};
+use geometry::surface::Treatment;
 use geometry::{CellKind, Mesh, Surface, cloud_from_mesh, quality, read_points_text};
 use mesh_files::{Format, GmshVersion};
 
@@ -17,6 +18,16 @@ pub(crate) fn run(data: &[u8]) {
     }
     if let Ok(surface) = mesh_files::read_surface_bytes(data, Path::new("fuzz.stl"), 1e-3) {
         fill(&surface);
+    }
+    let treated = |treatment| mesh_files::read_treated_bytes(data, Path::new("fuzz.stl"), 1e-3, treatment);
+    if let Ok(repaired) = treated(Treatment::Repair) {
+        let [low, high] = repaired.surface.bounds();
+        let wrapped = treated(Treatment::Wrap { size: (high - low).amax() / 8.0 });
+        assert!(
+            wrapped.is_ok_and(|wrap| wrap.surface.volume() > 0.0)
+                || (high - low).min() <= (high - low).amax() / 4.0
+        );
+        fill(&repaired.surface);
     }
     // The folder for included files of an input deck is empty.
     match mesh_files::read_bytes(data, Path::new("/nonexistent/fuzz.msh"), 1e-3) {

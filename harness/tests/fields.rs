@@ -189,3 +189,72 @@ fn vtk_and_meshio_open_the_files() {
     let done = Command::new(python).arg(script).arg(dir.path().join("out/hex20.pvd")).output().unwrap();
     assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
 }
+
+/// A deck of two bricks whose numbers are not those of the mesh, held at one end.
+const BRICKS: &str = "*NODE
+101, 0, 0, 0\n102, 1, 0, 0\n103, 1, 1, 0\n104, 0, 1, 0\n105, 0, 0, 1\n106, 1, 0, 1\n107, 1, 1, 1\n108, 0, 1, 1
+12, 2, 1, 1\n11, 2, 0, 1\n10, 2, 1, 0\n9, 2, 0, 0
+*ELEMENT, TYPE=C3D8, ELSET=ALL
+70, 101, 102, 103, 104, 105, 106, 107, 108\n8, 102, 9, 10, 103, 106, 11, 12, 107
+*NSET, NSET=FIX\n101, 104, 105, 108
+*MATERIAL, NAME=RUBBER\n*ELASTIC\n1000., .3
+*SOLID SECTION, ELSET=ALL, MATERIAL=RUBBER
+*BOUNDARY\nFIX, 1, 3
+*STEP\n*STATIC
+*CLOAD\n12, 1, 4.\n9, 3, -2.
+*END STEP
+";
+
+/// Rows of a table by their numbers.
+fn table(file: &Path) -> BTreeMap<u64, Vec<f64>> {
+    let text = fs::read_to_string(file).unwrap();
+    let row = |line: &str| {
+        let mut words = line.split(',');
+        let number = words.next().unwrap().parse().unwrap();
+        (number, words.map(|word| word.parse().unwrap()).collect())
+    };
+    text.lines().skip(1).map(row).collect()
+}
+
+#[test]
+fn results_go_back_by_the_numbers_of_a_model() {
+    let dir = TempDir::new().unwrap();
+    let deck = write(&dir, "bricks.inp", BRICKS);
+    let out = dir.path().join("out");
+    let fields =
+        |like: &str| tissuebench(&["fields", &deck, "--like", like, "--out", &out.display().to_string()]);
+    let done = fields(&deck);
+    assert_eq!(done.code, 0, "{}", done.stderr);
+    let nodes = table(&out.join("hex8-nodes.csv"));
+    assert_eq!(
+        nodes.keys().copied().collect::<Vec<_>>(),
+        [9, 10, 11, 12, 101, 102, 103, 104, 105, 106, 107, 108]
+    );
+    assert_eq!(nodes[&9][..3], [2.0, 0.0, 0.0]);
+    // The reactions carry both forces, and act where the body is held.
+    let reaction = |axis: usize| nodes.values().map(|row| row[6 + axis]).sum::<f64>();
+    assert!((reaction(0) + 4.0).abs() < 1e-12 && (reaction(2) - 2.0).abs() < 1e-12, "{nodes:?}");
+    assert!(nodes.iter().all(|(number, row)| row[6..] == [0.0; 3] || [101, 104, 105, 108].contains(number)));
+    let elements = table(&out.join("hex8-elements.csv"));
+    assert_eq!(elements.keys().copied().collect::<Vec<_>>(), [8, 70]);
+    // The mean of a section of 1 m^2 carries the force along x.
+    assert!(elements.values().all(|row| (row[0] - 4.0).abs() < 1e-9), "{elements:?}");
+    let (_, _, file) = series(&out, "hex8").pop().unwrap();
+    let arrays = arrays(&out.join(file));
+    assert_eq!(arrays["element"], [70.0, 8.0]);
+    let at = arrays["node"].iter().position(|number| *number == 12.0).unwrap();
+    assert_eq!(arrays["displacement"][3 * at..3 * at + 3], nodes[&12][3..6]);
+    let other = write(
+        &dir,
+        "other.inp",
+        &BRICKS.replace("8, 102, 9, 10, 103, 106, 11, 12, 107", "8, 9, 10, 103, 102, 11, 12, 107, 106"),
+    );
+    let refused = fields(&other);
+    assert!(
+        refused.code == 2
+            && refused.stderr.contains("other.inp: its 2 cells on 12 nodes are not the 2 cells"),
+        "{}",
+        refused.stderr
+    );
+    assert!(refused.stderr.contains("size = { file ="), "{}", refused.stderr);
+}

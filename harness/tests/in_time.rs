@@ -153,6 +153,13 @@ fn bad_scenes_in_time_name_the_key() {
             2,
             "'procedure.spectral_radius': '1.5' is not in [0, 1]",
         ),
+        ("steps = 2", "steps = 2, alpha = -0.5", 2, "'procedure.alpha': '-0.5' is not in [-1/3, 0]"),
+        (
+            "steps = 2",
+            "steps = 2, alpha = 0, spectral_radius = 1",
+            2,
+            "'procedure.alpha': '0' has a spectral radius of its own",
+        ),
         ("steps = 2", "steps = 2, accuracy = 0.1", 2, "'procedure.accuracy': '0.1' has no unit"),
         ("steps = 2", "steps = 2, accuracy = \"0 mm\"", 2, "'procedure.accuracy'"),
         ("steps = 2", "steps = 2, safety = 0.5", 2, "it goes with explicit"),

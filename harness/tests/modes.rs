@@ -47,6 +47,47 @@ fn a_free_box_has_six_rigid_modes_and_its_mass() {
     assert!(metric(&runs[0], "critical-step") < metric(&runs[1], "critical-step"));
 }
 
+/// A body of steel in mm, N, s and t, read as SI units, vibrates at 1e10 Hz: the decomposition must not take
+/// its eigenvalues, of 1e-20, for rounding.
+#[test]
+fn frequencies_scale_with_stiffness_and_density() {
+    let stiff = BOX.replace("20 kPa", "210 GPa").replace("1000 kg/m^3", "7.8e-9 kg/m^3");
+    let factor = (210e9 / 20e3 * 1000.0 / 7.8e-9_f64).sqrt();
+    let modes = |run: &Value| -> Vec<f64> {
+        let all = run["modes"].as_array().unwrap().iter();
+        all.map(|mode| mode["frequency"]["value"].as_f64().unwrap()).collect()
+    };
+    // The first six modes of a free box are rigid, with frequencies of rounding.
+    for (soft, stiff) in metrics(BOX).iter().zip(&metrics(&stiff)) {
+        assert!(metric(stiff, "residual") < 1e-9, "{stiff}");
+        for (soft, stiff) in modes(soft).iter().zip(modes(stiff)).skip(6) {
+            assert!((stiff / (soft * factor) - 1.0).abs() < 1e-9, "{soft} {stiff}");
+        }
+    }
+}
+
+/// Two points in each direction integrate the mass of a brick exactly; those of a reduced hex20 leave motions
+/// without mass, which have no frequency.
+#[test]
+fn a_mass_at_the_points_of_the_forces_may_be_singular() {
+    let method = |element: &str, mass: &str| {
+        format!(
+            "    {{ id = \"{mass}\", family = \"fem\", element = {element}, size = {{ level = 1 }}, mass = \"{mass}\" }},\n"
+        )
+    };
+    let (before, _) = BOX.split_once("method = [").unwrap();
+    let both = |element: &str| {
+        let methods = method(element, "consistent") + &method(element, "at-points");
+        metrics(&format!("{ROLLERS}{before}method = [\n{methods}]\n"))
+    };
+    let bricks = both("\"hex8\"");
+    let ratio = |run| metric(run, "frequency-ratio");
+    assert!((ratio(&bricks[0]) - ratio(&bricks[1])).abs() < 1e-12);
+    let reduced = both("\"hex20\", reduced = true");
+    assert!(metric(&reduced[0], "massless") == 0.0 && metric(&reduced[1], "massless") > 0.0);
+    assert!((ratio(&reduced[1]) - 1.0).abs() < 0.01, "{}", ratio(&reduced[1]));
+}
+
 /// Linear elements give frequencies above the exact frequencies with a consistent mass, and below them with a
 /// lumped mass. On equal hexahedra the discrete modes are sines with either mass, so that the two frequencies
 /// differ by the factor `sqrt(9 / ((2 + cos ah) (2 + cos bh)))`, a = pi / 4h, b = pi / 3h.

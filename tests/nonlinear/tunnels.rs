@@ -124,6 +124,7 @@ fn frames_and_time_steps_are_cut_as_well() {
             smallest: 1.0 / 64.0,
             accuracy: None,
             rho_inf: 0.5,
+            alpha: None,
             newton: cut(1).newton,
             augmentations: 0,
         };

@@ -108,6 +108,7 @@ pub fn params(end: f64, steps: usize, rho_inf: f64) -> TimeParams {
         smallest: 1e-3,
         accuracy: None,
         rho_inf,
+        alpha: None,
         newton: NewtonParams {
             tolerance: 1e-11,
             iterations: 20,

@@ -22,6 +22,8 @@ pub(super) struct Model<'a> {
     /// Path as the scene writes it.
     pub path: &'a str,
     pub units: Units,
+    /// Step that is imported, from 1; the last unless given.
+    pub step: Option<usize>,
 }
 
 impl Model<'_> {
@@ -31,11 +33,11 @@ impl Model<'_> {
     }
 }
 
-/// The title of a scene, with the parts of the model that it leaves out.
+/// The title of a scene, with the parts of the model that it leaves out. `what` is imported, such as "the deck".
 pub(super) fn head(model: &Model, what: &str, left_out: &[Finding]) -> Part {
     let name = Path::new(model.path).file_name().unwrap_or_default().to_string_lossy();
     let mut part = Part::new("").note(format!(
-        "Imported from the {what} {name} by tissuebench. Its numbers are taken to be in {}.",
+        "Imported from {what} {name} by tissuebench. Its numbers are taken to be in {}.",
         model.units.words()
     ));
     if !left_out.is_empty() {
@@ -44,5 +46,5 @@ pub(super) fn head(model: &Model, what: &str, left_out: &[Finding]) -> Part {
     for Finding { line, what, .. } in left_out {
         part = part.note(format!("* line {line}: {what}"));
     }
-    part.key("title", quoted(&format!("{what} {name}")))
+    part.key("title", quoted(&format!("{} {name}", what.trim_start_matches("the "))))
 }

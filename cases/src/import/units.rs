@@ -44,13 +44,27 @@ impl Units {
         quantity(value, "s")
     }
 
+    pub(crate) fn rates(self, value: f64) -> String {
+        quantity(value, "/s")
+    }
+
     pub(crate) fn pressures(self, value: f64) -> String {
         quantity(value, if self == Units::Metres { "Pa" } else { "MPa" })
+    }
+
+    pub(crate) fn slopes(self, value: f64) -> String {
+        quantity(value, if self == Units::Metres { "Pa/m" } else { "MPa/mm" })
     }
 
     pub(crate) fn body_forces(self, value: f64) -> String {
         // 1 N/mm^3 is 1e9 N/m^3.
         quantity(if self == Units::Metres { value } else { value * 1e9 }, "N/m^3")
+    }
+
+    /// A force per volume and length in N/m^4, as an expression has it.
+    pub(crate) fn body_force_rates(self, value: f64) -> String {
+        // 1 N/mm^4 is 1e12 N/m^4.
+        number(if self == Units::Metres { value } else { value * 1e12 })
     }
 
     pub(crate) fn densities(self, value: f64) -> String {

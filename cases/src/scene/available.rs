@@ -19,13 +19,16 @@ impl Scene {
         let kind = self.procedure.kind();
         let explicit = kind == ProcedureKind::Explicit;
         let implicit = kind == ProcedureKind::ImplicitDynamic;
-        let radius = match &self.procedure {
-            Procedure::ImplicitDynamic(implicit) => implicit.spectral_radius,
-            _ => 0.0,
+        let gains = match &self.procedure {
+            Procedure::ImplicitDynamic(implicit) if implicit.alpha.is_some() => Some(("alpha", "alpha")),
+            Procedure::ImplicitDynamic(implicit) if implicit.spectral_radius > 0.0 => {
+                Some(("spectral_radius", "a spectral radius above 0"))
+            }
+            _ => None,
         };
-        if !self.tools.is_empty() && radius > 0.0 {
+        if let Some((key, what)) = gains.filter(|_| !self.tools.is_empty()) {
             let help = "leave it out: above 0 stiff contact gains energy";
-            add("procedure.spectral_radius", "a spectral radius above 0 with tools".into(), help);
+            add(&format!("procedure.{key}"), format!("{what} with tools"), help);
         }
         let clouds = self.methods.iter().any(|method| matches!(method.family, Family::Efg(_)));
         if clouds

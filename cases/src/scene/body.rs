@@ -2,6 +2,7 @@
 
 use catalogue::{Problem, suggest};
 use geometry::generate::{Ventricle, surfaces};
+use geometry::surface::Treatment;
 use mesh_files::is_surface;
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -75,7 +76,7 @@ pub(crate) enum BodyKeys {
         mildly_graded: bool,
     },
     /// A mesh file (Gmsh .msh, Abaqus or CalculiX .inp, FEBio .feb, VTK .vtu or .vtk), which names its own
-    /// surfaces, or a closed surface (STL, OBJ, PLY)
+    /// surfaces, or a closed surface (STL, OBJ, PLY, OFF, VTK .vtp, Medit .mesh)
     File {
         /// The file, relative to the folder of the scene
         path: String,
@@ -84,6 +85,12 @@ pub(crate) enum BodyKeys {
         /// Join pieces whose faces coincide without shared nodes, in all meshes of this body and its methods
         #[serde(default)]
         join: bool,
+        /// Mend small faults of a surface: doubled corners and triangles, T-junctions, reversed triangles,
+        /// holes of up to a tenth of its size
+        #[serde(default)]
+        repair: bool,
+        /// Wrap a surface that is open, crosses itself or branches: the edge length of the cells of the wrap
+        wrap: Option<Q<Length>>,
     },
 }
 
@@ -174,14 +181,31 @@ impl BodyKeys {
                 report.require(half || !mildly_graded, "mildly_graded", "applies to the half only", help);
                 Body::Kidney { half, mildly_graded }
             }
-            BodyKeys::File { path, unit, join } => {
+            BodyKeys::File { path, unit, join, repair, wrap } => {
                 let file = MeshFile::read(&path, Some(unit), "path", report);
+                let of_surface = is_surface(&file.path);
                 let help = "leave it out: a closed surface has no nodes to join";
-                report.require(!join || !is_surface(&file.path), "join", "is for meshes", help);
-                Body::File(MeshFile { join, ..file })
+                report.require(!join || !of_surface, "join", "is for meshes", help);
+                let treatment = treatment(repair, wrap.map(|size| size.0), of_surface, report);
+                Body::File(MeshFile { join, treatment, ..file })
             }
         })
     }
+}
+
+/// Treatment of the surface of a file.
+fn treatment(repair: bool, wrap: Option<f64>, of_surface: bool, report: &Report) -> Treatment {
+    let help = "leave it out: the body of a mesh file with cells is bounded by their faces";
+    report.require(!repair || of_surface, "repair", "is for surfaces", help);
+    let Some(size) = wrap else { return if repair { Treatment::Repair } else { Treatment::AsGiven } };
+    report.require(of_surface, "wrap", "is for surfaces", help);
+    report.require(
+        !repair,
+        "wrap",
+        "can't be combined with repair",
+        "a wrap needs no repair: leave repair out",
+    );
+    Treatment::Wrap { size: report.positive("wrap", size) }
 }
 
 /// Two corners of a box from its `min`, `max` and `size`.

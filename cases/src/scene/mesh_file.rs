@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use catalogue::Problem;
+use geometry::surface::Treatment;
 
 use super::report::Report;
 use super::units::{Length, Unit};
@@ -19,6 +20,8 @@ pub struct MeshFile {
     pub unit: f64,
     /// Whether pieces of the mesh are joined at faces that coincide.
     pub join: bool,
+    /// Treatment of a surface that need not be closed.
+    pub treatment: Treatment,
 }
 
 impl MeshFile {
@@ -31,6 +34,7 @@ impl MeshFile {
                 format!("no file at {place}; paths are relative to the folder of the file they are in");
             report.add(key, Problem::new("can't be found").help(help));
         }
-        MeshFile { path, unit: unit.map_or(MILLIMETRE, |unit| unit.0), join: false }
+        let unit = unit.map_or(MILLIMETRE, |unit| unit.0);
+        MeshFile { path, unit, join: false, treatment: Treatment::AsGiven }
     }
 }

@@ -273,6 +273,9 @@ table! {
         inertia: bool = true,
         /// Spectral radius at infinite frequency, 0 to 1; 0.8 unless given, and 0 with tools
         spectral_radius: f64 = SPECTRAL_RADIUS,
+        /// Alpha of the method of Hilber, Hughes and Taylor in place of the spectral radius, -1/3 to 0; 0 is
+        /// Newmark's trapezoidal rule
+        alpha: Option<f64>,
         /// Largest local error of a displacement in a time step; unlimited unless given
         accuracy: Option<f64> as Option<Q<Length>>,
     }
@@ -395,7 +398,16 @@ fn implicit(keys: ImplicitKeys, tools: bool, report: &Report) -> Implicit {
     let sound = (0.0..=1.0).contains(&implicit.spectral_radius);
     let help = "1 dissipates nothing, 0 kills in one step what a step cannot resolve; 0.8 is usual";
     report.require(sound, "spectral_radius", "is not in [0, 1]", help);
-    for key in ["damping", "stiffness_damping", "spectral_radius", "accuracy"] {
+    let sound = implicit.alpha.is_none_or(|alpha| (-1.0 / 3.0..=0.0).contains(&alpha));
+    report.require(sound, "alpha", "is not in [-1/3, 0]", "0 dissipates nothing; -0.05 is usual");
+    let both = report.is_given("spectral_radius") && implicit.alpha.is_some();
+    report.require(
+        !both,
+        "alpha",
+        "has a spectral radius of its own",
+        "give alpha or spectral_radius, not both",
+    );
+    for key in ["damping", "stiffness_damping", "spectral_radius", "alpha", "accuracy"] {
         if !implicit.inertia && report.is_given(key) {
             let problem = Problem::new("is of a motion, and inertia = false has none").help("leave it out");
             report.add(key, problem);

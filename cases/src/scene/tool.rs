@@ -44,7 +44,7 @@ enum ShapeWord {
 
 const FILE: &str = "file";
 
-/// The closed surface of a file (STL, OBJ or PLY), with rounded edges and corners
+/// The closed surface of a file (STL, OBJ, PLY, OFF, .vtp, .mesh), with rounded edges and corners
 #[derive(Deserialize, JsonSchema)]
 struct SurfaceKeys {
     /// The file, relative to the folder of the scene

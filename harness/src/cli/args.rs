@@ -29,6 +29,10 @@ pub struct FieldsArgs {
     /// Folder for a .pvd file and a folder per method
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
+    /// Model or mesh file whose numbers of nodes and elements the results get: in tables METHOD-nodes.csv and
+    /// METHOD-elements.csv of the end, and as arrays of the .vtu files
+    #[arg(long, value_name = "MODEL")]
+    pub like: Option<PathBuf>,
     /// Run even if the estimate exceeds twice the memory of this machine or half a day
     #[arg(long)]
     pub force: bool,
@@ -45,6 +49,9 @@ pub struct ImportArgs {
     /// Unit of the model's lengths, which determines its other units: m, N, s, kg, Pa or mm, N, s, t, MPa
     #[arg(long, value_enum, default_value_t = ModelUnit::M)]
     pub unit: ModelUnit,
+    /// Step of a deck to import; the last unless given
+    #[arg(long, value_name = "NUMBER")]
+    pub step: Option<usize>,
 }
 
 /// Consistent sets of units, by their lengths.
@@ -201,7 +208,8 @@ pub enum Format {
 pub enum MeshAction {
     /// Print counts, regions, surfaces, extent, unit, volume and cell quality, with the worst cells
     Info {
-        /// Mesh files: Gmsh (.msh), Abaqus or CalculiX (.inp), VTK (.vtu, .vtk); or surfaces: STL, OBJ, PLY
+        /// Mesh files: Gmsh (.msh), Abaqus or CalculiX (.inp), VTK (.vtu, .vtk); or surfaces: STL, OBJ, PLY,
+        /// OFF, .vtp, .mesh
         #[arg(required = true)]
         files: Vec<PathBuf>,
         /// Length unit of the coordinates
@@ -215,7 +223,7 @@ pub enum MeshAction {
     ///
     /// Isosurface stuffing (Labelle and Shewchuk 2007): dihedral angles lie between 10.7 and 164.8 degrees.
     /// Sharp edges are rounded at the scale of a cell. A surface that is open, intersects itself or is inside
-    /// out is refused, with the location of the fault.
+    /// out is refused, with the location of the fault, unless --repair mends it or --wrap encloses it.
     Make(MakeArgs),
     /// Read a mesh file and write it with another kind of cells or in another format
     Convert(ConvertArgs),
@@ -249,8 +257,19 @@ pub struct ConvertArgs {
 /// Arguments of `mesh make`.
 #[derive(Args)]
 pub struct MakeArgs {
-    /// Closed surface: STL, OBJ or PLY
+    /// Surface: STL, OBJ, PLY, OFF, VTK .vtp or Medit .mesh
     pub surface: PathBuf,
+    /// Mend small faults: doubled corners and triangles, T-junctions, reversed triangles, and holes of up to
+    /// a tenth of the surface's diagonal. Every change is listed
+    #[arg(long)]
+    pub repair: bool,
+    /// Wrap a surface that is open, crosses itself, branches or is partly reversed: a closed surface around
+    /// everything that it surrounds, of cells with edges of this length
+    #[arg(long, value_name = "LENGTH", value_parser = length, conflicts_with = "repair")]
+    pub wrap: Option<f64>,
+    /// List the changes of --repair and --wrap without their places
+    #[arg(short, long)]
+    pub quiet: bool,
     /// Mean edge length at the surface, such as "3 mm"
     #[arg(long, value_name = "LENGTH", value_parser = length, required_unless_present = "nodes")]
     pub size: Option<f64>,

@@ -7,6 +7,7 @@ use records::{RecordError, write_text};
 
 use crate::cli::args::FieldsArgs;
 use crate::cli::errors::unreported;
+use crate::cli::like::Like;
 use crate::cli::scenes::{affordable_methods, open};
 use crate::measure::Repeats;
 use crate::outcome::States;
@@ -31,6 +32,13 @@ pub(super) fn run(args: &FieldsArgs) -> u8 {
             return failure.exit_code();
         }
     };
+    let like = match args.like.as_deref().map(Like::read).transpose() {
+        Ok(like) => like,
+        Err(bad) => {
+            eprintln!("tissuebench: {bad}");
+            return 2;
+        }
+    };
     let mut code = 0;
     for index in chosen {
         let method = &scene.methods[index];
@@ -47,11 +55,22 @@ pub(super) fn run(args: &FieldsArgs) -> u8 {
             eprintln!("{}: {failure} (method '{}')", outcome.status, method.id);
             code = code.max(failure.exit_code());
         }
-        let Some(states) = outcome.states.filter(|states| !states.is_empty()) else {
+        let Some(mut states) = outcome.states.filter(|states| !states.is_empty()) else {
             eprintln!("no displacement to write (method '{}')", method.id);
             continue;
         };
-        match write(&states, &method.id, &args.out) {
+        let tables = match like.as_ref().map(|like| like.number(&mut states)).transpose() {
+            Ok(tables) => tables.unwrap_or_default(),
+            Err(bad) => {
+                eprintln!("tissuebench: {bad} (method '{}')", method.id);
+                code = code.max(2);
+                continue;
+            }
+        };
+        let tables = tables
+            .into_iter()
+            .map(|(name, text)| write_text(&args.out.join(format!("{}-{name}.csv", method.id)), text));
+        match write(&states, &method.id, &args.out).and_then(|()| tables.collect()) {
             Ok(()) => {
                 let series = args.out.join(format!("{}.pvd", method.id));
                 println!("{}: {} states", series.display(), states.len());

@@ -19,13 +19,13 @@ impl From<ModelUnit> for Units {
 
 /// Writes the scene, prints what it leaves out, and returns the exit code.
 pub(super) fn import(args: &ImportArgs) -> u8 {
-    let ImportArgs { model, out, unit } = args;
+    let ImportArgs { model, out, unit, step } = args;
     let path = match out {
         Some(out) => path_from(out, model),
         None => model.file_name().unwrap_or_default().into(),
     };
     let Imported { scene, left_out } =
-        match cases::import::import(model, &path.to_string_lossy(), (*unit).into()) {
+        match cases::import::import(model, &path.to_string_lossy(), (*unit).into(), *step) {
             Ok(imported) => imported,
             Err(findings) => return refuse(&findings),
         };
@@ -54,7 +54,7 @@ pub(super) fn import(args: &ImportArgs) -> u8 {
 pub(super) fn open(model: &Path, set: &[Override]) -> Result<Scene, u8> {
     let name = model.file_name().unwrap_or_default().to_string_lossy();
     let Imported { scene, left_out } =
-        cases::import::import(model, &name, Units::Metres).map_err(|findings| refuse(&findings))?;
+        cases::import::import(model, &name, Units::Metres, None).map_err(|findings| refuse(&findings))?;
     left_out.iter().for_each(|finding| eprintln!("{finding} (left out)"));
     scene::parse_with(&scene, &model.with_extension("toml").display().to_string(), set)
         .map_err(|errors: Vec<SceneError>| super::errors::refuse(&errors))

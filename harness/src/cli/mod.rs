@@ -17,6 +17,7 @@ mod import;
 mod init;
 mod interrupt;
 mod json;
+mod like;
 mod list;
 mod merge;
 mod mesh;

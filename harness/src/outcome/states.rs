@@ -13,6 +13,10 @@ pub struct States {
     pub(crate) states: Vec<State>,
     /// Tools, if the procedure has load steps.
     pub(crate) tools: Vec<ToolSkin>,
+    /// Force of the supports on each node at the last state, N; empty if unknown, and for a cloud.
+    pub(crate) reaction: Vec<Vector3>,
+    /// Numbers of the mesh points and of the cells in a file, written beside their values; empty unless given.
+    pub(crate) numbers: [Vec<u64>; 2],
     /// Number of recorded states that were left out.
     pub(crate) left_out: usize,
 }
@@ -127,9 +131,19 @@ impl States {
     }
 
     fn body(&self, state: &State) -> Vec<u8> {
-        let displacement = vectors("displacement", &state.displacement);
-        let in_cells = state.tensors.as_ref().map_or(Vec::new(), Tensors::values);
-        solution_vtu(&self.mesh, state.time, &[displacement], &in_cells)
+        let mut at_points = vec![vectors("displacement", &state.displacement)];
+        let mut in_cells = state.tensors.as_ref().map_or(Vec::new(), Tensors::values);
+        let [nodes, elements] = &self.numbers;
+        let number = |name, of: &[u64]| Values {
+            name,
+            components: 1,
+            numbers: of.iter().map(|n| *n as f64).collect(),
+        };
+        if !nodes.is_empty() {
+            at_points.push(number("node", nodes));
+            in_cells.push(number("element", elements));
+        }
+        solution_vtu(&self.mesh, state.time, &at_points, &in_cells)
     }
 
     fn tools_at(&self, state: &State) -> Vec<u8> {
@@ -146,15 +160,19 @@ impl States {
 }
 
 impl Tensors {
+    /// Components xx, yy, zz, xy, yz and zx of each cell's stress, Pa.
+    pub(crate) fn components(&self) -> impl Iterator<Item = [f64; 6]> {
+        self.stress.iter().map(|s| [s[(0, 0)], s[(1, 1)], s[(2, 2)], s[(0, 1)], s[(1, 2)], s[(0, 2)]])
+    }
+
     fn values(&self) -> Vec<Values> {
         let each = |name, value: &dyn Fn(&Matrix3) -> f64| Values {
             name,
             components: 1,
             numbers: self.stress.iter().map(value).collect(),
         };
-        let six = |s: &Matrix3| [s[(0, 0)], s[(1, 1)], s[(2, 2)], s[(0, 1)], s[(1, 2)], s[(0, 2)]];
         vec![
-            Values { name: "stress", components: 6, numbers: self.stress.iter().flat_map(six).collect() },
+            Values { name: "stress", components: 6, numbers: self.components().flatten().collect() },
             each("pressure", &|s| -s.trace() / 3.0),
             each("von_mises", &von_mises),
             Values { name: "det_f", components: 1, numbers: self.det_f.clone() },

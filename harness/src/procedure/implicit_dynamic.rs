@@ -25,6 +25,7 @@ fn params(asked: &Implicit) -> TimeParams {
         smallest: if asked.accuracy.is_some() { 1e-6 } else { SMALLEST },
         accuracy: asked.accuracy,
         rho_inf: asked.spectral_radius,
+        alpha: asked.alpha,
         newton: newton_params(&asked.newton),
         augmentations: asked.newton.augmentations,
     }
@@ -122,6 +123,7 @@ fn motion(problem: &Problem, asked: &Implicit, counters: &mut Counters) -> Resul
         dofs: problem.free_dofs() + path.pressure.len(),
         u: path.motion.u,
         pressure: path.pressure,
+        reaction: path.motion.reaction,
         history: Some(StepHistory { steps, fields, last, metrics, failure: path.failure.map(Failure::from) }),
         ..Solution::default()
     })

@@ -34,9 +34,10 @@ pub(super) fn solve(
     meters.counters.assemblies += 1;
     let solved = solved(problem, assembled, asked, meters)?;
     let nodes = method.nodes();
+    let reaction = solved.factored.reactions(&solved.solution, 1.0);
     let supports = prepared.support_forces(&ConditionForces {
         at: &|i| nodes[i],
-        nodes: &solved.factored.reactions(&solved.solution, 1.0),
+        nodes: &reaction,
         rows: &solved.factored.forces_of_rows(nodes, &solved.solution),
         weak: &solved.factored.forces_of_weak(nodes, &solved.solution, 1.0),
         time: None,
@@ -52,6 +53,7 @@ pub(super) fn solve(
     }
     Ok(Solution {
         u,
+        reaction,
         supports,
         dofs: info.dofs,
         residual: Some(info.residual),

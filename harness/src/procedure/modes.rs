@@ -52,7 +52,7 @@ fn mass(problem: &Problem) -> Result<Mass, Failure> {
         lumped_mass(rows, &density, &volume.region, Lumping::for_table(rows))
     };
     let Some(kind) = setup.mass else {
-        let help = "give mass = \"consistent\", \"lumped\" or \"transformed\"";
+        let help = "give mass = \"consistent\", \"at-points\", \"lumped\" or \"transformed\"";
         return Err(Failure::input(Key::Method("mass"), "is missing, but vibrations need a mass", help));
     };
     Ok(match (kind, method.interpolates) {
@@ -61,6 +61,7 @@ fn mass(problem: &Problem) -> Result<Mass, Failure> {
             let (fine, region) = prepared.fine_volume()?;
             Mass::consistent(&fine, &density, &region)?
         }
+        (scene::Mass::AtPoints, _) => Mass::consistent(&volume.rows, &density, &volume.region)?,
         (scene::Mass::Transformed, false) => {
             let (at_nodes, _) = prepared.source.at_points(method.nodes())?;
             Mass::transformed(at_nodes.rows(), &lumped()?)?

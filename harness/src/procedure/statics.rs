@@ -83,7 +83,7 @@ fn path(problem: &Problem, asked: &Static, counters: &mut Counters) -> Result<(S
     let Problem { method, setup, prepared, plan, watch, .. } = *problem;
     let contact = prepared.contact();
     let (mut steps, mut fields) = (Vec::new(), Vec::new());
-    let (mut supports, mut points) = (Vec::new(), Vec::new());
+    let (mut supports, mut points, mut reaction) = (Vec::new(), Vec::new(), Vec::new());
     let start = Instant::now();
     let mut limit = Limit::default();
     let mut before = LoadStep::at_start(setup.tools.len());
@@ -98,6 +98,8 @@ fn path(problem: &Problem, asked: &Static, counters: &mut Counters) -> Result<(S
         let systems = tangents.systems();
         solve_static(&StaticProblem { systems, ..problem.clone() }, &params, |step, rest| {
             supports = support_forces(method, prepared, &rest, step.time);
+            reaction.clear();
+            reaction.extend_from_slice(rest.reaction);
             points = prepared.foundation_forces(rest.u, &[]);
             let (supports, points) = (&supports, &points);
             let reported = |step| with_forces(reported(step, setup), supports, points);
@@ -126,6 +128,8 @@ fn path(problem: &Problem, asked: &Static, counters: &mut Counters) -> Result<(S
     if path.failure.is_some() && relaxes {
         let closures = last.tools.iter().map(|tool| tool.closure).collect();
         let from = Start { load: last.load, u: u.clone(), closures, history: path.history };
+        // The reactions of the last equilibrium are not those of the end.
+        reaction.clear();
         let done = relaxation::continue_from((method.nodes(), setup), asked.steps, prepared, from, counters)?;
         steps.extend(done.steps.iter().cloned());
         fields.extend(done.fields.iter().cloned());
@@ -149,6 +153,7 @@ fn path(problem: &Problem, asked: &Static, counters: &mut Counters) -> Result<(S
         dofs: problem.free_dofs() + path.pressure.len(),
         u,
         pressure: path.pressure,
+        reaction,
         residual: Some(residual),
         tangents: path.solver.map(|solver| solver.name()),
         history: Some(StepHistory { steps, fields, last: end, metrics, failure }),

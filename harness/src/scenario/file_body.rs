@@ -9,8 +9,9 @@ use std::time::SystemTime;
 use cases::scene::MeshFile;
 use geometry::generate::to_tets;
 use geometry::stuffing::{Stuffing, stuff, stuff_quadratic, stuff_quadratic_with_nodes, stuff_with_nodes};
-use geometry::surface::BoundaryFaces;
+use geometry::surface::{BoundaryFaces, Change, Gaps, SurfaceProblem, Treated};
 use geometry::{Facet, Mesh, Point3, Surface, Vector3, locate};
+use mesh_files::SurfaceError;
 
 use super::mesh_file;
 use crate::error::{Failure, Key};
@@ -18,6 +19,10 @@ use crate::error::{Failure, Key};
 /// The surface of a file, and the mesh it bounds if the file has one.
 pub struct FileBody {
     pub surface: Arc<Surface>,
+    /// Changes of the file's triangles by a repair or a wrap.
+    pub changes: Vec<Change>,
+    /// Distances of a wrap from the triangles of the file.
+    pub gaps: Option<Gaps>,
     mesh: Option<(Mesh, Vec<Facet>)>,
     /// Meshes made inside the surface, by size.
     made: Mutex<HashMap<Fill, Mesh>>,
@@ -32,8 +37,9 @@ pub enum Fill {
     Spacing { bits: u64, quadratic: bool },
 }
 
-/// Identity of a file when it was read: path, unit, joining, length and time of modification.
-type Known = (PathBuf, u64, bool, u64, Option<SystemTime>);
+/// Identity of a body when it was read: path, unit, joining and treatment of the file, its length and time of
+/// modification.
+type Known = (PathBuf, u64, (bool, String), u64, Option<SystemTime>);
 
 /// Files already read. Every method requests the body, and searching a surface for intersections takes as
 /// long as reading it.
@@ -46,15 +52,14 @@ static READ: LazyLock<Mutex<HashMap<Known, Arc<FileBody>>>> = LazyLock::new(Mute
 pub fn load(file: &MeshFile) -> Result<Arc<FileBody>, Failure> {
     let about = std::fs::metadata(&file.path).ok();
     let (length, modified) = about.map_or((0, None), |about| (about.len(), about.modified().ok()));
-    let known = (file.path.clone(), file.unit.to_bits(), file.join, length, modified);
+    let how = (file.join, format!("{:?}", file.treatment));
+    let known = (file.path.clone(), file.unit.to_bits(), how, length, modified);
     if let Some(body) = READ.lock().unwrap_or_else(PoisonError::into_inner).get(&known) {
         return Ok(body.clone());
     }
     let key = || Key::Scene("body.path".into());
-    let (surface, mesh) = if mesh_files::is_surface(&file.path) {
-        let surface = mesh_files::read_surface(&file.path, file.unit)
-            .map_err(|bad| Failure::input(key(), format!("can't be read: {bad}"), mesh_files::SURFACES))?;
-        (surface, None)
+    let (treated, mesh) = if mesh_files::is_surface(&file.path) {
+        (mesh_files::read_treated(&file.path, file.unit, file.treatment).map_err(unread)?, None)
     } else {
         let mesh = mesh_file::read(file, key())?;
         let boundary = BoundaryFaces::new(&mesh).map_err(|bad| {
@@ -67,11 +72,22 @@ pub fn load(file: &MeshFile) -> Result<Arc<FileBody>, Failure> {
                 "use the nodes and cells of the file in methods: size = { file = \"...\" }",
             )
         })?;
-        (boundary.surface, Some((mesh, boundary.faces)))
+        let surface = boundary.surface;
+        (Treated { surface, changes: Vec::new(), gaps: None }, Some((mesh, boundary.faces)))
     };
-    let body = Arc::new(FileBody { surface: Arc::new(surface), mesh, made: Mutex::default() });
+    let Treated { surface, changes, gaps } = treated;
+    let surface = Arc::new(surface);
+    let body = Arc::new(FileBody { surface, changes, gaps, mesh, made: Mutex::default() });
     READ.lock().unwrap_or_else(PoisonError::into_inner).insert(known, body.clone());
     Ok(body)
+}
+
+fn unread(bad: SurfaceError) -> Failure {
+    let of_wrap =
+        matches!(&bad, SurfaceError::Surface { problem, .. } if matches!(**problem, SurfaceProblem::Wrap(_)));
+    let key = if of_wrap { "body.wrap" } else { "body.path" };
+    let help = if matches!(bad, SurfaceError::File(_)) { mesh_files::SURFACES } else { "" };
+    Failure::input(Key::Scene(key.into()), format!("can't be read: {bad}"), help)
 }
 
 impl FileBody {

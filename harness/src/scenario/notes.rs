@@ -4,6 +4,7 @@ use std::path::Path;
 
 use cases::scene::{self, Body, Scene, Size};
 use catalogue::warning;
+use geometry::surface::Treatment;
 use geometry::{Mesh, pieces, quality};
 
 use super::file_body;
@@ -28,6 +29,7 @@ pub(crate) fn warnings(scene: &Scene, method: &scene::Method, mesh: &Mesh, nodes
     found.extend(method.nodes_of_size().and_then(|asked| other_size(asked, nodes)));
     found.extend(apart(mesh));
     found.extend(other_volume(&scene.body, method, mesh));
+    found.extend(treated(&scene.body));
     let of_body = if let Body::File(file) = &scene.body { Some(file) } else { None };
     let of_size = if let Some(Size::File(file)) = method.size() { Some(file) } else { None };
     found.extend(of_size.or(of_body).and_then(|file| left_out(&file.path)));
@@ -86,6 +88,24 @@ fn other_volume(body: &Body, method: &scene::Method, mesh: &Mesh) -> Option<Warn
         );
         Warning::new(&warning::VOLUME_DIFFERS, ratio, "method.size", message)
     })
+}
+
+/// Warns of a repaired or wrapped surface, with the changes.
+fn treated(body: &Body) -> Option<Warning> {
+    let Body::File(file) = body else { return None };
+    let (word, key) = match file.treatment {
+        Treatment::AsGiven => return None,
+        Treatment::Repair => ("repaired", "body.repair"),
+        Treatment::Wrap { .. } => ("wrapped", "body.wrap"),
+    };
+    let body = file_body::load(file).ok()?;
+    let mut parts: Vec<String> = body.changes.iter().map(ToString::to_string).collect();
+    let farthest = body.gaps.map_or(0.0, |gaps| gaps.from_wrap.max(gaps.from_triangles));
+    if body.gaps.is_some() {
+        parts.push(format!("the wrap is up to {:.3} mm from the triangles", 1e3 * farthest));
+    }
+    let message = format!("the surface of {} is {word}: {}", file.path.display(), parts.join("; "));
+    (!parts.is_empty()).then(|| Warning::new(&warning::SURFACE_TREATED, farthest, key, message))
 }
 
 /// Warns of a node count other than requested. Meshes of closed forms come in steps of size, and those inside

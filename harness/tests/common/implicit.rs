@@ -4,7 +4,7 @@
 use std::fmt::Write as _;
 
 pub type Vector = [f64; 3];
-type Triangle = [Vector; 3];
+pub type Triangle = [Vector; 3];
 
 /// Smallest distance of a triangle's corner from the ends of its grid edge, relative to the edge. It prevents
 /// needles.
@@ -48,9 +48,14 @@ pub fn union(parts: impl IntoIterator<Item = f64>, fillet: f64) -> f64 {
     parts.into_iter().reduce(join).unwrap()
 }
 
+/// Zero surface of a function in a box, as STL.
+pub fn surface(inside: &dyn Fn(Vector) -> f64, bounds: [Vector; 2], cells: usize) -> String {
+    stl("body", &triangles(inside, bounds, cells))
+}
+
 /// Zero surface of a function in a box, by marching tetrahedra on a grid with this many cells along the
 /// longest side.
-pub fn surface(inside: &dyn Fn(Vector) -> f64, [low, high]: [Vector; 2], cells: usize) -> String {
+pub fn triangles(inside: &dyn Fn(Vector) -> f64, [low, high]: [Vector; 2], cells: usize) -> Vec<Triangle> {
     let size = sub(high, low);
     let step = size.into_iter().fold(0.0, f64::max) / cells as f64;
     let count = size.map(|side| (side / step).ceil() as usize + 1);
@@ -99,7 +104,7 @@ pub fn surface(inside: &dyn Fn(Vector) -> f64, [low, high]: [Vector; 2], cells: 
             }
         }
     }
-    stl("body", &triangles)
+    triangles
 }
 
 /// A body that turns about z: radius and height of its outline, from the bottom up, with flat ends or tips.

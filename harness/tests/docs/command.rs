@@ -138,7 +138,7 @@ fn copy(from: &Path, to: &Path) {
             copy(&path, &target);
         } else if path
             .extension()
-            .is_some_and(|e| ["toml", "msh", "json", "csv", "feb"].iter().any(|k| e == *k))
+            .is_some_and(|e| ["toml", "msh", "json", "csv", "feb", "inp"].iter().any(|k| e == *k))
         {
             std::fs::copy(&path, &target).expect("copied");
         }

@@ -118,7 +118,7 @@ pub(super) fn spectra(runs: &[Run]) -> Vec<Figure> {
     for case in by_case(runs) {
         let all = series(case);
         let names = labels(all.iter().map(|s| s.is()));
-        for mass in ["consistent", "lumped", "transformed"] {
+        for mass in ["consistent", "at-points", "lumped", "transformed"] {
             let of_mass = all.iter().zip(&names).filter(|(s, _)| s.is().mass.as_deref() == Some(mass));
             let lines = of_mass.map(|(s, name)| {
                 let name = name.replacen(&format!("-{mass}"), "", 1);

@@ -16,7 +16,7 @@ pub(super) fn vibrations(runs: &[Run]) -> Vec<String> {
         let finest: Vec<&Run> = all.iter().map(|s| s.finest()).collect();
         for (family, called) in [(Family::Fem, "elements"), (Family::Efg, "clouds")] {
             let mut parts = Vec::new();
-            for mass in ["consistent", "lumped", "transformed"] {
+            for mass in ["consistent", "at-points", "lumped", "transformed"] {
                 let mut errors: Vec<f64> = finest
                     .iter()
                     .filter(|r| r.is.family == family && r.is.mass.as_deref() == Some(mass))

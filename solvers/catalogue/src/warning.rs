@@ -91,6 +91,9 @@ warnings! {
         "the volume of a mesh made inside a surface differs by more than 5 % from the enclosed volume, \
          because parts thinner than the cells are left out; value: the ratio of mesh volume to enclosed \
          volume";
+    SURFACE_TREATED: "surface-treated", Length,
+        "the surface of the body's file has faults that are repaired, or it is wrapped; value: the largest distance \
+         between the wrap and the triangles of the file, 0 of a repair";
     LEFT_OUT: "left-out", None,
         "the mesh file has parts that are not read, such as the model of a deck or arrays that may number \
          regions; value: the number of these parts that join or support parts of the body";

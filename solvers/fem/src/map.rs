@@ -1,5 +1,6 @@
 //! Isoparametric map at one point: `x(xi) = sum_a N_a x_a`, `J_ik = dx_i / dxi_k`, `grad N = J^-T dN/dxi`.
 
+use geometry::element::ReferenceCell;
 use geometry::{Mesh, Point3, Vector3};
 
 /// Node positions of a cell relative to its first node. Sums over shape gradients then cancel to the last
@@ -44,6 +45,14 @@ impl<const N: usize> Nodes<N> {
             }
         }
         t
+    }
+
+    /// Returns whether a mid-edge node is not in the middle of its edge, beyond rounding.
+    pub(crate) fn is_curved(&self, cell: &ReferenceCell) -> bool {
+        self.dx[cell.corners..].iter().zip(cell.edges).any(|(middle, &[a, b])| {
+            let (a, b) = (&self.dx[a], &self.dx[b]);
+            (2.0 * middle - a - b).norm() > 1e-10 * (a - b).norm()
+        })
     }
 }
 

@@ -194,6 +194,20 @@ fn meshes_enclose_the_volume_of_their_surfaces() {
     }
 }
 
+/// Nodes on the faces of a block stay there: a plate that stands at a face touches no node before it moves.
+#[test]
+fn no_node_leaves_a_block() {
+    let surface = surface(common::block([80.0, 40.0, 40.0]));
+    for nodes in [250, 1000, 6000] {
+        let linear = stuff_with_nodes(&surface, nodes, 0).unwrap().0.mesh;
+        let quadratic = stuff_quadratic_with_nodes(&surface, nodes).unwrap().mesh;
+        for mesh in [linear, quadratic] {
+            let out = mesh.points().iter().map(|p| surface.signed_distance(p)).fold(0.0, f64::max);
+            assert!(out < 1e-9 * 80.0, "{nodes}: {out}");
+        }
+    }
+}
+
 fn angles_and_volume(mesh: &Mesh) -> f64 {
     angles(mesh);
     quality::check(mesh).unwrap().volume

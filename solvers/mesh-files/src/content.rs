@@ -16,7 +16,7 @@ use crate::middles::turn_if_inverted;
 use crate::names::{Names, without_empty};
 use crate::numbers::Numbers;
 use crate::overlap::Cells;
-use crate::rows::Row;
+use crate::rows::{Row, Rows};
 
 /// Content of a file read so far. Nodes and elements are identified by the numbers of the file.
 #[derive(Clone, Default)]
@@ -366,7 +366,7 @@ impl Content {
         unit: f64,
         file: &Path,
         unused: Unused,
-    ) -> Result<(Mesh, Vec<Row>), FileError> {
+    ) -> Result<(Mesh, Rows), FileError> {
         let at = |(place, problem)| FileError::At { file: file.to_path_buf(), place, problem };
         self.put_middles_in_order();
         self.join_repeated();
@@ -374,16 +374,16 @@ impl Content {
         self.attach().map_err(at)?;
         let wrong = |source| FileError::Mesh { file: file.to_path_buf(), source };
         let mut used = vec![u32::MAX; self.points.len()];
-        for &node in &self.nodes {
-            used[node as usize] = 0;
-        }
+        self.nodes.iter().for_each(|&node| used[node as usize] = 0);
         if unused == Unused::Refused && !self.leaves_unused_out {
             self.refuse_unused(&used).map_err(at)?;
         }
-        let mut points = Vec::new();
-        for (slot, p) in used.iter_mut().zip(&self.points).filter(|(slot, _)| **slot == 0) {
+        let (mut points, mut rows) = (Vec::new(), Vec::new());
+        let all = used.iter_mut().zip(&self.points).zip(&self.node_rows);
+        for ((slot, p), (row, _)) in all.filter(|((slot, _), _)| **slot == 0) {
             *slot = points.len() as u32;
             points.push(Point3::from(p.coords * unit));
+            rows.push(*row);
         }
         let nodes = self.nodes.iter().map(|&n| used[n as usize]).collect();
         let further = self.further();
@@ -423,7 +423,7 @@ impl Content {
             facets.dedup();
             mesh = mesh.with_group(&name, facets).map_err(wrong)?;
         }
-        Ok((mesh, self.rows))
+        Ok((mesh, Rows { nodes: rows, cells: self.rows }))
     }
 
     /// Rejects unused nodes, which indicate that elements of the file have been lost.

@@ -40,13 +40,19 @@ pub enum SurfaceError {
     #[error(transparent)]
     File(#[from] FileError),
     /// A file whose triangles do not form a closed surface.
-    #[error("{file}: {problem}", file = file.display())]
+    #[error("{file}: {problem}{}", advice(problem, *repaired), file = file.display())]
     Surface {
         /// The file.
         file: PathBuf,
+        /// Whether the faults are those that a repair has left.
+        repaired: bool,
         /// Problem of the surface.
         problem: Box<SurfaceProblem>,
     },
+}
+
+fn advice(problem: &SurfaceProblem, repaired: bool) -> String {
+    problem.advice(repaired).map_or(String::new(), |advice| format!("; {advice}"))
 }
 
 /// Errors of reading or writing a mesh file.
@@ -128,7 +134,7 @@ pub enum Problem {
     #[error(
         "no supported mesh format begins with '{found}'; supported: Gmsh .msh ($MeshFormat, 2.2, 4.0 or 4.1; \
          $NOD), Abaqus .inp (*HEADING, *NODE), FEBio .feb (<febio_spec), VTK .vtu (<VTKFile) and .vtk (# vtk DataFile), and the \
-         surfaces STL, OBJ, PLY"
+         surfaces STL, OBJ, PLY, OFF, .vtp (VTK) and .mesh (Medit)"
     )]
     Format {
         /// The beginning of the file.

@@ -9,7 +9,7 @@ use crate::content::{Content, Unused};
 use crate::error::{FileError, Parsed, Place, Problem};
 use crate::left_out::LeftOut;
 use crate::open::{bytes, check_unit, suffix};
-use crate::rows::Row;
+use crate::rows::{Row, Rows};
 use crate::text::{unknown, unmarked};
 use crate::{abaqus, febio, gmsh, surface, vtk, vtu};
 
@@ -39,7 +39,15 @@ pub fn included(file: &Path) -> Vec<PathBuf> {
 /// A file in none of the formats, with a violation of its format, with an unused node or without a valid
 /// mesh. The error has the line or byte and the number of the node or element in the file.
 pub fn read(file: &Path, unit: f64) -> Result<Mesh, FileError> {
-    Ok(read_bytes(&bytes(file)?, file, unit)?.0)
+    Ok(read_rows(&bytes(file)?, file, unit)?.0)
+}
+
+/// Reads a mesh as [`read`] does, with the numbers and places of its nodes and cells in the file.
+///
+/// # Errors
+/// As for [`read`].
+pub fn read_numbered(file: &Path, unit: f64) -> Result<(Mesh, Rows), FileError> {
+    read_rows(&bytes(file)?, file, unit)
 }
 
 /// Reads a mesh as [`read`] does, from memory. Also returns the place and element number of every cell in the
@@ -48,6 +56,10 @@ pub fn read(file: &Path, unit: f64) -> Result<Mesh, FileError> {
 /// # Errors
 /// As for [`read`].
 pub fn read_bytes(bytes: &[u8], file: &Path, unit: f64) -> Result<(Mesh, Vec<Row>), FileError> {
+    read_rows(bytes, file, unit).map(|(mesh, rows)| (mesh, rows.cells))
+}
+
+fn read_rows(bytes: &[u8], file: &Path, unit: f64) -> Result<(Mesh, Rows), FileError> {
     check_unit(file, unit)?;
     let at = |(place, problem)| FileError::At { file: file.to_path_buf(), place, problem };
     let content = parse(bytes, file, None).map_err(at)?;
@@ -104,6 +116,7 @@ pub(crate) fn parse(bytes: &[u8], file: &Path, wanted: Option<&str>) -> Parsed<C
         [b'$', next, ..] if next.is_ascii_alphabetic() => gmsh::parse(bytes, wanted),
         [b'*', ..] => abaqus::parse(bytes, file),
         [b'<', ..] if febio::is_model(bytes) => febio::parse(bytes),
+        [b'<', ..] if vtu::is_surface(bytes) => Err((Place::Line(1), Problem::Surface)),
         [b'<', ..] => vtu::parse(bytes, wanted),
         rest if rest.starts_with(b"# vtk") => vtk::parse(bytes, wanted),
         _ if surface::holds_surface(whole, file) => Err((Place::Line(1), Problem::Surface)),

@@ -1,15 +1,24 @@
-//! Rows: the places of cells in the file that a mesh was read from.
+//! Rows: the places of nodes and cells in the file that a mesh was read from.
 
 use std::fmt;
 
 use crate::error::Place;
 
-/// Place and number of a cell in a file.
+/// Places of the nodes and cells of a mesh, in its order.
+#[derive(Clone, Debug)]
+pub struct Rows {
+    /// Of each node.
+    pub nodes: Vec<Row>,
+    /// Of each cell.
+    pub cells: Vec<Row>,
+}
+
+/// Place and number of a node or a cell in a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Row {
     /// Line, byte or cell.
     pub place: Place,
-    /// Element number in the file.
+    /// Number of the node or element in the file.
     pub tag: u64,
 }
 

@@ -54,7 +54,7 @@ pub fn read_vectors_bytes(
     })?;
     let nodes = content.used_nodes();
     let (mesh, rows) = content.into_mesh(unit, file, Unused::Refused)?;
-    let vectors = array.vectors(&rows, nodes).map_err(at)?;
+    let vectors = array.vectors(&rows.cells, nodes).map_err(at)?;
     Ok((mesh, vectors))
 }
 

@@ -121,6 +121,11 @@ fn elements_with_incompatible_modes_may_list_nodes_inside() {
     };
     assert!(refused(&deck("C3D8", ",9,10"), "a.inp").contains("has 11 numbers on its line instead of 9"));
     assert!(refused(&deck("C3D8I", ""), "a.inp").contains("node 9 (and 2 others) belongs to no element"));
+    // CalculiX takes the first eight of a C3D8, and passes over nodes without elements.
+    for nodes in ["", ",9,10", ",9,10,11"] {
+        let mesh = mesh(deck("C3D8", nodes) + "*STEP\n*STATIC\n*END STEP\n", "a.inp");
+        assert_eq!((mesh.cell_count(), mesh.points().len()), (1, 8), "{nodes}");
+    }
 }
 
 /// A quarter of a tube with the radii 1 and 2, with straight edges between the four corners of each end.

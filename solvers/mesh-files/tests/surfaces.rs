@@ -182,11 +182,74 @@ fn every_broken_binary_is_refused_with_its_place() {
         ("a.stl", b"solid nothing\nendsolid\n".to_vec(), "0 triangles enclose nothing"),
         ("a.ply", cut(ply_binary(false)), "the file ends before a value of an element"),
         ("a.ply", longer, "expected the end of the file, found '3 bytes more'"),
-        ("a.off", b"OFF\n4 4 6\n".to_vec(), "no supported mesh format begins with 'OFF'"),
+        ("a.off", b"OFF\n4 4 6\n".to_vec(), "a.off:3: the file ends before all corners"),
+        ("a.obj", b"OFFSET\n4 4 6\n".to_vec(), "no supported mesh format begins with 'OFFSET'"),
     ] {
         let bad = read(name, &bytes).err().unwrap_or_else(|| panic!("read, but {says}"));
         assert!(bad.contains(says), "{bad}\n  has no: {says}");
     }
+}
+
+const OFF: &str =
+    "OFF 4 4 6\n# corners\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3 255 0 0\n3 1 2 3\n3 0 3 2\n";
+const MEDIT: &str = "MeshVersionFormatted 2\nDimension 3\nVertices\n4\n0 0 0 0\n1 0 0 0\n0 1 0 0\n0 0 1 0\n\
+    Triangles 4\n1 3 2 0\n1 2 4 5\n2 3 4 5\n1 4 3 6\nEnd\n";
+const VTP: &str = r#"<VTKFile type="PolyData"><PolyData>
+<Piece NumberOfPoints="4" NumberOfPolys="4">
+<Points><DataArray type="Float32" NumberOfComponents="3">0 0 0 1 0 0 0 1 0 0 0 1</DataArray></Points>
+<Polys><DataArray type="Int32" Name="connectivity">0 2 1 0 1 3 1 2 3 0 3 2</DataArray>
+<DataArray type="Int32" Name="offsets">3 6 9 12</DataArray></Polys></Piece></PolyData></VTKFile>"#;
+
+#[test]
+fn off_medit_and_vtp_are_read_and_refused_with_their_place() {
+    for (name, text) in [("a.off", OFF), ("a.mesh", MEDIT), ("a.vtp", VTP)] {
+        let bad = read(name, text.as_bytes()).err();
+        assert_eq!(bad, None, "{name}");
+    }
+    let surface = files::read_surface_bytes(MEDIT.as_bytes(), Path::new("a.mesh"), 1.0).unwrap();
+    assert_eq!(surface.groups().names(), ["surface-5", "surface-6"]);
+    assert_refused(
+        "a.off",
+        OFF,
+        [
+            ("0 1 0\n", "0 nan 0\n", "a.off:5: node 2 has a coordinate that is not finite"),
+            ("3 0 1 3", "3 0 1 4", "a.off:8: face 2 names corner 4, which the file does not have"),
+            ("3 1 2 3", "2 1 2", "a.off:9: expected a face of three corners or more, found '2 1 2'"),
+            ("4 4 6", "4 5 6", "the file ends before all faces"),
+            ("4 4 6", "4 x", "a.off:1: expected the number of faces, found 'x'"),
+        ],
+    );
+    assert_refused(
+        "a.mesh",
+        MEDIT,
+        [
+            ("Dimension 3", "Dimension 2", "a.mesh:2: expected dimension 3, found '2'"),
+            ("0 0 1 0", "0 0 inf 0", "a.mesh:8: node 4 has a coordinate that is not finite"),
+            ("1 2 4 5", "1 2 0 5", "a.mesh:11: face 2 names corner 0, which the file does not have"),
+            (
+                "Triangles 4",
+                "Tetrahedra 4",
+                "a.mesh:9: Tetrahedra of a .mesh file is not supported; write the volume",
+            ),
+            ("Triangles 4", "Shells 4", "a.mesh:9: expected Vertices, Triangles or another keyword"),
+            ("Triangles 4", "Triangles 5", "a.mesh:14: expected the number of a corner, found 'End'"),
+        ],
+    );
+    assert_refused(
+        "a.vtp",
+        VTP,
+        [
+            ("0 1 3 ", "0 1 4 ", "face 2 names corner 4, which the file does not have"),
+            ("3 6 9 12", "3 2 9 12", "a.vtp:5: expected ascending offsets, found 'others'"),
+            ("NumberOfPoints=\"4\"", "NumberOfPoints=\"5\"", "the array has length 12 instead of 15"),
+            (
+                "NumberOfPoints=\"4\"",
+                "NumberOfStrips=\"1\" NumberOfPoints=\"4\"",
+                "a strip of triangles is not supported",
+            ),
+            ("offsets\"", "ends\"", "the file has no offsets section"),
+        ],
+    );
 }
 
 #[test]

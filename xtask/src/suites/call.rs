@@ -1,4 +1,4 @@
-//! Calls of `tissuebench run` with a time limit.
+//! Calls of `tissuebench` with a time limit.
 
 use std::fs::File;
 use std::path::Path;
@@ -7,7 +7,10 @@ use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result};
 
-/// A finished call of `tissuebench run`.
+/// Longest time of an import, s.
+const IMPORT_LIMIT: u64 = 60;
+
+/// A finished call.
 pub(super) struct Run {
     /// Exit code; `None` if the run took too long.
     pub code: Option<i32>,
@@ -15,13 +18,27 @@ pub(super) struct Run {
     pub stderr: String,
 }
 
-/// Runs a model once, for at most `limit` seconds.
+/// Runs a model or a scene once, for at most `limit` seconds.
 pub(super) fn call(root: &Path, model: &Path, limit: u64) -> Result<Run> {
+    program(
+        root,
+        &[&["run", "--once", "--quiet", "--format", "json"].map(Path::new)[..], &[model]].concat(),
+        limit,
+    )
+}
+
+/// Imports a step of a deck as a scene.
+pub(super) fn import(root: &Path, deck: &Path, step: usize, scene: &Path) -> Result<Run> {
+    let step = step.to_string();
+    let words = ["import", "--step", &step, "--out"].map(Path::new);
+    program(root, &[&words[..], &[scene, deck]].concat(), IMPORT_LIMIT)
+}
+
+fn program(root: &Path, arguments: &[&Path], limit: u64) -> Result<Run> {
     let folder = root.join("target");
     let [out, err] = ["suites.stdout", "suites.stderr"].map(|name| folder.join(name));
     let mut child = Command::new(root.join("target/release/tissuebench"))
-        .args(["run", "--once", "--quiet", "--format", "json"])
-        .arg(model)
+        .args(arguments)
         .stdin(Stdio::null())
         .stdout(File::create(&out)?)
         .stderr(File::create(&err)?)

@@ -52,6 +52,9 @@ pub(super) fn verdict(model: &Path, stored: Option<f64>, run: &Run) -> Result<Ve
         None => {
             let reason = match norm <= NOTHING * stored {
                 true => "the end is without load, and the stored norm is what the iterations left",
+                false if text.contains("<contact ") || text.contains("<constraint ") => {
+                    "contact at other points of the faces"
+                }
                 false if dynamic => "another time integration",
                 false => "unexplained",
             };

@@ -43,8 +43,8 @@ pub(crate) fn suites(root: &Path, args: &SuitesArgs) -> Result<u8> {
         return Ok(code);
     }
     let mut found: Vec<Outcome> = Vec::new();
-    let mut add = |name: String, verdict| {
-        found.push(Outcome { name, verdict });
+    let mut add = |model: String, step, verdict| {
+        found.push(Outcome { model, step, verdict });
         eprintln!("{}", found[found.len() - 1]);
     };
     if let Some(folder) = &args.febio {
@@ -53,14 +53,14 @@ pub(crate) fn suites(root: &Path, args: &SuitesArgs) -> Result<u8> {
             let name = stem(&model);
             let run = call(root, &model, args.limit)?;
             let verdict = febio::verdict(&model, stored.get(&name).copied(), &run)?;
-            add(name, verdict);
+            add(name, None, verdict);
         }
     }
     if let Some(folder) = &args.calculix {
         for deck in models(folder, "inp", args.ending.as_deref())? {
-            let run = call(root, &deck, args.limit)?;
-            let verdict = calculix::verdict(&deck, &run)?;
-            add(stem(&deck), verdict);
+            for (step, verdict) in calculix::verdicts(root, &deck, args.limit)? {
+                add(stem(&deck), step, verdict);
+            }
         }
     }
     let text = table(&found);

@@ -47,9 +47,11 @@ pub(super) fn unfinished(model: &Path, run: &Run) -> Result<serde_json::Value, V
     Err(Verdict::Fails { reason })
 }
 
-/// A model with its verdict.
+/// A model, or a step of one, with its verdict.
 pub(super) struct Outcome {
-    pub name: String,
+    pub model: String,
+    /// Step of a model of several.
+    pub step: Option<usize>,
     pub verdict: Verdict,
 }
 
@@ -68,7 +70,8 @@ impl Outcome {
             Verdict::Refused { reason } => ("refused", reason.clone()),
             Verdict::Fails { reason } => ("fails", reason.clone()),
         };
-        [self.name.clone(), word.into(), detail.replace('|', "/")]
+        let name = self.step.map_or(self.model.clone(), |step| format!("{}, step {step}", self.model));
+        [name, word.into(), detail.replace('|', "/")]
     }
 }
 
@@ -78,20 +81,25 @@ impl fmt::Display for Outcome {
     }
 }
 
-/// Table of all outcomes, with the counts of each verdict and of the reasons of refusals.
+/// Table of all outcomes, with the counts of each verdict and of the reasons of refusals. A model of several
+/// steps counts by the step that is furthest from agreement.
 pub(super) fn table(all: &[Outcome]) -> String {
-    let (mut counts, mut reasons) = (BTreeMap::new(), BTreeMap::new());
+    let (mut models, mut counts, mut reasons) = (BTreeMap::new(), BTreeMap::new(), BTreeMap::new());
     let mut out = String::from("| model | outcome | difference or reason |\n| --- | --- | --- |\n");
     for outcome in all {
         let [name, word, detail] = outcome.row();
         out += &format!("| {name} | {word} | {detail} |\n");
-        *counts.entry(word).or_insert(0) += 1;
+        let rank = ["runs", "agrees", "differs", "refused", "fails"].iter().position(|known| *known == word);
+        let worst = models.entry(&outcome.model).or_insert((rank, word.clone()));
+        *worst = worst.clone().max((rank, word));
         if let Verdict::Refused { reason } = &outcome.verdict {
             *reasons.entry(reason.clone()).or_insert(0) += 1;
         }
     }
+    let number = models.len();
+    models.into_values().for_each(|(_, word)| *counts.entry(word).or_insert(0) += 1);
     let counts: Vec<String> = counts.into_iter().map(|(word, count)| format!("{count} {word}")).collect();
-    out += &format!("\n{} models: {}\n", all.len(), counts.join(", "));
+    out += &format!("\n{} models: {}\n", number, counts.join(", "));
     let mut reasons: Vec<(String, i32)> = reasons.into_iter().collect();
     reasons.sort_by_key(|(_, count)| -count);
     if !reasons.is_empty() {

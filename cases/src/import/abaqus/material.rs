@@ -14,6 +14,10 @@ pub(super) struct Material {
     pub line: usize,
     /// Mass per volume, in the units of the deck.
     pub density: Option<f64>,
+    /// Factors of the mass and of the stiffness in the damping of `*DYNAMIC`.
+    pub damping: [f64; 2],
+    /// Whether it expands with its temperature.
+    pub expands: bool,
     law: Option<Law>,
 }
 
@@ -27,7 +31,7 @@ enum Law {
 impl Material {
     pub fn new(card: &DeckCard) -> Material {
         let name = card.get("NAME").unwrap_or_default().to_string();
-        Material { name, line: card.line, density: None, law: None }
+        Material { name, line: card.line, density: None, damping: [0.0; 2], expands: false, law: None }
     }
 
     /// Reads a card below `*MATERIAL`.
@@ -39,15 +43,27 @@ impl Material {
             return;
         };
         match card.keyword.as_str() {
+            "DAMPING" => self.damping(card, findings),
             "DENSITY" => self.density = values.first().copied(),
             "ELASTIC" => self.elastic(card, &values, findings),
             "HYPERELASTIC" => self.law = hyperelastic(card, &values, units, findings).map(Law::Hyperelastic),
             "HYPERFOAM" => self.law = hyperfoam(card, &values, units, findings).map(Law::Hyperelastic),
             // Without temperatures these have no effect.
             "CONDUCTIVITY" | "SPECIFIC HEAT" | "EXPANSION" => {
+                self.expands |= card.keyword == "EXPANSION";
                 findings.leave_out(card.line, format!("*{} without temperatures", card.keyword));
             }
             keyword => findings.refuse(card.line, format!("*{keyword} can't be expressed"), ""),
+        }
+    }
+
+    fn damping(&mut self, card: &DeckCard, findings: &Findings) {
+        for (key, value) in &card.parameters {
+            match (key.as_str(), real(value)) {
+                ("ALPHA", Some(alpha)) => self.damping[0] = alpha,
+                ("BETA", Some(beta)) => self.damping[1] = beta,
+                _ => findings.refuse(card.line, format!("{key}={value} of *DAMPING can't be expressed"), ""),
+            }
         }
     }
 

@@ -1,6 +1,6 @@
 //! Nodes, elements and sets of a deck.
 
-use std::collections::{BTreeSet, HashMap};
+use std::collections::{BTreeSet, HashMap, HashSet};
 
 use geometry::CellKind;
 use mesh_files::DeckCard;
@@ -17,6 +17,12 @@ pub(super) struct Sets {
     places: HashMap<u64, [f64; 3]>,
     /// Type of each element, in upper case, with its nodes.
     pub elements: HashMap<u64, (String, Vec<u64>)>,
+    /// Line of the first `*NODE`.
+    first_line: Option<usize>,
+    /// Line of the first card of each element type.
+    pub kinds: HashMap<String, usize>,
+    /// Nodes of elements.
+    used: HashSet<u64>,
     /// Names of the node sets as the deck first writes them.
     names: HashMap<String, String>,
     /// Members of the sets, by upper-case name.
@@ -32,6 +38,7 @@ impl Sets {
         match card.keyword.as_str() {
             "NODE" => {
                 let mut numbers = Vec::new();
+                self.first_line.get_or_insert(card.line);
                 for (line, words) in &card.data {
                     let number = words.first().and_then(|word| word.parse().ok());
                     let x = [1, 2, 3].map(|at| words.get(at).map_or(Some(0.0), |word| real(word)));
@@ -50,10 +57,12 @@ impl Sets {
             "ELEMENT" => {
                 let kind = card.get("TYPE").unwrap_or_default().to_ascii_uppercase();
                 let count = node_count(&kind);
-                let all = element_lines(card, count);
+                let all = element_lines(card, count, findings);
                 if let Some(name) = set("ELSET") {
                     self.cells.entry(name).or_default().extend(all.iter().map(|(number, _)| *number));
                 }
+                self.kinds.entry(kind.clone()).or_insert(card.line);
+                self.used.extend(all.iter().flat_map(|(_, nodes)| nodes));
                 self.elements.extend(all.into_iter().map(|(number, nodes)| (number, (kind.clone(), nodes))));
             }
             "NSET" | "ELSET" => self.set(card, findings),
@@ -132,6 +141,21 @@ impl Sets {
         if self.elements.values().any(lacks) { None } else { self.names.get(&key).map(String::as_str) }
     }
 
+    /// Lists the nodes without elements.
+    pub fn leave_out_unused(&self, findings: &Findings) {
+        let mut unused: Vec<&u64> = self.places.keys().filter(|node| !self.used.contains(node)).collect();
+        unused.sort();
+        if let (Some(first), Some(line)) = (unused.first(), self.first_line) {
+            let what = format!("nodes without elements: {} from {first} on", unused.len());
+            findings.leave_out(line, what);
+        }
+    }
+
+    /// Whether a node belongs to an element.
+    pub fn used(&self, node: u64) -> bool {
+        self.used.contains(&node)
+    }
+
     /// Coordinates of a node.
     pub fn place(&self, node: u64) -> Option<[f64; 3]> {
         self.places.get(&node).copied()
@@ -139,9 +163,10 @@ impl Sets {
 }
 
 /// Elements of a card with their nodes, each of which may take several lines.
-fn element_lines(card: &DeckCard, count: usize) -> Vec<(u64, Vec<u64>)> {
+fn element_lines(card: &DeckCard, count: usize, findings: &Findings) -> Vec<(u64, Vec<u64>)> {
     let mut all: Vec<(u64, Vec<u64>)> = Vec::new();
-    for (_, words) in &card.data {
+    let mut longer = None;
+    for (line, words) in &card.data {
         let mut numbers = words.iter().filter_map(|word| word.parse::<u64>().ok());
         let open = all.last().is_some_and(|(_, nodes)| nodes.len() < count);
         if !open && let Some(number) = numbers.next() {
@@ -149,7 +174,19 @@ fn element_lines(card: &DeckCard, count: usize) -> Vec<(u64, Vec<u64>)> {
         }
         if let Some((_, nodes)) = all.last_mut() {
             nodes.extend(numbers);
+            if nodes.len() > count && count > 1 {
+                // CalculiX takes the first eight of a C3D8.
+                if count == 8 {
+                    longer = longer.or(Some(*line));
+                } else {
+                    findings.refuse(*line, format!("an element of {count} nodes has {}", nodes.len()), "");
+                }
+                nodes.truncate(count);
+            }
         }
+    }
+    if let Some(line) = longer {
+        findings.leave_out(line, "nodes after the eight of an element");
     }
     all
 }

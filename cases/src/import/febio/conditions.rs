@@ -20,6 +20,7 @@ pub(super) struct Conditions<'a, 's> {
     pub density: Option<f64>,
     pub supports: Vec<Part>,
     pub loads: Vec<Part>,
+    pub tools: Vec<Part>,
 }
 
 impl<'a> Conditions<'a, '_> {

@@ -30,6 +30,8 @@ pub(super) struct Mesh<'a> {
     pub parts: Vec<Elements<'a>>,
     sets: HashMap<&'a str, Node<'a, 'a>>,
     surfaces: HashMap<&'a str, Node<'a, 'a>>,
+    /// Primary and secondary surface.
+    pairs: HashMap<&'a str, [&'a str; 2]>,
     places: HashMap<u64, Node<'a, 'a>>,
 }
 
@@ -40,6 +42,7 @@ impl<'a> Mesh<'a> {
             parts: Vec::new(),
             sets: HashMap::new(),
             surfaces: HashMap::new(),
+            pairs: HashMap::new(),
             places: HashMap::new(),
         };
         for node in mesh.children().filter(Node::is_element) {
@@ -57,7 +60,14 @@ impl<'a> Mesh<'a> {
                 }
                 "NodeSet" => drop(read.sets.insert(name, node)),
                 "Surface" => drop(read.surfaces.insert(name, node)),
-                "ElementSet" | "SurfacePair" | "PartList" | "Edge" => {}
+                "SurfacePair" => {
+                    let side = |tag: &str| {
+                        let side = node.children().find(|child| child.has_tag_name(tag));
+                        side.and_then(|side| side.text()).unwrap_or_default().trim()
+                    };
+                    read.pairs.insert(name, [side("primary"), side("secondary")]);
+                }
+                "ElementSet" | "PartList" | "Edge" => {}
                 other => source.refuse(node, format!("<{other}> of <Mesh> can't be expressed"), ""),
             }
         }
@@ -106,7 +116,7 @@ impl<'a> Mesh<'a> {
         for nodes in own.flat_map(|part| &part.lists) {
             let place = |end: usize| -> Option<[f64; 3]> {
                 let number = nodes.get(end.checked_sub(1)?)?;
-                numbers(*self.places.get(number)?, source, 3)?.try_into().ok()
+                self.place(*number, source)
             };
             let (a, b) = (place(ends[0])?, place(ends[1])?);
             let d = [b[0] - a[0], b[1] - a[1], b[2] - a[2]];
@@ -128,6 +138,41 @@ impl<'a> Mesh<'a> {
             source.refuse(condition, format!("surface '{name}' is not in the mesh"), "name a <Surface>");
         }
         known.then_some(name)
+    }
+
+    /// Surfaces of the pair that a contact names.
+    pub fn pair_of(&self, contact: Node<'a, 'a>, source: &Source) -> Option<[&'a str; 2]> {
+        let name = contact.attribute("surface_pair").unwrap_or_default();
+        let pair =
+            self.pairs.get(name).filter(|pair| pair.iter().all(|side| self.surfaces.contains_key(side)));
+        if pair.is_none() {
+            let help = "name a <SurfacePair> of two surfaces";
+            source.refuse(contact, format!("surface pair '{name}' is not in the mesh"), help);
+        }
+        pair.copied()
+    }
+
+    /// Corners of the facets of a surface.
+    pub fn facets(&self, surface: &str) -> Vec<Vec<u64>> {
+        let facets = self.surfaces[surface].children().filter(Node::is_element);
+        let corners = |facet: Node| {
+            let mut nodes = whole_numbers(facet);
+            nodes.truncate(if facet.tag_name().name().starts_with("tri") { 3 } else { 4 });
+            nodes
+        };
+        facets.map(corners).collect()
+    }
+
+    /// Whether all these nodes belong to a part.
+    pub fn has_nodes(&self, part: &str, nodes: &HashSet<u64>) -> bool {
+        let Some(part) = self.parts.iter().find(|other| other.name == part) else { return false };
+        let own: HashSet<u64> = part.lists.iter().flatten().copied().collect();
+        !nodes.is_empty() && nodes.is_subset(&own)
+    }
+
+    /// Coordinates of a node.
+    pub fn place(&self, number: u64, source: &Source) -> Option<[f64; 3]> {
+        numbers(*self.places.get(&number)?, source, 3)?.try_into().ok()
     }
 
     /// Nodes that a condition names, with their coordinates.

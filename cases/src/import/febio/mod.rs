@@ -1,6 +1,7 @@
 //! Models of FEBio, specification 4.0. (FEBio User Manual 4, chapter 3.)
 
 mod conditions;
+mod contact;
 mod control;
 mod curves;
 mod fields;
@@ -27,7 +28,7 @@ use super::units::Units;
 /// Sections that a scene has no use for.
 const UNUSED: [&str; 2] = ["Output", "Globals"];
 /// Sections that are read.
-const READ: [&str; 11] = [
+const READ: [&str; 13] = [
     "Module",
     "Control",
     "Material",
@@ -37,12 +38,14 @@ const READ: [&str; 11] = [
     "Loads",
     "LoadData",
     "Rigid",
+    "Contact",
+    "Constraints",
     "Output",
     "Globals",
 ];
 
 /// Sections of a step that are read.
-const OF_STEP: [&str; 4] = ["Control", "Boundary", "Loads", "Rigid"];
+const OF_STEP: [&str; 6] = ["Control", "Boundary", "Loads", "Rigid", "Contact", "Constraints"];
 
 /// Makes a scene of a model.
 pub(super) fn import(bytes: &[u8], model: &Model) -> Result<Imported, Vec<Finding>> {
@@ -59,7 +62,7 @@ pub(super) fn import(bytes: &[u8], model: &Model) -> Result<Imported, Vec<Findin
     let left_out = findings.close()?;
     match scene {
         Some(parts) => {
-            let head = head(model, "FEBio model", &left_out);
+            let head = head(model, "the FEBio model", &left_out);
             let parts: Vec<Part> = std::iter::once(head).chain(parts).collect();
             Ok(Imported { scene: print(&parts), left_out })
         }
@@ -108,6 +111,7 @@ fn scene<'a>(root: Node<'a, 'a>, model: &Model, source: &Source) -> Option<Vec<P
         density: materials.density(),
         supports: Vec::new(),
         loads: Vec::new(),
+        tools: Vec::new(),
     };
     let children = |tag: &str| {
         let sections = own(tag).into_iter().chain(in_step(tag));
@@ -117,12 +121,14 @@ fn scene<'a>(root: Node<'a, 'a>, model: &Model, source: &Source) -> Option<Vec<P
     let attached: Vec<Node> = boundary.into_iter().filter(|node| !conditions.boundary(*node)).collect();
     children("Loads").into_iter().for_each(|node| conditions.load(node));
     let body_parts = materials.body(&mesh, model, source);
-    rigid::read(materials.rigid, &attached, children("Rigid"), &mut conditions);
-    let Conditions { supports, loads, .. } = conditions;
+    rigid::read(materials.rigid, &attached, children("Rigid"), children("Contact"), &mut conditions);
+    children("Constraints").into_iter().for_each(|node| contact::wall(node, &mut conditions));
+    let Conditions { supports, loads, tools, .. } = conditions;
     let mut parts = body_parts?;
     parts.extend(controllers.parts(model.units));
     parts.extend(supports);
     parts.extend(loads);
+    parts.extend(tools);
     parts.push(control.part(source.line(control_node?), model.units));
     Some(parts)
 }
@@ -203,10 +209,9 @@ impl<'a> Materials<'a> {
         for node in all {
             let own = of(&node);
             if is_rigid(&node) {
-                let mut body = Body::of(node);
-                let shared =
-                    own.unwrap_or_default().into_iter().filter(|part| mesh.shares_nodes(part, &stiff));
-                body.groups.extend(shared.map(String::from));
+                let mut body = Body::of(node, own.unwrap_or_default());
+                let shared = body.parts.iter().filter(|part| mesh.shares_nodes(part, &stiff));
+                body.groups.extend(shared.map(|part| part.to_string()));
                 read.rigid.push(body);
             } else if let Some(own) = own {
                 read.deformable.extend(

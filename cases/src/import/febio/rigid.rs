@@ -1,12 +1,13 @@
-//! Rigid bodies that do not rotate: the nodes attached to one move with it. (FEBio User Manual 4, 3.13.)
+//! Rigid bodies that do not rotate: the nodes attached to one move with it, and solids touch it. (FEBio User Manual 4, 3.13.)
 
 use std::collections::HashSet;
 
 use roxmltree::Node;
 
 use super::conditions::Conditions;
+use super::contact;
 use super::curves::Course;
-use super::fields::{Fields, Scaled};
+use super::fields::{Fields, Scaled, Source};
 use crate::import::document::{Part, quoted};
 
 /// A rigid body with its conditions.
@@ -14,6 +15,8 @@ pub(super) struct Body<'a> {
     pub name: &'a str,
     pub id: &'a str,
     pub node: Node<'a, 'a>,
+    /// Its parts of the mesh.
+    pub parts: Vec<&'a str>,
     /// Groups of attached nodes.
     pub groups: Vec<String>,
     fixed: [bool; 6],
@@ -24,23 +27,45 @@ const DOFS: [&str; 6] = ["Rx", "Ry", "Rz", "Ru", "Rv", "Rw"];
 
 impl<'a> Body<'a> {
     /// A rigid material.
-    pub fn of(material: Node<'a, 'a>) -> Body<'a> {
+    pub fn of(material: Node<'a, 'a>, parts: Vec<&'a str>) -> Body<'a> {
         Body {
             name: material.attribute("name").unwrap_or_default(),
             id: material.attribute("id").unwrap_or_default(),
             node: material,
+            parts,
             groups: Vec::new(),
             fixed: [false; 6],
             moved: Vec::new(),
         }
     }
+
+    /// Displacement along each axis; `None`, and refused, if the body is free or rotates.
+    pub fn motion(&self, source: &Source) -> Option<[Option<Scaled<'a>>; 3]> {
+        let mut motion: [Option<Scaled<'a>>; 3] = [None; 3];
+        let mut held = self.fixed;
+        for &(dof, value) in &self.moved {
+            if dof < 3 {
+                motion[dof] = Some(value);
+            } else if value.value != 0.0 {
+                source.refuse(value.node, "a rigid body rotates", "a support of a scene does not");
+            }
+            held[dof] = true;
+        }
+        if let Some(free) = held.iter().position(|held| !held) {
+            let what = format!("rigid body '{}' is free in {}", self.name, DOFS[free]);
+            source.refuse(self.node, what, "a scene takes a rigid body whose whole motion is prescribed");
+            return None;
+        }
+        Some(motion)
+    }
 }
 
-/// Reads the conditions of rigid bodies and adds the supports of their nodes.
+/// Reads the conditions of rigid bodies; adds the supports of their nodes, and tools for those that touch a solid.
 pub(super) fn read<'a>(
     mut bodies: Vec<Body<'a>>,
     attached: &[Node<'a, 'a>],
     section: Vec<Node<'a, 'a>>,
+    contacts: Vec<Node<'a, 'a>>,
     conditions: &mut Conditions<'a, '_>,
 ) {
     let source = conditions.source;
@@ -59,6 +84,7 @@ pub(super) fn read<'a>(
     for node in section {
         condition(node, &mut bodies, conditions);
     }
+    contacts.into_iter().for_each(|node| contact::pair(node, &bodies, conditions));
     let mut seen = HashSet::new();
     for body in bodies.into_iter().filter(|body| !body.groups.is_empty()) {
         supports(&body, conditions, &mut seen);
@@ -101,21 +127,7 @@ fn condition<'a>(node: Node<'a, 'a>, bodies: &mut [Body<'a>], conditions: &Condi
 /// Adds the supports of a body's nodes.
 fn supports<'a>(body: &Body<'a>, conditions: &mut Conditions<'a, '_>, seen: &mut HashSet<String>) {
     let source = conditions.source;
-    let mut motion: [Option<Scaled<'a>>; 3] = [None; 3];
-    let mut held = body.fixed;
-    for &(dof, value) in &body.moved {
-        if dof < 3 {
-            motion[dof] = Some(value);
-        } else if value.value != 0.0 {
-            source.refuse(value.node, "a rigid body rotates", "a support of a scene does not");
-        }
-        held[dof] = true;
-    }
-    if let Some(free) = held.iter().position(|held| !held) {
-        let what = format!("rigid body '{}' is free in {}", body.name, DOFS[free]);
-        source.refuse(body.node, what, "a scene takes a rigid body whose whole motion is prescribed");
-        return;
-    }
+    let Some(motion) = body.motion(source) else { return };
     for group in body.groups.iter().filter(|group| seen.insert((*group).clone())) {
         let origin = format!("rigid body '{}' (line {})", body.name, source.line(body.node));
         let part = || Part::new("[[support]]").note(&origin).key("on", quoted(group));

@@ -163,6 +163,8 @@ words! {
     pub enum Mass {
         /// The integral of density and both shape functions, `M_IJ`.
         Consistent = "consistent",
+        /// The integral at the points of the forces, which reduced integration may leave singular.
+        AtPoints = "at-points",
         /// Diagonal, on the nodal parameters: row sums, or the scaled diagonal for quadratic elements.
         Lumped = "lumped",
         /// Lumped masses on the displacements of the nodes, which differ from a cloud's nodal parameters.

@@ -8,9 +8,16 @@ use clap::{Args, ValueEnum};
 /// Arguments of `init`.
 #[derive(Args)]
 pub struct InitArgs {
-    /// Organ: a closed surface (STL, OBJ, PLY) or a mesh file (.msh, .inp, .vtu, .vtk)
+    /// Organ: a closed surface (STL, OBJ, PLY, OFF, .vtp, .mesh) or a mesh file (.msh, .inp, .vtu, .vtk)
     #[arg(long, value_name = "FILE")]
     pub file: Option<PathBuf>,
+    /// Mend small faults of the surface
+    #[arg(long)]
+    pub repair: bool,
+    /// Wrap a surface that is open, crosses itself or branches, at cells with edges of this length; needs
+    /// --unit
+    #[arg(long, value_name = "LENGTH", conflicts_with = "repair", requires = "unit")]
+    pub wrap: Option<String>,
     /// Length unit of the file: m, cm, mm or um (default: the unit that gives the length of an organ)
     #[arg(long)]
     pub unit: Option<String>,
@@ -38,8 +45,8 @@ pub struct InitArgs {
     /// Force on the tool, on each of two jaws, such as "0.5 N", instead of --closure; at small strain a pressure, such as "1 kPa"
     #[arg(long, value_name = "FORCE")]
     pub load: Option<String>,
-    /// Tool: plate, ball, jaws, or a closed surface (STL, OBJ, PLY) in the unit of the organ's file (default:
-    /// plate)
+    /// Tool: plate, ball, jaws, or a closed surface (STL, OBJ, PLY, OFF, .vtp, .mesh) in the unit of the
+    /// organ's file (default: plate)
     #[arg(long, value_name = "plate|ball|jaws|FILE")]
     pub tool: Option<String>,
     /// Coulomb's coefficient of friction between tool and body (default: none)

@@ -14,6 +14,7 @@ use std::path::{Path, PathBuf};
 use cases::scene::{self, Place, Region, Scene, SceneError};
 use catalogue::Dimension;
 use geometry::Mesh;
+use geometry::surface::Treatment;
 
 pub use args::InitArgs;
 
@@ -64,8 +65,13 @@ pub fn init(args: &InitArgs) -> Result<(), Failure> {
     let file = args.file.as_deref().map(Path::to_string_lossy);
     let read = |text: &str| match Path::new(text) {
         path if path.is_file() => Ok(path.to_path_buf()),
-        path if path.exists() => Err("is not a file; give a surface (STL, OBJ, PLY) or a mesh file".into()),
-        _ => Err("there is no such file; give a surface (STL, OBJ, PLY) or a mesh file".into()),
+        path if path.exists() => {
+            Err("is not a file; give a surface (STL, OBJ, PLY, OFF, .vtp, .mesh) or a mesh file".into())
+        }
+        _ => {
+            Err("there is no such file; give a surface (STL, OBJ, PLY, OFF, .vtp, .mesh) or a mesh file"
+                .into())
+        }
     };
     let file: PathBuf = ask.value("file", file.as_deref(), "Surface or mesh file of the organ", "", read)?;
     let out = args
@@ -136,14 +142,40 @@ fn free(out: &Path, file: &Path, force: bool) -> Result<(), Failure> {
 
 /// Reads the body in the given unit, or in the unit that gives the length of an organ.
 fn sized(file: &Path, args: &InitArgs, ask: &mut Questions) -> Result<(Organ, LengthUnit), Failure> {
-    let millimetre = LengthUnit { name: "mm", metres: 1e-3 };
-    let read = |unit| Organ::read(file, unit);
-    let organ = read(millimetre)?;
-    let fits = guess(organ.largest_extent(), millimetre).unwrap_or(millimetre.name);
     let known = |text: &str| length_unit(text).map_err(|known| format!("is not {known}"));
+    let treatment = treatment(args)?;
+    let mut first = LengthUnit { name: "mm", metres: 1e-3 };
+    if let (Treatment::Wrap { .. }, Some(unit)) = (treatment, &args.unit) {
+        // A wrap in another unit than the size would be of other triangles.
+        first = known(unit).map_err(|bad| input(format!("--unit '{unit}' {bad}")))?;
+    }
+    let read = |unit| Organ::read(file, unit, treatment);
+    let organ = read(first)?;
+    let fits = guess(organ.largest_extent(), first).unwrap_or(first.name);
     let unit: LengthUnit = ask.value("unit", args.unit.as_deref(), "Length unit of the file", fits, known)?;
-    let same = unit.name == millimetre.name;
+    let same = unit.name == first.name;
     Ok((if same { organ } else { read(unit)? }, unit))
+}
+
+/// Returns what is done with the surface.
+fn treatment(args: &InitArgs) -> Result<Treatment, Failure> {
+    match &args.wrap {
+        Some(text) => {
+            let size = length(text).map_err(|bad| input(format!("--wrap '{text}': {bad}")))?;
+            Ok(Treatment::Wrap { size })
+        }
+        None if args.repair => Ok(Treatment::Repair),
+        None => Ok(Treatment::AsGiven),
+    }
+}
+
+/// Returns the key of the scene's body for what is done with the surface.
+fn treatment_key(args: &InitArgs) -> String {
+    match &args.wrap {
+        Some(text) => format!("\nwrap = {}", scene_text::quoted(text)),
+        None if args.repair => "\nrepair = true".into(),
+        None => String::new(),
+    }
 }
 
 /// Returns the values of the scene, from options, answers or fits to its meshes, and these meshes.
@@ -179,6 +211,7 @@ fn wanted(
     let mut wanted = Wanted {
         title: String::new(),
         path: path_from(out, file)?,
+        treatment: treatment_key(args),
         unit,
         strain,
         young,
@@ -449,6 +482,7 @@ fn refused(errors: &[SceneError]) -> Failure {
         ("material.young", "--young"),
         ("material.poisson", "--poisson"),
         ("body.path", "--file"),
+        ("body.wrap", "--wrap"),
         ("tool", "--tool, --closure, --load or --gap"),
         ("load", "--load"),
     ];

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use geometry::surface::BoundaryFaces;
+use geometry::surface::{BoundaryFaces, Treatment};
 use geometry::{Point3, Surface};
 
 use super::args::Side;
@@ -31,11 +31,15 @@ pub(super) struct Organ {
 
 impl Organ {
     /// Reads a closed surface or a mesh.
-    pub fn read(file: &Path, unit: LengthUnit) -> Result<Organ, Failure> {
+    pub fn read(file: &Path, unit: LengthUnit, treatment: Treatment) -> Result<Organ, Failure> {
         let (surface, names) = if mesh_files::is_surface(file) {
-            let surface = mesh_files::read_surface(file, unit.metres).map_err(input)?;
+            let surface = mesh_files::read_treated(file, unit.metres, treatment).map_err(input)?.surface;
             let names = surface.groups().names().to_vec();
             (surface, names)
+        } else if treatment != Treatment::AsGiven {
+            let option = if treatment == Treatment::Repair { "--repair" } else { "--wrap" };
+            let name = file.display();
+            return Err(input(format!("{option}: {name} is not a surface; {}", mesh_files::SURFACES)));
         } else {
             let mesh = mesh_files::read(file, unit.metres).map_err(input)?;
             let boundary = BoundaryFaces::new(&mesh);

@@ -23,6 +23,8 @@ pub(super) struct Wanted {
     pub title: String,
     /// Path of the file in the scene.
     pub path: String,
+    /// Line of the body's key for the treatment of its surface; empty without one.
+    pub treatment: String,
     pub unit: LengthUnit,
     pub strain: Strain,
     pub young: String,
@@ -144,7 +146,7 @@ fn filled(part: &str, values: &[(&str, String)]) -> String {
 }
 
 /// Quotes a text for TOML.
-fn quoted(text: &str) -> String {
+pub(super) fn quoted(text: &str) -> String {
     toml::Value::from(text).to_string()
 }
 
@@ -263,6 +265,7 @@ impl Wanted {
             ("title", quoted(&self.title)),
             ("path", quoted(&self.path)),
             ("unit", quoted(self.unit.name)),
+            ("treatment", self.treatment.clone()),
             ("law", quoted(law)),
             ("young", quoted(&self.young)),
             ("poisson", self.poisson.to_string()),

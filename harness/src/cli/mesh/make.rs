@@ -1,6 +1,7 @@
 //! `tissuebench mesh make`: fills a closed surface with tetrahedra.
 
 use geometry::stuffing::{self, Stuffed, Stuffing};
+use geometry::surface::{Gaps, Treated, Treatment};
 use geometry::{Surface, quality};
 
 use crate::cli::args::MakeArgs;
@@ -14,16 +15,18 @@ const NEAR: f64 = 0.1;
 /// Fills a surface, writes the mesh and prints how closely it fits.
 pub fn make(args: &MakeArgs) -> Result<(), Failure> {
     let MakeArgs { surface: file, unit, out, .. } = args;
-    let surface = mesh_files::read_surface(file, unit.metres).map_err(input)?;
+    let treatment = treatment(args)?;
+    let treated = mesh_files::read_treated(file, unit.metres, treatment).map_err(input)?;
+    let surface = &treated.surface;
     let doublings = if args.uniform { 0 } else { args.coarser };
     spare(out)?;
     let (Stuffed { mesh, left_out }, spacing) = match (args.size, args.nodes) {
         (Some(spacing), _) => {
-            (stuffing::stuff(&surface, Stuffing { spacing, doublings }).map_err(input)?, spacing)
+            (stuffing::stuff(surface, Stuffing { spacing, doublings }).map_err(input)?, spacing)
         }
         (_, nodes) => {
             let nodes = nodes.unwrap_or_default() as usize;
-            stuffing::stuff_with_nodes(&surface, nodes, doublings).map_err(input)?
+            stuffing::stuff_with_nodes(surface, nodes, doublings).map_err(input)?
         }
     };
     mesh_files::write(&mesh, out, unit.metres).map_err(input)?;
@@ -33,7 +36,10 @@ pub fn make(args: &MakeArgs) -> Result<(), Failure> {
         0 => String::new(),
         doublings => format!(", up to {} times that inside", 1 << doublings),
     };
-    row("surface", &described(&surface));
+    if treatment != Treatment::AsGiven {
+        report(&treated, args);
+    }
+    row("surface", &described(surface));
     for (at, name) in surface.groups().names().iter().enumerate() {
         let facets = mesh.group(name).map_or(0, <[_]>::len);
         row(if at == 0 { "surfaces" } else { "" }, &format!("{name}: {facets} faces"));
@@ -42,7 +48,7 @@ pub fn make(args: &MakeArgs) -> Result<(), Failure> {
         wanted(nodes, mesh.points().len());
     }
     row("spacing", &format!("{}{inside}", length(spacing)));
-    let fit = stuffing::fit(&surface, &mesh);
+    let fit = stuffing::fit(surface, &mesh);
     let (volume, of_surface) = (1e6 * fit.volume, 1e6 * fit.of_surface);
     let off = 100.0 * (volume / of_surface - 1.0);
     row("volume", &format!("{} cm^3, {off:+.2} % of the surface's {}", digits(volume), digits(of_surface)));
@@ -63,6 +69,41 @@ pub fn make(args: &MakeArgs) -> Result<(), Failure> {
         );
     }
     Ok(())
+}
+
+/// Returns what is done with the surface. Both options are for surfaces only.
+fn treatment(args: &MakeArgs) -> Result<Treatment, Failure> {
+    let (option, treatment) = match args.wrap {
+        Some(size) => ("--wrap", Treatment::Wrap { size }),
+        None if args.repair => ("--repair", Treatment::Repair),
+        None => return Ok(Treatment::AsGiven),
+    };
+    let file = &args.surface;
+    if file.is_file() && !mesh_files::is_surface(file) {
+        let name = file.display();
+        return Err(input(format!("{option}: {name} is not a surface; {}", mesh_files::SURFACES)));
+    }
+    Ok(treatment)
+}
+
+/// Prints the changes of the surface, and how far a wrap is from its triangles.
+fn report(treated: &Treated, args: &MakeArgs) {
+    let word = if args.wrap.is_some() { "wrap" } else { "repair" };
+    let length = |x: f64| format!("{} {}", digits(x / args.unit.metres), args.unit.name);
+    let mut lines = Vec::new();
+    if let Some(Gaps { from_wrap, from_triangles }) = treated.gaps {
+        lines.push(format!("{} cm^3", digits(1e6 * treated.surface.volume())));
+        lines.push(format!(
+            "at most {} from the given triangles; the triangles at most {} from it",
+            length(from_wrap),
+            length(from_triangles)
+        ));
+    } else if treated.changes.is_empty() {
+        lines.push("none is needed".into());
+    }
+    let changes = treated.changes.iter();
+    lines.extend(changes.map(|change| if args.quiet { change.brief() } else { change.to_string() }));
+    lines.iter().enumerate().for_each(|(at, line)| row(if at == 0 { word } else { "" }, line));
 }
 
 /// Prints the requested number of nodes if the mesh differs from it.

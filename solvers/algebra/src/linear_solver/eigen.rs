@@ -56,6 +56,11 @@ pub fn shifted(stiffness: &Symmetric, mass: &Symmetric, shift: f64) -> Result<Ei
     }
     solve_lower_triangular_in_place(lower.as_ref(), inner.as_mut(), par);
     solve_lower_triangular_in_place(lower.as_ref(), inner.transpose_mut(), par);
+    // The decomposition takes small values for rounding, whatever their unit: eigenvalues of about 1 have
+    // none.
+    let most = (0..n).map(|j| inner[(j, j)]).fold(0.0, f64::max);
+    let unit = if most > 0.0 { most.log2().round().exp2() } else { 1.0 };
+    (0..n).for_each(|j| (0..n).for_each(|i| inner[(i, j)] /= unit));
 
     let mut values = Diag::<f64>::zeros(n);
     let mut vectors = Mat::zeros(n, n);
@@ -66,7 +71,7 @@ pub fn shifted(stiffness: &Symmetric, mass: &Symmetric, shift: f64) -> Result<Ei
         .map_err(|_| AlgebraError::NoEigenvalues { dofs: n })?;
     solve_upper_triangular_in_place(lower.transpose(), vectors.as_mut(), par);
     let column = |c: usize| (0..n).map(|i| vectors[(i, c)]).collect();
-    let values = (0..n).rev().map(|k| values.column_vector()[k]).collect();
+    let values = (0..n).rev().map(|k| values.column_vector()[k] * unit).collect();
     Ok(Eigen { values, vectors: (0..n).rev().map(column).collect() })
 }
 

@@ -28,7 +28,7 @@ impl Element<20> for Hex20 {
             &[2, 3, 7, 6, 10, 19, 14, 18],
             &[3, 0, 4, 7, 11, 16, 15, 19],
         ],
-        points: Points { full: 27, reduced: Some((8, "2x2x2")), fine: 64, volume: 64 },
+        points: Points { full: 27, reduced: Some((8, "2x2x2")), fine: 64, volume: 27 },
         files: FileCodes {
             gmsh: 17,
             gmsh_order: &[0, 1, 2, 3, 4, 5, 6, 7, 8, 11, 16, 9, 17, 10, 18, 19, 12, 15, 13, 14],

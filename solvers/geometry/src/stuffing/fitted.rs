@@ -3,10 +3,12 @@
 //! The corners of a stuffed mesh lie on the surface and its faces are chords. Where the surface is convex they cut off
 //! a volume, 2 % of a sphere with 400 nodes; where parts are thinner than the cells, far more. Linear meshes spread
 //! this error to both sides of the surface: each corner moves along its normal by the mean distance of the faces
-//! around it from the surface. Quadratic meshes get curved faces instead: the middle nodes move onto the surface.
+//! around it from the surface. A face that cuts off a sharp edge does not count: its corners on flat faces of the body
+//! stay there, where a tool may touch them. Quadratic meshes get curved faces instead: the middle nodes move onto the surface.
 
 use rayon::prelude::*;
 
+use super::edges::Edges;
 use crate::element::{self, CellKind};
 use crate::mesh::{Facet, Mesh};
 use crate::surface::Surface;
@@ -22,8 +24,6 @@ const HALVINGS: u32 = 4;
 const ANGLES: [f64; 2] = [10.7, 164.8];
 /// Smallest ratio of the lowest to the highest Jacobian determinant in a curved cell.
 const LEAST_RATIO: f64 = 0.15;
-/// Cosine of the angle between normals of the surface beyond which it has an edge.
-const EDGE: f64 = 0.5;
 /// Smallest number of faces per parallel task.
 const CHUNK: usize = 32;
 
@@ -55,9 +55,9 @@ pub(super) fn quadratic(mesh: Mesh, surface: &Surface) -> Mesh {
 }
 
 fn balanced(mut mesh: Mesh, surface: &Surface, sound: impl Fn(CellKind, &[Point3]) -> bool + Sync) -> Mesh {
-    let boundary = mesh.boundary();
+    let (boundary, edges) = (mesh.boundary(), Edges::of(surface));
     for _ in 0..PASSES {
-        let moves = moves(&mesh, &boundary, surface);
+        let moves = moves(&mesh, &boundary, surface, &edges);
         mesh = moved(&mesh, moves, &sound);
     }
     mesh
@@ -79,18 +79,8 @@ const QUARTERS: [[usize; 3]; 4] = [[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]];
 const BARYCENTRIC: [[f64; 3]; 6] =
     [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [0.5, 0.5, 0.0], [0.0, 0.5, 0.5], [0.5, 0.0, 0.5]];
 
-/// Whether points lie at both sides of an edge of the surface. The nodes next to an edge stay where they are: a tool
-/// that stands at the flat face of a body would meet nodes that have moved out of it.
-fn cuts_an_edge(surface: &Surface, points: &[Point3; 3]) -> bool {
-    let [a, b, c] = points.map(|point| {
-        let [a, b, c] = surface.corners(surface.closest(&point).1);
-        (b - a).cross(&(c - a)).try_normalize(0.0).unwrap_or_default()
-    });
-    a.dot(&b).min(b.dot(&c)).min(c.dot(&a)) < EDGE
-}
-
 /// Returns the triangles of a face of three or six nodes.
-fn triangles(mesh: &Mesh, facet: Facet, surface: &Surface) -> Vec<Triangle> {
+fn triangles(mesh: &Mesh, facet: Facet, surface: &Surface, edges: &Edges) -> Vec<Triangle> {
     let nodes: Vec<u32> = mesh.facet_nodes(facet).collect();
     let points: Vec<Vector3> = nodes.iter().map(|&node| mesh.points()[node as usize].coords).collect();
     let place = |[a, b, c]: [f64; 3]| -> Point3 {
@@ -114,7 +104,7 @@ fn triangles(mesh: &Mesh, facet: Facet, surface: &Surface) -> Vec<Triangle> {
             let [i, j] = [corners[i], corners[j]].map(|k| BARYCENTRIC[k]);
             place(std::array::from_fn(|k| 0.5 * (i[k] + j[k])))
         });
-        let [ab, bc, ca] = match cuts_an_edge(surface, &middles) {
+        let [ab, bc, ca] = match edges.are_cut(surface, &[a, b, c].map(Point3::from)) {
             true => [0.0; 3],
             false => middles.map(|point| -surface.signed_distance(&point) / 12.0),
         };
@@ -130,8 +120,8 @@ fn triangles(mesh: &Mesh, facet: Facet, surface: &Surface) -> Vec<Triangle> {
 
 /// Returns the move of every node: along its normal, by the mean distance `int N d dA / int N dA` of the surface from
 /// the triangles around it.
-fn moves(mesh: &Mesh, boundary: &[Facet], surface: &Surface) -> Vec<Vector3> {
-    let of_face = |facet: &Facet| triangles(mesh, *facet, surface);
+fn moves(mesh: &Mesh, boundary: &[Facet], surface: &Surface, edges: &Edges) -> Vec<Vector3> {
+    let of_face = |facet: &Facet| triangles(mesh, *facet, surface, edges);
     let faces: Vec<Vec<Triangle>> = boundary.par_iter().with_min_len(CHUNK).map(of_face).collect();
     let count = mesh.points().len();
     let (mut normal, mut sum) = (vec![Vector3::zeros(); count], vec![[0.0; 2]; count]);

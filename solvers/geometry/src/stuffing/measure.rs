@@ -1,18 +1,12 @@
 //! Distance between a mesh and the surface that it fills.
 
-use rayon::prelude::*;
-
 use crate::mesh::Mesh;
-use crate::surface::{Surface, Tree, triangles_of};
-use crate::{Point3, Vector3, quality};
+use crate::quality;
+use crate::surface::{Surface, Tree, farthest, samples, triangles_of};
 
-/// Smallest number of points per parallel task.
-const CHUNK: usize = 64;
 /// Largest spacing of sample points on a triangle, as a fraction of the diagonal of the surface's bounding
 /// box.
 const APART: f64 = 1.0 / 200.0;
-/// Largest number of parts of an edge.
-const MOST: usize = 32;
 
 /// Difference between a mesh and the surface that it fills.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -48,9 +42,6 @@ pub fn fit(surface: &Surface, mesh: &Mesh) -> Fit {
     let apart = APART * (high - low).norm();
     let of_mesh = samples(mesh.points(), &boundary, apart);
     let of_surface = samples(surface.points(), surface.triangles(), apart);
-    let farthest = |samples: &[Point3], distance: &(dyn Fn(&Point3) -> f64 + Sync)| {
-        samples.par_iter().with_min_len(CHUNK).map(distance).reduce(|| 0.0, f64::max)
-    };
     Fit {
         volume: quality::volumes(mesh).iter().sum(),
         of_surface: surface.volume(),
@@ -59,29 +50,4 @@ pub fn fit(surface: &Surface, mesh: &Mesh) -> Fit {
             tree.closest(p, f64::INFINITY).map_or(f64::INFINITY, |closest| closest.square.sqrt())
         }),
     }
-}
-
-/// Corners, and for each triangle its centre and the points of a regular grid.
-fn samples(points: &[Point3], triangles: &[[u32; 3]], apart: f64) -> Vec<Point3> {
-    let mut used: Vec<u32> = triangles.iter().flatten().copied().collect();
-    used.sort_unstable();
-    used.dedup();
-    let mut samples: Vec<Point3> = used.iter().map(|&p| points[p as usize]).collect();
-    for t in triangles {
-        let [a, b, c] = t.map(|p| points[p as usize].coords);
-        let mut add = |p: Vector3| samples.push(p.into());
-        add((a + b + c) / 3.0);
-        let longest = (b - a).norm().max((c - b).norm()).max((a - c).norm());
-        let parts = ((longest / apart).ceil() as usize).clamp(1, MOST);
-        for i in 0..=parts {
-            for j in 0..=parts - i {
-                let k = parts - i - j;
-                // Corners are already included.
-                if i.max(j).max(k) < parts {
-                    add((a * i as f64 + b * j as f64 + c * k as f64) / parts as f64);
-                }
-            }
-        }
-    }
-    samples
 }

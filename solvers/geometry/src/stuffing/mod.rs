@@ -7,6 +7,7 @@
 //! cell.
 
 mod cuts;
+mod edges;
 mod fitted;
 mod lattice;
 mod measure;

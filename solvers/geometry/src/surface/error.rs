@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use super::digits::point;
+use super::wrap::WrapProblem;
 use crate::Point3;
 
 /// Problem of triangles that do not form a closed surface. Triangles have the numbers of their faces in the
@@ -29,6 +31,8 @@ pub enum SurfaceProblem {
         hole: usize,
         /// Centre of this hole.
         at: Point3,
+        /// Whether all holes are small enough for a repair.
+        small: bool,
     },
     /// An edge of more than two triangles.
     Branched {
@@ -90,10 +94,15 @@ pub enum SurfaceProblem {
     },
     /// A surface that encloses no volume.
     Flat,
+    /// A size of a wrap that does not fit the triangles.
+    Wrap(WrapProblem),
 }
 
-/// Advice for the repair of a surface.
-const EDITOR: &str = "repair the file in a mesh editor";
+/// Advice for surfaces that a repair mends, and for all others with an inside.
+const REPAIR: &str = "tissuebench mesh make --repair mends this (repair = true in a scene's body)";
+const WRAP: &str = "tissuebench mesh make --wrap SIZE makes a closed surface of the file (wrap = \"SIZE\" in a \
+                    scene's body)";
+const LARGE: &str = "a repair closes holes of up to a tenth of the surface's diagonal and 500 edges";
 
 /// Advice for regions without their own surfaces.
 const REGIONS: &str = "give a volume mesh with a region for each body (.msh, .inp, .vtu), or the outer \
@@ -114,7 +123,7 @@ impl fmt::Display for SurfaceProblem {
                 write!(
                     f,
                     "the surface is open: the corner {} lies on the edge {} of triangle {triangle}, between its \
-                     ends{more}; this program does not divide triangles yet: {EDITOR}",
+                     ends{more}",
                     point(corner),
                     line(ends)
                 )
@@ -128,7 +137,7 @@ impl fmt::Display for SurfaceProblem {
                 write!(
                     f,
                     "the surface is open: the edge {} of triangle {triangle} has no other triangle, at a hole of {hole} \
-                     edges near {}{more}; this program does not close holes yet: {EDITOR}",
+                     edges near {}{more}",
                     line(ends),
                     point(at)
                 )
@@ -161,8 +170,7 @@ impl fmt::Display for SurfaceProblem {
             SurfaceProblem::InsideOut { triangle, at, volume, within: 0, part: [part, all] } => write!(
                 f,
                 "the surface is inside out at triangle {triangle}, {}: the triangles are clockwise seen from \
-                 outside, and the volume is {volume:.6e}; {part} of {all} triangles face inwards; this \
-                 program does not reverse triangles yet: {EDITOR}",
+                 outside, and the volume is {volume:.6e}; {part} of {all} triangles face inwards",
                 point(at)
             ),
             SurfaceProblem::InsideOut { triangle, at, within, .. } => {
@@ -177,7 +185,37 @@ impl fmt::Display for SurfaceProblem {
                 write!(f, "the surface has {parts} unconnected parts; at most {most} are supported")
             }
             SurfaceProblem::Flat => write!(f, "the surface encloses no volume"),
+            SurfaceProblem::Wrap(problem) => write!(f, "{problem}"),
         }
+    }
+}
+
+impl From<WrapProblem> for SurfaceProblem {
+    fn from(problem: WrapProblem) -> SurfaceProblem {
+        SurfaceProblem::Wrap(problem)
+    }
+}
+
+impl SurfaceProblem {
+    /// Advice for the file of a body: the treatment that gets a closed surface from the triangles, if there
+    /// is one. `repaired` are the faults that a repair has left.
+    pub fn advice(&self, repaired: bool) -> Option<String> {
+        let small = match self {
+            SurfaceProblem::Open { small, .. } => *small,
+            SurfaceProblem::Branched { twice, .. } => twice.is_some(),
+            SurfaceProblem::Turned { orientable, .. } => *orientable,
+            SurfaceProblem::InsideOut { within, .. } => *within == 0,
+            SurfaceProblem::Crossing { .. }
+            | SurfaceProblem::Tangled { .. }
+            | SurfaceProblem::Parts { .. } => false,
+            SurfaceProblem::TooFew { .. } | SurfaceProblem::Flat | SurfaceProblem::Wrap(_) => return None,
+        };
+        let is_large = matches!(self, SurfaceProblem::Open { small: false, .. });
+        Some(match (small && !repaired, is_large) {
+            (true, _) => REPAIR.into(),
+            (false, true) => format!("{LARGE}; {WRAP}"),
+            (false, false) => WRAP.into(),
+        })
     }
 }
 
@@ -185,12 +223,7 @@ impl std::error::Error for SurfaceProblem {}
 
 /// Writes which triangles have to be reversed.
 fn reversible(f: &mut fmt::Formatter<'_>, turned: &[u32], all: usize) -> fmt::Result {
-    let numbers = list(turned);
-    write!(
-        f,
-        "{} of {all} are clockwise ({numbers}); this program does not reverse triangles yet: {EDITOR}",
-        turned.len()
-    )
+    write!(f, "{} of {all} are clockwise ({})", turned.len(), list(turned))
 }
 
 /// Writes that a part within others has the wrong orientation.
@@ -228,11 +261,7 @@ fn branched(
     match twice {
         Some(pair) => {
             let pair = list(pair);
-            write!(
-                f,
-                "triangles {pair} have the same corners; this program does not remove duplicates yet: \
-                       {EDITOR}"
-            )
+            write!(f, "triangles {pair} have the same corners")
         }
         None if triangles.len().is_multiple_of(2) => {
             write!(
@@ -248,15 +277,6 @@ fn branched(
             )
         }
     }
-}
-
-fn point(p: &Point3) -> String {
-    format!("({}, {}, {})", short(p.x), short(p.y), short(p.z))
-}
-
-/// Rounds to seven digits, the precision of single precision.
-fn short(x: f64) -> f64 {
-    format!("{x:.6e}").parse().unwrap_or(x)
 }
 
 fn line(ends: &[Point3; 2]) -> String {

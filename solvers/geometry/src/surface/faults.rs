@@ -3,10 +3,16 @@
 use std::collections::HashMap;
 
 use super::error::SurfaceProblem;
+use super::orientation;
 use super::sides::Side;
 use super::soup::{Soup, WELD};
+use super::tree::bounds;
 use crate::{Point3, Vector3};
 
+/// Largest extent of a hole that a repair closes, over the diagonal of the surface, and its largest number of
+/// edges.
+pub(super) const SMALL: f64 = 0.1;
+pub(super) const FEW: usize = 500;
 /// Largest number of edges of a hole that are searched for corners on them.
 const SEARCHED: usize = 1000;
 
@@ -40,29 +46,35 @@ pub(super) fn of_edge(soup: &Soup, sides: &[Side], around: &[Side]) -> SurfacePr
 
 /// Problem of the first hole of a surface in which every edge has one or two triangles.
 fn open(soup: &Soup, sides: &[Side]) -> SurfaceProblem {
+    let diagonal = soup.diagonal();
     let alone = |around: &[Side]| (around.len() == 1).then(|| around[0]);
     let edges: Vec<Side> = sides.chunk_by(|a, b| a.edge == b.edge).filter_map(alone).collect();
     let mut at_corner: HashMap<u32, Vec<usize>> = HashMap::new();
     for (k, side) in edges.iter().enumerate() {
         side.edge.iter().for_each(|&corner| at_corner.entry(corner).or_default().push(k));
     }
+    let place = |corner: u32| soup.points[corner as usize];
     let mut hole_of = vec![usize::MAX; edges.len()];
-    let mut holes = 0;
+    let (mut holes, mut small) = (0, true);
     for start in 0..edges.len() {
         let mut next = if hole_of[start] == usize::MAX { vec![start] } else { continue };
+        let mut own = Vec::new();
         while let Some(k) = next.pop() {
             if std::mem::replace(&mut hole_of[k], holes) == usize::MAX {
+                own.extend(edges[k].edge.map(place));
                 next.extend(edges[k].edge.iter().flat_map(|corner| &at_corner[corner]));
                 next.retain(|&k| hole_of[k] == usize::MAX);
             }
         }
+        let count = own.len() / 2;
+        let (low, high) = bounds(own.into_iter());
+        small &= count <= FEW && (high - low).norm() <= SMALL * diagonal;
         holes += 1;
     }
-    let place = |corner: u32| soup.points[corner as usize];
     let hole: Vec<Side> =
         edges.iter().zip(&hole_of).filter(|(_, hole)| **hole == 0).map(|(s, _)| *s).collect();
     let middle = hole.iter().flat_map(|side| side.edge).map(|corner| place(corner).coords).sum::<Vector3>();
-    let tolerance = WELD * soup.diagonal();
+    let tolerance = WELD * diagonal;
     let ends = |side: &Side| side.edge.map(place);
     let corners = || hole.iter().flat_map(|side| side.edge).take(2 * SEARCHED).map(place);
     let passed = |side: &&Side| corners().any(|corner| lies_on(&corner, &ends(side), tolerance));
@@ -75,11 +87,12 @@ fn open(soup: &Soup, sides: &[Side]) -> SurfaceProblem {
         holes,
         hole: hole.len(),
         at: Point3::from(middle / (2 * hole.len()) as f64),
+        small,
     }
 }
 
 /// Whether a point lies on a line segment, away from its ends.
-fn lies_on(p: &Point3, [a, b]: &[Point3; 2], tolerance: f64) -> bool {
+pub(super) fn lies_on(p: &Point3, [a, b]: &[Point3; 2], tolerance: f64) -> bool {
     let (along, from) = (b - a, p - a);
     let part = from.dot(&along) / along.norm_squared();
     let between = part * along.norm() > tolerance && (1.0 - part) * along.norm() > tolerance;
@@ -89,43 +102,17 @@ fn lies_on(p: &Point3, [a, b]: &[Point3; 2], tolerance: f64) -> bool {
 /// Faces of the file whose orientation has to be reversed for a consistent orientation with a positive
 /// volume. Also returns whether a consistent orientation exists.
 fn turned(soup: &Soup, sides: &[Side]) -> (Vec<u32>, bool) {
-    let mut near: Vec<Vec<(u32, bool)>> = vec![Vec::new(); soup.triangles.len()];
-    for around in sides.chunk_by(|a, b| a.edge == b.edge) {
-        if let [a, b] = around {
-            let same = a.upwards != b.upwards;
-            near[a.triangle as usize].push((b.triangle, same));
-            near[b.triangle as usize].push((a.triangle, same));
-        }
-    }
+    let mut orientation = orientation::consistent(soup, sides);
     let origin = soup.points[soup.triangles[0][0] as usize];
-    let mut sign = vec![0i8; near.len()];
-    let (mut faces, mut orientable) = (Vec::new(), true);
-    for start in 0..near.len() {
-        if sign[start] != 0 {
-            continue;
-        }
-        sign[start] = 1;
-        let (mut part, mut volume, mut next) = (Vec::new(), 0.0, vec![start as u32]);
-        while let Some(triangle) = next.pop() {
-            let own = sign[triangle as usize];
-            let [a, b, c] = soup.corners(triangle as usize).map(|p| p - origin);
-            volume += f64::from(own) * a.dot(&b.cross(&c));
-            part.push(triangle);
-            for &(other, same) in &near[triangle as usize] {
-                let wanted = if same { own } else { -own };
-                match &mut sign[other as usize] {
-                    free @ 0 => {
-                        *free = wanted;
-                        next.push(other);
-                    }
-                    found => orientable &= *found == wanted,
-                }
-            }
-        }
-        let right = if volume < 0.0 { -1 } else { 1 };
-        let wrong = part.into_iter().filter(|&t| sign[t as usize] != right);
-        faces.extend(wrong.map(|t| soup.faces[t as usize]));
+    let mut volumes = vec![0.0; orientation.parts];
+    for (triangle, turned) in orientation.turned.iter().enumerate() {
+        let [a, b, c] = soup.corners(triangle).map(|p| p - origin);
+        let sign = if *turned { -1.0 } else { 1.0 };
+        volumes[orientation.part[triangle] as usize] += sign * a.dot(&b.cross(&c));
     }
+    let inwards: Vec<bool> = volumes.iter().map(|&volume| volume < 0.0).collect();
+    orientation.turn_parts(&inwards);
+    let mut faces: Vec<u32> = orientation.reversed().into_iter().map(|t| soup.faces[t]).collect();
     faces.sort_unstable();
-    (faces, orientable)
+    (faces, orientation.orientable)
 }

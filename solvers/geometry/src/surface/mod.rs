@@ -4,8 +4,10 @@
 //! adjacent normals (Baerentzen and Aanaes 2005). It is correct for closest points on faces, edges and
 //! corners.
 
+mod change;
 mod closed;
 mod crossing;
+mod digits;
 mod error;
 mod faults;
 mod foot;
@@ -13,20 +15,32 @@ mod groups;
 mod needles;
 mod nested;
 mod of_mesh;
+mod orientation;
 mod polygon;
+mod repair;
+mod samples;
 mod shape;
 mod sides;
 mod soup;
+mod treated;
+mod treatment;
 mod tree;
+mod winding;
+mod wrap;
 
+pub use change::Change;
 pub use error::SurfaceProblem;
 pub use foot::Foot;
 pub use groups::{Groups, Set};
 pub use of_mesh::{BoundaryFaces, triangles_of};
 pub use polygon::PolygonFault;
+pub(crate) use samples::{farthest, samples};
 pub use soup::Soup;
+pub use treated::{Gaps, Treated};
+pub use treatment::Treatment;
 use tree::Closest;
 pub(crate) use tree::Tree;
+pub use wrap::WrapProblem;
 
 use crate::triangle::Feature;
 use crate::{Point3, Vector3};

@@ -3,13 +3,14 @@
 
 use super::error::SurfaceProblem;
 use super::soup::Soup;
+use super::winding::solid_angle;
 use crate::Point3;
 
 /// Volume, relative to the area to the power 3/2, below which the volume is rounding.
 const FLAT: f64 = 1e-12;
 
 /// Largest number of parts, each of which is compared with all triangles of the others.
-const MOST: usize = 200;
+pub(super) const MOST: usize = 200;
 
 /// Rejects parts that are inside out.
 pub(super) fn refuse(soup: &Soup, neighbours: &[[u32; 3]]) -> Result<(), SurfaceProblem> {
@@ -48,7 +49,7 @@ pub(super) fn refuse(soup: &Soup, neighbours: &[[u32; 3]]) -> Result<(), Surface
 }
 
 /// Part of each triangle, numbered in the order of their first triangles.
-fn parts(neighbours: &[[u32; 3]]) -> Vec<u32> {
+pub(super) fn parts(neighbours: &[[u32; 3]]) -> Vec<u32> {
     let mut parts = vec![u32::MAX; neighbours.len()];
     let mut next = 0;
     for start in 0..neighbours.len() {
@@ -66,14 +67,8 @@ fn parts(neighbours: &[[u32; 3]]) -> Vec<u32> {
     parts
 }
 
-/// Winding number of triangles around a point, from their solid angles (van Oosterom and Strackee 1983): 1
-/// inside, 0 outside.
+/// Winding number of triangles around a point, from their solid angles: 1 inside, 0 outside.
 pub(super) fn winding(points: &[Point3], triangles: &[[u32; 3]], p: &Point3) -> f64 {
-    let angle = |t: &[u32; 3]| {
-        let [a, b, c] = t.map(|q| points[q as usize] - p);
-        let [x, y, z] = [a, b, c].map(|v| v.norm());
-        let below = x * y * z + a.dot(&b) * z + b.dot(&c) * x + c.dot(&a) * y;
-        2.0 * a.dot(&b.cross(&c)).atan2(below)
-    };
+    let angle = |t: &[u32; 3]| solid_angle(&t.map(|q| points[q as usize]), p);
     triangles.iter().map(angle).sum::<f64>() / (4.0 * std::f64::consts::PI)
 }

@@ -1,6 +1,6 @@
 //! Triangles as listed in a file, and the merging of coinciding corners.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use super::groups::Groups;
 use super::polygon::{self, PolygonFault};
@@ -75,6 +75,48 @@ impl Soup {
         let kept: Vec<usize> = (0..self.triangles.len()).filter(has_area).collect();
         let (triangles, faces) = kept.iter().map(|&t| (corners(t), self.faces[t])).unzip();
         Soup { points, triangles, faces, groups: self.groups.of_triangles(&kept) }
+    }
+
+    /// Adds a triangle with the face and the groups of another triangle.
+    pub(super) fn add_beside(&mut self, other: usize, corners: [u32; 3]) {
+        self.triangle(self.faces[other] as usize, corners);
+        self.groups.copy(other, self.triangles.len() - 1);
+    }
+
+    /// The triangles without points that none has.
+    pub(super) fn used(&self) -> Soup {
+        let mut index = vec![u32::MAX; self.points.len()];
+        let mut points = Vec::new();
+        let mut place = |p: u32| {
+            let index = &mut index[p as usize];
+            if *index == u32::MAX {
+                *index = points.len() as u32;
+                points.push(self.points[p as usize]);
+            }
+            *index
+        };
+        let triangles = self.triangles.iter().map(|t| t.map(&mut place)).collect();
+        Soup { triangles, points, faces: self.faces.clone(), groups: self.groups.clone() }
+    }
+
+    /// The given triangles, in this order.
+    pub(super) fn of_triangles(&self, kept: &[usize]) -> Soup {
+        let (triangles, faces) = kept.iter().map(|&t| (self.triangles[t], self.faces[t])).unzip();
+        let groups = self.groups.of_triangles(kept);
+        Soup { points: self.points.clone(), triangles, faces, groups }
+    }
+
+    /// The triangles without those whose corners an earlier triangle has, in any order; and the
+    /// centres of these.
+    pub(super) fn without_doubles(&self) -> (Soup, Vec<Point3>) {
+        let mut known = HashSet::new();
+        let is_new = |&t: &usize| {
+            let mut corners = self.triangles[t];
+            corners.sort_unstable();
+            known.insert(corners)
+        };
+        let (kept, doubles): (Vec<usize>, Vec<usize>) = (0..self.triangles.len()).partition(is_new);
+        (self.of_triangles(&kept), doubles.into_iter().map(|t| self.middle(t)).collect())
     }
 
     /// Length of the diagonal of the bounding box of all points, in the unit of the file.

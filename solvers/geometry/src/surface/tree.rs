@@ -8,20 +8,20 @@ const FEW: usize = 4;
 
 /// Hierarchy of boxes; a leaf contains triangles.
 pub(crate) struct Tree {
-    nodes: Vec<Node>,
+    pub(super) nodes: Vec<Node>,
     /// Triangles in the order of the boxes.
     order: Vec<u32>,
     /// Corners of the triangles in this order.
-    corners: Vec<[Point3; 3]>,
+    pub(super) corners: Vec<[Point3; 3]>,
 }
 
-struct Node {
-    low: Point3,
-    high: Point3,
+pub(super) struct Node {
+    pub(super) low: Point3,
+    pub(super) high: Point3,
     /// First triangle of a leaf, or first of the two children.
-    start: u32,
+    pub(super) start: u32,
     /// Number of triangles; 0 for a box with children.
-    count: u32,
+    pub(super) count: u32,
 }
 
 /// The closest point of a surface.
@@ -123,7 +123,51 @@ impl Tree {
     }
 }
 
+impl Tree {
+    /// Calls `found` with every intersection of the line `from + t * line`, `0 < t < longest`, and a
+    /// triangle, as t. Rounding may lose or double intersections at the edges of triangles.
+    pub(super) fn pierced(&self, from: &Point3, line: &Vector3, longest: f64, mut found: impl FnMut(f64)) {
+        let mut open = vec![0u32];
+        while let Some(at) = open.pop() {
+            let node = &self.nodes[at as usize];
+            if !node.is_passed(from, line, longest) {
+                continue;
+            }
+            if node.count == 0 {
+                open.extend([node.start + 1, node.start]);
+                continue;
+            }
+            for [a, b, c] in &self.corners[node.start as usize..(node.start + node.count) as usize] {
+                // Moeller and Trumbore 1997.
+                let (ab, ac, off) = (b - a, c - a, from - a);
+                let (normal, turned) = (line.cross(&ac), off.cross(&ab));
+                let det = ab.dot(&normal);
+                let [u, v, t] = [off.dot(&normal), line.dot(&turned), ac.dot(&turned)].map(|x| x / det);
+                if u >= 0.0 && v >= 0.0 && u + v <= 1.0 && t > 0.0 && t < longest {
+                    found(t);
+                }
+            }
+        }
+    }
+}
+
 impl Node {
+    /// Whether a line meets the box.
+    fn is_passed(&self, from: &Point3, line: &Vector3, longest: f64) -> bool {
+        let (mut first, mut last) = (0.0f64, longest);
+        for axis in 0..3 {
+            if line[axis] == 0.0 {
+                if from[axis] < self.low[axis] || from[axis] > self.high[axis] {
+                    return false;
+                }
+                continue;
+            }
+            let [a, b] = [self.low, self.high].map(|end| (end[axis] - from[axis]) / line[axis]);
+            (first, last) = (first.max(a.min(b)), last.min(a.max(b)));
+        }
+        first <= last
+    }
+
     /// Squared distance of a point from the box.
     fn square(&self, p: &Point3) -> f64 {
         (0..3).map(|a| (self.low[a] - p[a]).max(p[a] - self.high[a]).max(0.0).powi(2)).sum()

@@ -70,7 +70,9 @@ impl Deck {
 
     /// Reads the text of a deck; `depth` is the number of nested includes.
     pub(super) fn read(&mut self, text: &str, depth: usize) -> Parsed<()> {
-        for card in cards(text)? {
+        let cards = cards(text)?;
+        self.flat.of_model |= cards.iter().any(|card| card.keyword == "STEP");
+        for card in cards {
             self.left_out.extend(lost(&card, depth));
             if self.ended {
                 if card.keyword == "DLOAD" && self.parts.is_empty() {
@@ -122,6 +124,8 @@ impl Deck {
             }
             "STEP" => {
                 self.ended = true;
+                // Solvers pass over nodes without elements in a model.
+                self.flat.content.leave_unused_out();
                 Ok(())
             }
             "SYSTEM" | "NGEN" | "NFILL" | "NCOPY" | "NMAP" | "ELGEN" | "ELCOPY" | "SUBMODEL"

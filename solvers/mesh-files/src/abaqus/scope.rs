@@ -25,6 +25,8 @@ pub(super) struct Scope {
     shells: HashMap<u64, (Place, Vec<u64>)>,
     /// Number of members of all sets so far.
     members: u64,
+    /// Whether the deck is a model with steps.
+    pub(super) of_model: bool,
 }
 
 /// Names as written and members of sets, by upper-case name.
@@ -115,7 +117,9 @@ impl Scope {
                 self.touch(&words[1..]);
                 continue;
             };
-            if has_inner_nodes(name, nodes, words.len() - 1) {
+            // CalculiX takes the first eight nodes of a C3D8, which some models list as for a C3D20.
+            let longer = self.of_model && name.eq_ignore_ascii_case("C3D8") && words.len() > nodes + 1;
+            if longer || has_inner_nodes(name, nodes, words.len() - 1) {
                 self.touch(&words.split_off(nodes + 1));
                 self.content.leave_unused_out();
             }
@@ -271,6 +275,8 @@ impl Scope {
             else {
                 continue;
             };
+            // `P2NP` is the pressure of a node on the face that `P2` loads.
+            let label = label.strip_suffix("NP").unwrap_or(&label);
             let Some(face) = label.strip_prefix('P').filter(|face| face.parse::<u8>().is_ok()) else {
                 continue;
             };
@@ -281,7 +287,7 @@ impl Scope {
             let known = !numbers.is_empty() && numbers.iter().all(|&n| self.content.cell_of(n).is_some());
             if known {
                 // Elements without this face are reported where the load is read.
-                let _ = self.faces(place, &load_group(&of, &label), &numbers, &format!("S{face}"));
+                let _ = self.faces(place, &load_group(&of, label), &numbers, &format!("S{face}"));
             }
         }
     }

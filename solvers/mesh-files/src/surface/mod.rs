@@ -1,22 +1,27 @@
-//! Surface files in and out: STL (text and binary), OBJ and PLY (text and binary).
+//! Surface files: STL (text and binary), OBJ, PLY (text and binary), OFF, VTK's .vtp and Medit's .mesh. STL
+//! is also written.
 
+mod medit;
 mod obj;
+mod off;
 mod ply;
 mod stl;
 
 use std::path::Path;
 
 use geometry::Surface;
-use geometry::surface::Soup;
+use geometry::surface::{Soup, Treated, Treatment};
 
 use crate::error::{FileError, SurfaceError};
 use crate::open::{bytes, check_unit, suffix};
 use crate::text::{self, unknown};
+use crate::vtu;
 
 pub(super) use stl::write;
 
 /// Surface formats accepted by [`read_surface`], for messages.
-pub const SURFACES: &str = "give a closed surface: STL (.stl), OBJ (.obj) or PLY (.ply)";
+pub const SURFACES: &str =
+    "give a closed surface: STL (.stl), OBJ (.obj), PLY (.ply), OFF (.off), VTK (.vtp) or Medit (.mesh)";
 
 /// Reads a closed surface; the content of the file determines the format. `unit` is the length of the file's
 /// unit in metres.
@@ -33,18 +38,46 @@ pub fn read_surface(file: &Path, unit: f64) -> Result<Surface, SurfaceError> {
 /// # Errors
 /// As for [`read_surface`].
 pub fn read_surface_bytes(bytes: &[u8], file: &Path, unit: f64) -> Result<Surface, SurfaceError> {
+    Ok(read_treated_bytes(bytes, file, unit, Treatment::AsGiven)?.surface)
+}
+
+/// Reads a surface that need not be closed, and repairs or wraps it.
+///
+/// # Errors
+/// As for [`read_surface`], for the faults that the treatment leaves; a size of a wrap that does not fit the
+/// surface.
+pub fn read_treated(file: &Path, unit: f64, treatment: Treatment) -> Result<Treated, SurfaceError> {
+    read_treated_bytes(&bytes(file)?, file, unit, treatment)
+}
+
+/// Reads a surface as [`read_treated`] does, from memory; `file` is the name used in errors.
+///
+/// # Errors
+/// As for [`read_treated`].
+pub fn read_treated_bytes(
+    bytes: &[u8],
+    file: &Path,
+    unit: f64,
+    treatment: Treatment,
+) -> Result<Treated, SurfaceError> {
     check_unit(file, unit)?;
     let bytes = unmarked(bytes);
     let soup = match kind(bytes, file) {
         Some(Kind::Stl) => stl::parse(bytes),
         Some(Kind::Obj) => obj::parse(bytes),
         Some(Kind::Ply) => ply::parse(bytes),
+        Some(Kind::Off) => off::parse(bytes),
+        Some(Kind::Medit) => medit::parse(bytes),
+        Some(Kind::Vtp) => vtu::surface(bytes),
         None => unknown(bytes),
     };
     let at = |(place, problem)| FileError::At { file: file.to_path_buf(), place, problem };
     let soup: Soup = soup.map_err(at)?;
-    let open = |problem| SurfaceError::Surface { file: file.to_path_buf(), problem: Box::new(problem) };
-    Surface::new(soup, unit).map_err(open)
+    Surface::treated(soup, unit, treatment).map_err(|problem| SurfaceError::Surface {
+        file: file.to_path_buf(),
+        repaired: treatment == Treatment::Repair,
+        problem: Box::new(problem),
+    })
 }
 
 /// Whether a file holds a surface, according to its first bytes; false for a file that cannot be read.
@@ -66,6 +99,9 @@ enum Kind {
     Stl,
     Obj,
     Ply,
+    Off,
+    Medit,
+    Vtp,
 }
 
 /// Format of a surface, `None` for other content.
@@ -76,6 +112,12 @@ fn kind(bytes: &[u8], file: &Path) -> Option<Kind> {
         Some(Kind::Ply)
     } else if stl::is_binary(bytes) || begins(b"solid") {
         Some(Kind::Stl)
+    } else if off::is_text(&bytes[start..]) {
+        Some(Kind::Off)
+    } else if medit::is_text(&bytes[start..]) {
+        Some(Kind::Medit)
+    } else if begins(b"<") && vtu::is_surface(bytes) {
+        Some(Kind::Vtp)
     } else if obj::is_text(&bytes[start..]) {
         Some(Kind::Obj)
     } else {

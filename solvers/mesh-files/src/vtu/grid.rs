@@ -15,7 +15,7 @@ use crate::xml::{line_of_fault, refuse_long_tags};
 /// Prefix of the arrays that mark cells in groups across the regions; the number of the group follows.
 pub(super) const GROUP: &str = "group-";
 
-struct File<'a> {
+pub(super) struct File<'a> {
     bytes: &'a [u8],
     document: &'a Document<'a>,
     coding: Coding,
@@ -26,6 +26,16 @@ struct File<'a> {
 }
 
 pub(crate) fn parse(bytes: &[u8], wanted: Option<&str>) -> Parsed<Content> {
+    open(bytes, "UnstructuredGrid", wanted, |file| file.content())
+}
+
+/// Opens a file of this type and reads it.
+pub(super) fn open<T>(
+    bytes: &[u8],
+    kind: &'static str,
+    wanted: Option<&str>,
+    read: impl FnOnce(File) -> Parsed<T>,
+) -> Parsed<T> {
     // Raw data are not XML, so the text before them is parsed with a closing tag added.
     let tag = b"<AppendedData";
     let cut = bytes.windows(tag.len()).position(|w| w == tag);
@@ -42,9 +52,10 @@ pub(crate) fn parse(bytes: &[u8], wanted: Option<&str>) -> Parsed<Content> {
     if !root.has_tag_name("VTKFile") {
         return Err((here, Problem::Format { found: format!("<{}>", root.tag_name().name()) }));
     }
-    if root.attribute("type") != Some("UnstructuredGrid") {
+    if root.attribute("type") != Some(kind) {
         let found = root.attribute("type").unwrap_or(root.tag_name().name()).to_string();
-        return Err((here, Problem::Expected { expected: "<VTKFile type=\"UnstructuredGrid\">", found }));
+        let expected = "<VTKFile type=\"UnstructuredGrid\"> (a mesh) or \"PolyData\" (a surface)";
+        return Err((here, Problem::Expected { expected, found }));
     }
     let compressor = match root.attribute("compressor") {
         None | Some("") => Compressor::None,
@@ -58,7 +69,7 @@ pub(crate) fn parse(bytes: &[u8], wanted: Option<&str>) -> Parsed<Content> {
     let head = if root.attribute("header_type") == Some("UInt64") { 8 } else { 4 };
     let coding = Coding { big_endian: root.attribute("byte_order") == Some("BigEndian"), head, compressor };
     let appended = cut.map(|cut| appended(bytes, cut)).transpose()?;
-    File { bytes, document: &document, coding, appended, wanted }.content()
+    read(File { bytes, document: &document, coding, appended, wanted })
 }
 
 /// Position after the `_` of the appended data, and whether these are base64.
@@ -81,7 +92,7 @@ impl<'a> File<'a> {
             content.region(Place::Line(1), name)?;
         }
         let mut pieces = 0;
-        for piece in all.descendants().filter(|node| node.has_tag_name("Piece")) {
+        for piece in self.pieces() {
             pieces += 1;
             self.piece(piece, &mut content, &region_names, &surface_names)?;
         }
@@ -92,11 +103,16 @@ impl<'a> File<'a> {
         }
     }
 
-    fn place(&self, node: Node) -> Place {
+    pub(super) fn pieces(&self) -> impl Iterator<Item = Node<'a, 'a>> + use<'a> {
+        let document: &'a Document<'a> = self.document;
+        document.root_element().descendants().filter(|node| node.has_tag_name("Piece"))
+    }
+
+    pub(super) fn place(&self, node: Node) -> Place {
         Place::Line(self.document.text_pos_at(node.range().start).row as usize)
     }
 
-    fn count(&self, piece: Node, name: &'static str) -> Parsed<usize> {
+    pub(super) fn count(&self, piece: Node, name: &'static str) -> Parsed<usize> {
         let found = piece.attribute(name).unwrap_or_default();
         let count = found.trim().parse::<usize>();
         count.map_err(|_| (self.place(piece), Problem::Expected { expected: name, found: found.into() }))
@@ -105,7 +121,7 @@ impl<'a> File<'a> {
     /// Reads a piece, whose points follow those of the previous pieces.
     fn piece(
         &self,
-        piece: Node,
+        piece: Node<'a, 'a>,
         content: &mut Content,
         region_names: &[String],
         surface_names: &[String],
@@ -113,42 +129,14 @@ impl<'a> File<'a> {
         let (points, cells) = (self.count(piece, "NumberOfPoints")?, self.count(piece, "NumberOfCells")?);
         let first = content.node_count() as u64;
         self.data(piece, [cells, points], [content.element_count() as u64, first], content)?;
-        let section = |name: &'static str| {
-            let found = piece.children().find(|node| node.has_tag_name(name));
-            found.ok_or((self.place(piece), Problem::Missing { section: name }))
-        };
-        let coordinates = section("Points")?.children().find(|node| node.has_tag_name("DataArray"));
-        let coordinates = coordinates.ok_or((self.place(piece), Problem::Missing { section: "Points" }))?;
-        let dimension = coordinates.attribute("NumberOfComponents").unwrap_or("3");
-        if dimension.trim() != "3" {
-            let expected = "points of 3 coordinates";
-            let found = dimension.to_string();
-            return Err((self.place(coordinates), Problem::Expected { expected, found }));
-        }
-        let three = points
-            .checked_mul(3)
-            .ok_or((self.place(piece), Problem::TooMany { what: "nodes", count: points }))?;
-        let at = reals(self.array(coordinates, three)?);
+        let (place, at) = self.points(piece, points)?;
         for (number, x) in at.chunks_exact(3).enumerate() {
-            content.node(self.place(coordinates), first + number as u64, Point3::new(x[0], x[1], x[2]))?;
+            content.node(place, first + number as u64, Point3::new(x[0], x[1], x[2]))?;
         }
-        let of_cells = section("Cells")?;
-        let named = |name: &'static str| {
-            let mut arrays = of_cells.children().filter(|node| node.has_tag_name("DataArray"));
-            let found = arrays.find(|node| node.attribute("Name") == Some(name));
-            found.ok_or((self.place(of_cells), Problem::Missing { section: name }))
-        };
+        let of_cells = self.section(piece, "Cells")?;
+        let named = |name| self.named(of_cells, name);
         let types = whole(self.array(named("types")?, cells)?, self.place(of_cells))?;
-        let offsets = whole(self.array(named("offsets")?, cells)?, self.place(of_cells))?;
-        let ends: Option<Vec<usize>> = offsets.iter().map(|&end| usize::try_from(end).ok()).collect();
-        let ends = ends.filter(|ends| ends.is_sorted());
-        let Some(ends) = ends else {
-            let expected = "ascending offsets";
-            return Err((
-                self.place(named("offsets")?),
-                Problem::Expected { expected, found: "others".into() },
-            ));
-        };
+        let (ends, _) = self.offsets(of_cells, cells)?;
         let length = ends.last().copied().unwrap_or(0);
         let list = whole(self.array(named("connectivity")?, length)?, self.place(of_cells))?;
         let regions = regions(|name| self.cell_array(piece, cells, name))?;
@@ -163,6 +151,45 @@ impl<'a> File<'a> {
         }
         let cells = Cells { first, types, ends, list, regions, surfaces, further };
         cells.add_to(content, region_names, surface_names)
+    }
+
+    pub(super) fn section(&self, piece: Node<'a, 'a>, name: &'static str) -> Parsed<Node<'a, 'a>> {
+        let found = piece.children().find(|node| node.has_tag_name(name));
+        found.ok_or((self.place(piece), Problem::Missing { section: name }))
+    }
+
+    /// The array of this name in a section.
+    pub(super) fn named(&self, section: Node<'a, 'a>, name: &'static str) -> Parsed<Node<'a, 'a>> {
+        let mut arrays = section.children().filter(|node| node.has_tag_name("DataArray"));
+        let found = arrays.find(|node| node.attribute("Name") == Some(name));
+        found.ok_or((self.place(section), Problem::Missing { section: name }))
+    }
+
+    /// Coordinates of the points of a piece, and their place.
+    pub(super) fn points(&self, piece: Node<'a, 'a>, points: usize) -> Parsed<(Place, Vec<f64>)> {
+        let section = self.section(piece, "Points")?;
+        let coordinates = section.children().find(|node| node.has_tag_name("DataArray"));
+        let coordinates = coordinates.ok_or((self.place(piece), Problem::Missing { section: "Points" }))?;
+        let place = self.place(coordinates);
+        let dimension = coordinates.attribute("NumberOfComponents").unwrap_or("3");
+        if dimension.trim() != "3" {
+            let (expected, found) = ("points of 3 coordinates", dimension.to_string());
+            return Err((place, Problem::Expected { expected, found }));
+        }
+        let three = points
+            .checked_mul(3)
+            .ok_or((self.place(piece), Problem::TooMany { what: "nodes", count: points }))?;
+        Ok((place, reals(self.array(coordinates, three)?)))
+    }
+
+    /// Ends of the cells or polygons of a section in its list of nodes, and the place of these ends.
+    pub(super) fn offsets(&self, section: Node<'a, 'a>, count: usize) -> Parsed<(Vec<usize>, Place)> {
+        let node = self.named(section, "offsets")?;
+        let offsets = whole(self.array(node, count)?, self.place(section))?;
+        let ends: Option<Vec<usize>> = offsets.iter().map(|&end| usize::try_from(end).ok()).collect();
+        let ends = ends.filter(|ends| ends.is_sorted());
+        let unsorted = Problem::Expected { expected: "ascending offsets", found: "others".into() };
+        ends.map(|ends| (ends, self.place(node))).ok_or((self.place(node), unsorted))
     }
 
     /// Adds the arrays of cells and points, if one is wanted: with the number of items and the first number of each.
@@ -244,7 +271,7 @@ impl<'a> File<'a> {
         Ok(names)
     }
 
-    fn array(&self, node: Node, count: usize) -> Parsed<Numbers> {
+    pub(super) fn array(&self, node: Node, count: usize) -> Parsed<Numbers> {
         let kind = node.attribute("type").unwrap_or_default();
         let format = node.attribute("format").unwrap_or("ascii");
         let text = node.text().unwrap_or_default();
@@ -278,7 +305,7 @@ fn reals(numbers: Numbers) -> Vec<f64> {
     }
 }
 
-fn whole(numbers: Numbers, place: Place) -> Parsed<Vec<i64>> {
+pub(super) fn whole(numbers: Numbers, place: Place) -> Parsed<Vec<i64>> {
     match numbers {
         Numbers::Whole(values) => Ok(values),
         Numbers::Real(_) => {

@@ -34,7 +34,7 @@ pub fn solve_in_time(
         let staged = stage.as_ref().map(|stage| stage.problem(problem.body));
         let problem = &TimeProblem { body: staged.as_ref().unwrap_or(problem.body), ..problem.clone() };
         let newton = Newton::with_mass(problem.body, &params.newton, mass)?.continuing(&totals);
-        let scheme = Scheme::new(params.rho_inf);
+        let scheme = params.alpha.map_or_else(|| Scheme::new(params.rho_inf), Scheme::hilber);
         let mut march =
             March { problem, params, scheme, newton, memory: memory.as_mut(), course: &mut course };
         if stages.is_first() {

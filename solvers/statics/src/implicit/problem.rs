@@ -51,6 +51,9 @@ pub struct TimeParams {
     /// Spectral radius at infinite frequency, 0 to 1. With 1 nothing is dissipated; with 0 unresolved
     /// frequencies vanish in one step. Contact needs a value below 1.
     pub rho_inf: f64,
+    /// `alpha` of the method of Hilber, Hughes and Taylor in place of `rho_inf`, -1/3 to 0. With 0 it is Newmark's
+    /// trapezoidal rule.
+    pub alpha: Option<f64>,
     /// Parameters of Newton's method.
     pub newton: NewtonParams,
     /// Uzawa iterations of the augmented Lagrangian per step; 0 for a plain penalty.
@@ -120,6 +123,9 @@ impl TimeProblem<'_> {
         }
         if !(params.rho_inf >= 0.0 && params.rho_inf <= 1.0) {
             return refuse("rho_inf", params.rho_inf, "it must be between 0 and 1");
+        }
+        if let Some(value) = params.alpha.filter(|alpha| !(*alpha >= -1.0 / 3.0 && *alpha <= 0.0)) {
+            return refuse("alpha", value, "it must be between -1/3 and 0");
         }
         if let Some(value) = params.accuracy.filter(|a| !(*a > 0.0)) {
             return refuse("the accuracy", value, "it must be positive");

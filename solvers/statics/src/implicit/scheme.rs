@@ -38,6 +38,12 @@ impl Scheme {
         Scheme { alpha_m, alpha_f, beta, gamma: 0.5 - alpha_m + alpha_f }
     }
 
+    /// The alpha method: means of the forces and not of the inertia, `alpha_f = -alpha`. Source: Hilber,
+    /// Hughes and Taylor, Earthquake Eng. Struct. Dyn. 5 (1977) 283-292.
+    pub fn hilber(alpha: f64) -> Scheme {
+        Scheme { alpha_m: 0.0, alpha_f: -alpha, beta: 0.25 * (1.0 - alpha).powi(2), gamma: 0.5 - alpha }
+    }
+
     pub fn over(self, dt: f64) -> Update {
         Update { scheme: self, dt }
     }
