@@ -16,7 +16,7 @@ pub(crate) struct Solution {
     /// Parameters of the method's own pressure field at the end, Pa, tension positive; empty without such a
     /// field.
     pub(crate) pressure: Vec<f64>,
-    /// Force of the nodal supports on each node at the end, N; empty if unknown.
+    /// Force of the nodal supports on each node at the end, N; empty if unknown, as after a relaxation.
     pub(crate) reaction: Vec<Vector3>,
     /// Resultant of each support's forces on the body at the end of a linear procedure.
     pub(crate) supports: Vec<Resultant>,

@@ -98,11 +98,9 @@ fn path(problem: &Problem, asked: &Static, counters: &mut Counters) -> Result<(S
         let systems = tangents.systems();
         solve_static(&StaticProblem { systems, ..problem.clone() }, &params, |step, rest| {
             supports = support_forces(method, prepared, &rest, step.time);
-            reaction.clear();
-            reaction.extend_from_slice(rest.reaction);
+            reaction = rest.reaction.to_vec();
             points = prepared.foundation_forces(rest.u, &[]);
-            let (supports, points) = (&supports, &points);
-            let reported = |step| with_forces(reported(step, setup), supports, points);
+            let reported = |step| with_forces(reported(step, setup), &supports, &points);
             if let Some(watch) = watch {
                 watch.step(&reported(step));
             }
@@ -128,8 +126,6 @@ fn path(problem: &Problem, asked: &Static, counters: &mut Counters) -> Result<(S
     if path.failure.is_some() && relaxes {
         let closures = last.tools.iter().map(|tool| tool.closure).collect();
         let from = Start { load: last.load, u: u.clone(), closures, history: path.history };
-        // The reactions of the last equilibrium are not those of the end.
-        reaction.clear();
         let done = relaxation::continue_from((method.nodes(), setup), asked.steps, prepared, from, counters)?;
         steps.extend(done.steps.iter().cloned());
         fields.extend(done.fields.iter().cloned());
@@ -153,7 +149,7 @@ fn path(problem: &Problem, asked: &Static, counters: &mut Counters) -> Result<(S
         dofs: problem.free_dofs() + path.pressure.len(),
         u,
         pressure: path.pressure,
-        reaction,
+        reaction: if forces.is_none() { reaction } else { Vec::new() },
         residual: Some(residual),
         tangents: path.solver.map(|solver| solver.name()),
         history: Some(StepHistory { steps, fields, last: end, metrics, failure }),

@@ -21,7 +21,7 @@ fn points_inside(mesh: &Mesh) -> Vec<Point3> {
 
 fn many_points() -> VolumeRule {
     CellKind::ALL.into_iter().fold(VolumeRule::FINE, |rule, kind| {
-        rule.with(kind, kind.entry().points.volume.max(24)).unwrap_or(rule)
+        rule.with(kind, kind.entry().points.fine.max(24)).unwrap_or(rule)
     })
 }
 

@@ -121,7 +121,9 @@ fn scene<'a>(root: Node<'a, 'a>, model: &Model, source: &Source) -> Option<Vec<P
     let attached: Vec<Node> = boundary.into_iter().filter(|node| !conditions.boundary(*node)).collect();
     children("Loads").into_iter().for_each(|node| conditions.load(node));
     let body_parts = materials.body(&mesh, model, source);
-    rigid::read(materials.rigid, &attached, children("Rigid"), children("Contact"), &mut conditions);
+    let mut bodies = materials.rigid;
+    rigid::read(&mut bodies, &attached, children("Rigid"), &mut conditions);
+    children("Contact").into_iter().for_each(|node| contact::pair(node, &bodies, &mut conditions));
     children("Constraints").into_iter().for_each(|node| contact::wall(node, &mut conditions));
     let Conditions { supports, loads, tools, .. } = conditions;
     let mut parts = body_parts?;

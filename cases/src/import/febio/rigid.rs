@@ -1,11 +1,10 @@
-//! Rigid bodies that do not rotate: the nodes attached to one move with it, and solids touch it. (FEBio User Manual 4, 3.13.)
+//! Rigid bodies that do not rotate: the nodes attached to one move with it. (FEBio User Manual 4, 3.13.)
 
 use std::collections::HashSet;
 
 use roxmltree::Node;
 
 use super::conditions::Conditions;
-use super::contact;
 use super::curves::Course;
 use super::fields::{Fields, Scaled, Source};
 use crate::import::document::{Part, quoted};
@@ -60,12 +59,11 @@ impl<'a> Body<'a> {
     }
 }
 
-/// Reads the conditions of rigid bodies; adds the supports of their nodes, and tools for those that touch a solid.
+/// Reads the conditions of rigid bodies and adds the supports of their nodes.
 pub(super) fn read<'a>(
-    mut bodies: Vec<Body<'a>>,
+    bodies: &mut [Body<'a>],
     attached: &[Node<'a, 'a>],
     section: Vec<Node<'a, 'a>>,
-    contacts: Vec<Node<'a, 'a>>,
     conditions: &mut Conditions<'a, '_>,
 ) {
     let source = conditions.source;
@@ -82,12 +80,11 @@ pub(super) fn read<'a>(
         fields.finish();
     }
     for node in section {
-        condition(node, &mut bodies, conditions);
+        condition(node, bodies, conditions);
     }
-    contacts.into_iter().for_each(|node| contact::pair(node, &bodies, conditions));
     let mut seen = HashSet::new();
-    for body in bodies.into_iter().filter(|body| !body.groups.is_empty()) {
-        supports(&body, conditions, &mut seen);
+    for body in bodies.iter().filter(|body| !body.groups.is_empty()) {
+        supports(body, conditions, &mut seen);
     }
 }
 

@@ -26,18 +26,19 @@ impl Edges {
         Edges(sharp)
     }
 
-    /// Whether a triangle of the mesh cuts off an edge: its corners lie on both sides of one that is near.
-    pub(super) fn are_cut(&self, surface: &Surface, corners: &[Point3; 3]) -> bool {
+    /// Whether a face of the mesh cuts off an edge: its nodes lie on both sides of one that is near.
+    pub(super) fn are_cut(&self, surface: &Surface, nodes: &[Vector3]) -> bool {
         if self.0.is_empty() {
             return false;
         }
-        let [a, b, c] = corners.map(|corner| normal(surface, surface.closest(&corner).1));
-        if a.dot(&b).min(b.dot(&c)).min(c.dot(&a)) >= SHARP {
+        let normals: Vec<Vector3> =
+            nodes.iter().map(|node| normal(surface, surface.closest(&Point3::from(*node)).1)).collect();
+        if normals.iter().all(|a| normals.iter().all(|b| a.dot(b) >= SHARP)) {
             return false;
         }
-        let [a, b, c] = corners.map(|corner| corner.coords);
-        let longest = (b - a).norm().max((c - b).norm()).max((a - c).norm());
-        let middle = Point3::from((a + b + c) / 3.0);
+        let middle = Point3::from(nodes.iter().sum::<Vector3>() / nodes.len() as f64);
+        let longest =
+            nodes.iter().flat_map(|a| nodes.iter().map(move |b| (a - b).norm())).fold(0.0, f64::max);
         self.0.iter().any(|edge| distance(&middle, edge) < longest)
     }
 }

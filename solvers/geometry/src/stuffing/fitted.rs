@@ -1,10 +1,11 @@
 //! Moves the boundary of a stuffed mesh so that the mesh encloses the volume of its surface.
 //!
-//! The corners of a stuffed mesh lie on the surface and its faces are chords. Where the surface is convex they cut off
-//! a volume, 2 % of a sphere with 400 nodes; where parts are thinner than the cells, far more. Linear meshes spread
-//! this error to both sides of the surface: each corner moves along its normal by the mean distance of the faces
-//! around it from the surface. A face that cuts off a sharp edge does not count: its corners on flat faces of the body
-//! stay there, where a tool may touch them. Quadratic meshes get curved faces instead: the middle nodes move onto the surface.
+//! The corners of a stuffed mesh lie on the surface and its faces are chords. Where the surface is convex
+//! they cut off a volume, 2 % of a sphere with 400 nodes; where parts are thinner than the cells, far more.
+//! Linear meshes spread this error to both sides of the surface: each corner moves along its normal by the
+//! mean distance of the faces around it from the surface. A face that cuts off a sharp edge does not count:
+//! its corners on flat faces of the body stay there, where a tool may touch them. Quadratic meshes get
+//! curved faces instead: the middle nodes move onto the surface.
 
 use rayon::prelude::*;
 
@@ -97,6 +98,7 @@ fn triangles(mesh: &Mesh, facet: Facet, surface: &Surface, edges: &Edges) -> Vec
         };
         points.iter().zip(weights).map(|(point, weight)| point * weight).sum::<Vector3>().into()
     };
+    let cuts_an_edge = edges.are_cut(surface, &points);
     let triangle = |corners: &[usize; 3]| {
         let [a, b, c] = corners.map(|k| points[k]);
         // The middles of the edges integrate quadratic functions exactly.
@@ -104,7 +106,7 @@ fn triangles(mesh: &Mesh, facet: Facet, surface: &Surface, edges: &Edges) -> Vec
             let [i, j] = [corners[i], corners[j]].map(|k| BARYCENTRIC[k]);
             place(std::array::from_fn(|k| 0.5 * (i[k] + j[k])))
         });
-        let [ab, bc, ca] = match edges.are_cut(surface, &[a, b, c].map(Point3::from)) {
+        let [ab, bc, ca] = match cuts_an_edge {
             true => [0.0; 3],
             false => middles.map(|point| -surface.signed_distance(&point) / 12.0),
         };

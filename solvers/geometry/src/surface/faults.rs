@@ -11,10 +11,16 @@ use crate::{Point3, Vector3};
 
 /// Largest extent of a hole that a repair closes, over the diagonal of the surface, and its largest number of
 /// edges.
-pub(super) const SMALL: f64 = 0.1;
-pub(super) const FEW: usize = 500;
+const SMALL: f64 = 0.1;
+const FEW: usize = 500;
 /// Largest number of edges of a hole that are searched for corners on them.
 const SEARCHED: usize = 1000;
+
+/// Whether a repair closes a hole of this number of edges, by its extent and the diagonal of the surface. A hole
+/// of three edges lacks one triangle, whatever its extent.
+pub(super) fn is_small(edges: usize, across: f64, diagonal: f64) -> bool {
+    edges == 3 || (edges <= FEW && across <= SMALL * diagonal)
+}
 
 /// Problem of the edge with the sides `around`, which are not two of consistent orientation. `sides` are
 /// those of all edges.
@@ -68,7 +74,7 @@ fn open(soup: &Soup, sides: &[Side]) -> SurfaceProblem {
         }
         let count = own.len() / 2;
         let (low, high) = bounds(own.into_iter());
-        small &= count <= FEW && (high - low).norm() <= SMALL * diagonal;
+        small &= is_small(count, (high - low).norm(), diagonal);
         holes += 1;
     }
     let hole: Vec<Side> =

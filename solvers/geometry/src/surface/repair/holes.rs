@@ -6,7 +6,7 @@ use super::junctions::rims;
 use crate::Point3;
 use crate::surface::change::Change;
 use crate::surface::digits::rounded;
-use crate::surface::faults::{FEW, SMALL};
+use crate::surface::faults::is_small;
 use crate::surface::sides::Side;
 use crate::surface::soup::Soup;
 use crate::surface::tree::bounds;
@@ -18,10 +18,10 @@ pub(super) fn close(soup: &mut Soup) -> Option<Change> {
         let (low, high) = bounds(ring.iter().map(|&p| soup.points[p as usize]));
         (high - low).norm()
     };
-    let most = SMALL * soup.diagonal();
+    let diagonal = soup.diagonal();
     let sized = rings(soup, &rims).into_iter().map(|ring| (across(&ring), ring));
     let small: Vec<(f64, Vec<u32>)> =
-        sized.filter(|(across, ring)| ring.len() <= FEW && *across <= most).collect();
+        sized.filter(|(across, ring)| is_small(ring.len(), *across, diagonal)).collect();
     let mut edges: HashSet<[u32; 2]> = HashSet::new();
     for t in &soup.triangles {
         (0..3).for_each(|k| _ = edges.insert(ordered(t[k], t[(k + 1) % 3])));
