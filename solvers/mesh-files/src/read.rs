@@ -33,7 +33,8 @@ pub fn included(file: &Path) -> Vec<PathBuf> {
 /// unit in metres (0.001 for millimetres).
 ///
 /// Points, lines and parts of a file that do not belong to a mesh are skipped. Nodes that only these or sets
-/// use are dropped; a node that nothing uses is an error. Nodes and cells keep the order of the file.
+/// use are dropped; a node that nothing uses is an error, except in a deck with a step. Nodes and cells keep
+/// the order of the file.
 ///
 /// # Errors
 /// A file in none of the formats, with a violation of its format, with an unused node or without a valid

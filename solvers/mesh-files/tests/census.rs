@@ -203,7 +203,7 @@ const XML: [Edit; 3] = [
             *line = line.replacen("UnstructuredGrid", "PolyData", 1);
             Some(())
         },
-        "expected <VTKFile type=\"UnstructuredGrid\">, found 'PolyData'",
+        "is a surface, not a mesh",
     ),
     (|l| at_end(l).map(|end| l.truncate(end)), ""),
 ];
