@@ -55,7 +55,7 @@ pub(super) fn verdict(model: &Path, stored: Option<f64>, run: &Run) -> Result<Ve
                 false if text.contains("<contact ") || text.contains("<constraint ") => {
                     "contact at other points of the faces"
                 }
-                false if dynamic => "another time integration",
+                false if dynamic => "unexplained, with steps in time",
                 false => "unexplained",
             };
             Verdict::Differs { difference, reason: format!("{reason} ({norm:.9e} for {stored:.9e})") }
