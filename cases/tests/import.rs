@@ -231,3 +231,32 @@ fn nothing_of_a_step_is_dropped_in_silence() {
         assert!(now.map_or(true, |now| now.scene != whole), "{from} -> {to}");
     }
 }
+
+/// Friction acts where the source has it: by the penalty of the contact, or by one of its own.
+#[test]
+fn friction_is_that_of_the_kind_of_contact() {
+    let text = std::fs::read_to_string(model("pressed-block.feb")).expect("read");
+    let rough = text.replace("<fric_coeff>0<", "<fric_coeff>0.5<");
+    let nodes = rough.replace("sliding-elastic", "sliding-node-on-facet");
+    let facets = rough.replace("sliding-elastic", "sliding-facet-on-facet");
+    let own = nodes.replace("<fric_coeff>", "<fric_penalty>50</fric_penalty><fric_coeff>");
+    for (text, stick) in [(rough, Some("100000.0")), (nodes, None), (facets, None), (own, Some("50.0"))] {
+        let imported =
+            import_bytes(text.as_bytes(), "a.feb", "a.feb", Units::Metres, None).expect("imported");
+        let line = stick.map(|stick| format!("friction = 0.5\nstick = \"{stick} Pa/m\""));
+        assert_eq!(line.as_ref().is_some_and(|line| imported.scene.contains(line)), stick.is_some());
+        let left_out = imported.left_out.iter().any(|part| part.what.contains("without effect"));
+        assert_eq!(left_out, stick.is_none(), "{}", imported.scene);
+        assert_eq!(imported.scene.contains("friction"), stick.is_some(), "{}", imported.scene);
+    }
+    for (tag, value, said) in
+        [("penalty", "0", "<penalty> is 0"), ("flip_secondary", "1", "<flip_secondary> is 1")]
+    {
+        let changed = match text.contains(&format!("<{tag}>")) {
+            true => text.replace("<penalty>100000<", &format!("<penalty>{value}<")),
+            false => text.replace("<fric_coeff>", &format!("<{tag}>{value}</{tag}><fric_coeff>")),
+        };
+        let refused = import_bytes(changed.as_bytes(), "a.feb", "a.feb", Units::Metres, None).unwrap_err();
+        assert!(lines(&refused).contains(said), "{}", lines(&refused));
+    }
+}

@@ -90,7 +90,8 @@ method = [{ id = "hex8", family = "fem", element = "hex8", size = { file = "two-
     assert_eq!(numbers(&by_hand)[..2], numbers(&imported)[..2]);
 }
 
-/// Force of a block of area 1 m^2 and height 1 m between plates that close by 0.2 m and give way by their penalty.
+/// Force of a block of area 1 m^2 and height 1 m between plates that close by 0.2 m and give way by their
+/// penalty.
 fn pressed() -> f64 {
     let (young, poisson, penalty) = (1000.0, 0.3, 1e5);
     let mu = young / 2.0 / (1.0 + poisson);

@@ -33,7 +33,8 @@ impl Model<'_> {
     }
 }
 
-/// The title of a scene, with the parts of the model that it leaves out. `what` is imported, such as "the deck".
+/// The title of a scene, with the parts of the model that it leaves out. `what` is imported, such as "the
+/// deck".
 pub(super) fn head(model: &Model, what: &str, left_out: &[Finding]) -> Part {
     let name = Path::new(model.path).file_name().unwrap_or_default().to_string_lossy();
     let mut part = Part::new("").note(format!(

@@ -15,7 +15,8 @@ pub struct States {
     pub(crate) tools: Vec<ToolSkin>,
     /// Force of the supports on each node at the last state, N; empty if unknown, and for a cloud.
     pub(crate) reaction: Vec<Vector3>,
-    /// Numbers of the mesh points and of the cells in a file, written beside their values; empty unless given.
+    /// Numbers of the mesh points and of the cells in a file, written beside their values; empty unless
+    /// given.
     pub(crate) numbers: [Vec<u64>; 2],
     /// Number of recorded states that were left out.
     pub(crate) left_out: usize,

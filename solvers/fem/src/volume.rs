@@ -198,14 +198,14 @@ impl Table {
 }
 
 impl<const N: usize> Nodes<N> {
-    /// Changes weights and gradients of a curved cell, so that their sums `sum w` and `sum w grad N` become the
-    /// integrals of 1 and `grad N`.
+    /// Changes weights and gradients of a curved cell, so that their sums `sum w` and `sum w grad N` become
+    /// the integrals of 1 and `grad N`.
     ///
-    /// All gradients of a node get the same shift; those of a linear field remain exact. Without it a constant
-    /// stress loads inner nodes of curved tet10 cells, where `det J grad N` is cubic and 4 points integrate
-    /// squares: the patch test of a filled ellipsoid has an error of 1.1e-5. Eight points pass it too, but lock:
-    /// a thick sphere at nu = 0.4999 gets 3 times the error. This is variationally consistent integration (Chen,
-    /// Hillman & Rueter, IJNME 95, 2013) of degree 1.
+    /// All gradients of a node get the same shift; those of a linear field remain exact. Without it a
+    /// constant stress loads inner nodes of curved tet10 cells, where `det J grad N` is cubic and 4 points
+    /// integrate squares: the patch test of a filled ellipsoid has an error of 1.1e-5. Eight points pass it
+    /// too, but lock: a thick sphere at nu = 0.4999 gets 2 to 4 times the error. This is variationally
+    /// consistent integration (Chen, Hillman & Rueter, IJNME 95, 2013) of degree 1.
     fn keep_integrals(&self, exact: &Table, weights: &mut [f64], grads: &mut [[Vector3; N]]) {
         let mut volume = 0.0;
         let mut shift = [Vector3::zeros(); N];

@@ -404,7 +404,7 @@ fn stl(triangles: &Triangles) -> String {
     text + "endsolid\n"
 }
 
-/// What a user does: take the surface as it is, or repaired, or wrapped at a fortieth of its diagonal.
+/// Takes the surface as a user does: as it is, or repaired, or wrapped at a fortieth of its diagonal.
 fn body(path: &Path, diagonal: f64) -> Result<(f64, &'static str), SurfaceError> {
     if let Ok(surface) = read_surface(path, 1e-3) {
         return Ok((1e9 * surface.volume(), "as it is"));

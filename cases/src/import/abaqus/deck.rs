@@ -1,4 +1,4 @@
-//! What the conditions of a deck refer to.
+//! A deck with its sets, surfaces and amplitudes, to which its conditions refer.
 
 use std::collections::{BTreeSet, HashMap};
 

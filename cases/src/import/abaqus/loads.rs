@@ -10,7 +10,7 @@ use super::procedure::Procedure;
 use super::sets::solid;
 use crate::import::document::{Part, list, quoted};
 
-/// What a line loads.
+/// Faces, elements or surface that a line loads.
 #[derive(PartialEq)]
 pub(super) enum Target {
     /// A face, such as `P2`, of each element.

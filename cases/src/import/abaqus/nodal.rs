@@ -10,7 +10,7 @@ use crate::import::document::{Part, list, quoted};
 
 const AXES: [&str; 3] = ["x", "y", "z"];
 
-/// What a line prescribes along one axis.
+/// Value that a line prescribes along one axis.
 pub(super) struct Entry {
     pub line: usize,
     pub step: usize,

@@ -1,5 +1,5 @@
-//! Contact with rigid surfaces, as tools: a rigid wall, and a surface pair of which one side belongs to a rigid
-//! body and is flat or a part of a sphere. (FEBio User Manual 4, 3.12; `FERigidWallInterface.cpp`,
+//! Contact with rigid surfaces, as tools: a rigid wall, and a surface pair of which one side belongs to a
+//! rigid body and is flat or a part of a sphere. (FEBio User Manual 4, 3.12; `FERigidWallInterface.cpp`,
 //! `FESlidingInterface.cpp`.)
 
 use std::collections::HashSet;
@@ -17,15 +17,15 @@ use crate::import::units::number;
 /// Distance of nodes from a plane or a sphere that is rounding, relative to the size of the surface.
 const ROUNDING: f64 = 1e-6;
 
-/// Distance of the middle of a facet from the sphere through its corners, relative to the radius, up to which a
-/// surface is taken for the sphere. That of a cube is 0.4.
+/// Distance of the middle of a facet from the sphere through its corners, relative to the radius, up to
+/// which a surface is taken for the sphere. That of a cube is 0.4.
 const FACETS: f64 = 0.02;
 
 /// Factor of the penalty in place of multipliers, which leave next to no penetration.
 const STIFFER: f64 = 100.0;
 
 /// Parts of a contact that steer the search, the tangent and the augmentation.
-const STEERING: [&str; 17] = [
+const STEERING: [&str; 13] = [
     "tolerance",
     "gaptol",
     "minaug",
@@ -37,12 +37,8 @@ const STEERING: [&str; 17] = [
     "knmult",
     "seg_up",
     "smooth_aug",
-    "two_pass",
     "shell_bottom_primary",
     "shell_bottom_secondary",
-    "flip_primary",
-    "flip_secondary",
-    "smoothing",
 ];
 
 /// Surface of a tool, in units of the model.
@@ -103,10 +99,14 @@ pub(super) fn pair<'a>(node: Node<'a, 'a>, bodies: &[Body<'a>], conditions: &mut
     }
     let fields = Fields::of(node, source);
     let penalty = penalty(&fields);
-    for (tag, usual) in [("tension", 0.0), ("offset", 0.0), ("node_reloc", 0.0), ("update_penalty", 0.0)] {
-        if let Some(found) = fields.number(tag).filter(|found| *found != usual) {
-            source.refuse(node, format!("<{tag}> is {found}"), &format!("{usual} is read"));
+    for tag in ["tension", "offset", "node_reloc", "update_penalty", "flip_primary", "flip_secondary"] {
+        if let Some(found) = fields.number(tag).filter(|found| *found != 0.0) {
+            source.refuse(node, format!("<{tag}> is {found}"), "0 is read");
         }
+    }
+    if fields.flag("two_pass") {
+        let what = "the second pass of a contact, with the penalty at the corners of the rigid body too";
+        source.findings.leave_out(source.line(node), what);
     }
     fields.pass(&STEERING);
     fields.finish();
@@ -153,18 +153,37 @@ fn penalty(fields: &Fields) -> Option<Penalty> {
     let coefficient = fields.number("fric_coeff").unwrap_or(0.0);
     let slope = fields.number("fric_penalty");
     let given = fields.needed("penalty")?;
+    if given <= 0.0 {
+        source.refuse(fields.node, format!("<penalty> is {given}"), "give a pressure per length above 0");
+        return None;
+    }
     if automatic && !multipliers {
         let help = "give <auto_penalty>0</auto_penalty> and a penalty in pressure per length";
         source.refuse(fields.node, "the penalty is scaled by the stiffness of each element", help);
         return None;
     }
     let normal = if multipliers { STIFFER * given } else { given };
-    let stick = slope.filter(|slope| *slope > 0.0).map_or(normal, |slope| normal * slope / given);
+    // Nodes on facets slide freely without a penalty of their own, and facets on facets in any case.
+    let slope = match fields.node.attribute("type") {
+        Some("sliding-node-on-facet") => slope.unwrap_or(0.0),
+        Some("sliding-facet-on-facet") => 0.0,
+        _ => given,
+    };
+    if coefficient > 0.0 && slope <= 0.0 {
+        fields
+            .source
+            .findings
+            .leave_out(source.line(fields.node), "<fric_coeff>, without effect in this contact");
+    }
     let note = match multipliers {
         true => format!("The source has multipliers in place of a penetration: {STIFFER} times its penalty."),
         false => "Pressure per penetration, at points of the faces.".into(),
     };
-    Some(Penalty { normal, friction: (coefficient > 0.0).then_some((coefficient, stick)), note })
+    Some(Penalty {
+        normal,
+        friction: (coefficient > 0.0 && slope > 0.0).then(|| (coefficient, normal * slope / given)),
+        note,
+    })
 }
 
 /// Displacement of a rigid body that does not rotate and follows one curve.

@@ -16,8 +16,8 @@ const FEW: usize = 500;
 /// Largest number of edges of a hole that are searched for corners on them.
 const SEARCHED: usize = 1000;
 
-/// Whether a repair closes a hole of this number of edges, by its extent and the diagonal of the surface. A hole
-/// of three edges lacks one triangle, whatever its extent.
+/// Whether a repair closes a hole of this number of edges, by its extent and the diagonal of the surface. A
+/// hole of three edges lacks one triangle, whatever its extent.
 pub(super) fn is_small(edges: usize, across: f64, diagonal: f64) -> bool {
     edges == 3 || (edges <= FEW && across <= SMALL * diagonal)
 }

@@ -51,8 +51,8 @@ pub struct TimeParams {
     /// Spectral radius at infinite frequency, 0 to 1. With 1 nothing is dissipated; with 0 unresolved
     /// frequencies vanish in one step. Contact needs a value below 1.
     pub rho_inf: f64,
-    /// `alpha` of the method of Hilber, Hughes and Taylor in place of `rho_inf`, -1/3 to 0. With 0 it is Newmark's
-    /// trapezoidal rule.
+    /// `alpha` of the method of Hilber, Hughes and Taylor in place of `rho_inf`, -1/3 to 0. With 0 it is
+    /// Newmark's trapezoidal rule.
     pub alpha: Option<f64>,
     /// Parameters of Newton's method.
     pub newton: NewtonParams,
