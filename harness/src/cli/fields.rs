@@ -43,7 +43,13 @@ pub(super) fn run(args: &FieldsArgs) -> u8 {
     for index in chosen {
         let method = &scene.methods[index];
         let options = RunOptions { states: true, ..RunOptions::default() };
-        let outcome = match group.run(&group.scenario(method.clone(), 0), options) {
+        let scenario = group.scenario(method.clone(), 0);
+        if let Some(Err(bad)) = like.as_ref().map(|like| like.fits(&scenario)) {
+            eprintln!("tissuebench: {bad} (method '{}')", method.id);
+            code = code.max(2);
+            continue;
+        }
+        let outcome = match group.run(&scenario, options) {
             Ok(outcome) => outcome,
             Err(unfinished) => {
                 eprintln!("{} (method '{}')", unfinished.failure, method.id);
@@ -59,14 +65,7 @@ pub(super) fn run(args: &FieldsArgs) -> u8 {
             eprintln!("no displacement to write (method '{}')", method.id);
             continue;
         };
-        let tables = match like.as_ref().map(|like| like.number(&mut states)).transpose() {
-            Ok(tables) => tables.unwrap_or_default(),
-            Err(bad) => {
-                eprintln!("tissuebench: {bad} (method '{}')", method.id);
-                code = code.max(2);
-                continue;
-            }
-        };
+        let tables = like.as_ref().map_or(Vec::new(), |like| like.number(&mut states));
         let tables = tables
             .into_iter()
             .map(|(name, text)| write_text(&args.out.join(format!("{}-{name}.csv", method.id)), text));

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use geometry::Mesh;
 
 use crate::outcome::States;
+use crate::scenario::Scenario;
 
 /// Adds a line of a table.
 fn line<'a>(table: &mut String, number: u64, values: impl Iterator<Item = &'a f64>) {
@@ -35,15 +36,11 @@ impl Like {
 
     /// Gives the states the numbers of the file, and returns tables of their end: node with position (m),
     /// displacement (m) and reaction (N), and element with mean stress (Pa) and volume ratio.
-    ///
-    /// # Errors
-    /// A mesh of the method that is not that of the file.
-    pub(super) fn number(&self, states: &mut States) -> Result<Vec<(&'static str, String)>, String> {
-        self.check(states.mesh())?;
+    pub(super) fn number(&self, states: &mut States) -> Vec<(&'static str, String)> {
         states.numbers.clone_from(&self.numbers);
         let [nodes, elements] = &self.numbers;
         let (Some(end), points) = (states.states.last(), states.mesh().points()) else {
-            return Ok(Vec::new());
+            return Vec::new();
         };
         let mut table = String::from("node,x,y,z,u_x,u_y,u_z");
         table += if states.reaction.is_empty() { "\n" } else { ",r_x,r_y,r_z\n" };
@@ -59,11 +56,13 @@ impl Like {
             }
             tables.push(("elements", table));
         }
-        Ok(tables)
+        tables
     }
 
-    /// Refuses a mesh with other cells.
-    fn check(&self, own: &Mesh) -> Result<(), String> {
+    /// Refuses a method whose mesh has other cells, before it runs.
+    pub(super) fn fits(&self, scenario: &Scenario) -> Result<(), String> {
+        let method = scenario.discretise().map_err(|bad| bad.to_string())?;
+        let own = method.mesh();
         let (file, theirs) = (self.file.display(), &self.mesh);
         let counts = [own, theirs].map(|mesh| [mesh.points().len(), mesh.cell_count()]);
         let same = |cell: usize| own.kind(cell) == theirs.kind(cell) && own.cell(cell) == theirs.cell(cell);
