@@ -23,7 +23,7 @@ fn lines(findings: &[Finding]) -> String {
 
 #[test]
 fn a_model_becomes_a_scene() {
-    for name in ["two-blocks.feb", "pressed-block.feb", "beam.inp"] {
+    for name in ["two-blocks.feb", "pressed-block.feb", "fibres.feb", "beam.inp"] {
         let first = imported(name, Units::Metres);
         insta::assert_snapshot!(name, first.scene);
         assert_eq!(first.scene, imported(name, Units::Metres).scene, "importing twice");
@@ -140,9 +140,15 @@ fn parts_that_change_the_answer_are_refused_with_their_lines() {
 /// A model that is cut short or changed in one place is refused or imported, but never panics.
 #[test]
 fn spoilt_models_are_refused_or_imported() {
-    for name in
-        ["two-blocks.feb", "pressed-block.feb", "beam.inp", "vibration.inp", "hostile.feb", "hostile.inp"]
-    {
+    for name in [
+        "two-blocks.feb",
+        "pressed-block.feb",
+        "fibres.feb",
+        "beam.inp",
+        "vibration.inp",
+        "hostile.feb",
+        "hostile.inp",
+    ] {
         let bytes = std::fs::read(model(name)).expect("read");
         for at in 0..bytes.len() {
             let _ = import_bytes(&bytes[..at], name, name, Units::Metres, None);
@@ -183,6 +189,30 @@ fn nothing_is_dropped_in_silence() {
         ("mat=\"Firm\"/>", "mat=\"Firm\" elem_type=\"HEX8G1\"/>"),
     ];
     differ("two-blocks.feb", &text, &whole, &changes);
+    let text = std::fs::read_to_string(model("fibres.feb")).expect("read");
+    let whole = imported("fibres.feb", Units::Metres).scene;
+    let changes = [
+        ("<c3>0</c3>", "<c3>1</c3>"),
+        ("<lambda>1.1<", "<lambda>1.2<"),
+        ("<solid type=\"neo-Hookean\">", "<solid type=\"Mooney-Rivlin\">"),
+        ("\t\t</material>", "\t\t\t<solid type=\"neo-Hookean\"/></material>"),
+        ("<T0 lc=\"1\">50<", "<T0 lc=\"1\">60<"),
+        ("<phi>90<", "<phi>80<"),
+        ("<c2>0<", "<c2>1<"),
+        ("<k>400<", "<k>500<"),
+        ("<N>9<", "<N>10<"),
+        ("<N>9<", "<N>0<"),
+        ("<cp>700<", "<cp>0<"),
+        ("<phi0>0.2<", "<phi0>0.3<"),
+        ("<linear>0<", "<linear>1<"),
+        ("3*(2 - Y*Y", "3*(2 - X*Y"),
+        ("3*(2 - Y*Y", "3*(2 - sin(Y)*Y"),
+        ("<rhoi>-2<", "<rhoi>1<"),
+        ("<beta>0.25<", "<beta>0.3<"),
+        ("ElementData type=\"fiber\"", "ElementData type=\"mat_axis\""),
+        ("<fiber type=\"user\"/>", "<fiber type=\"map\"/>"),
+    ];
+    differ("fibres.feb", &text, &whole, &changes);
 }
 
 #[track_caller]

@@ -188,6 +188,34 @@ fn what_has_no_such_number_is_refused() {
     refused("check = [{ metric = \"probe-z\", at_most = \"1 m\" }]", "needs output.probes in the scene");
     let second = "output = { probes = [[\"15 mm\", \"0 mm\", \"0 mm\"]] }\ncheck = [{ metric = \"probe-z-2\", at_most = \"1 m\" }]";
     refused(second, "needs point in output.probes number 2, but the scene has 1");
-    let dead = "load = [{ on = \"inner\", traction = [\"1 kPa\", \"0 kPa\", \"0 kPa\"], dead = true }]";
+    let dead = "load = [{ on = \"inner\", force = [\"1 N\", \"0 N\", \"0 N\"], dead = true }]";
     refused(dead, "key 'load[0].dead': 'true' belongs to a pressure");
+}
+
+/// A block pulled by a traction per deformed area is that pulled by the dead traction times the change of the area.
+#[test]
+fn a_traction_acts_on_the_deformed_area() {
+    let scene = |traction: f64, dead: bool| {
+        format!(
+            r#"title = "A pulled block"
+body = {{ shape = "box", size = ["10 mm", "10 mm", "20 mm"] }}
+material = {{ law = "neo-hookean", young = "20 kPa", poisson = 0.3 }}
+support = [{{ on = "x-min", fix = "x" }}, {{ on = "y-min", fix = "y" }}, {{ on = "z-min", fix = "z" }}]
+load = [{{ on = "z-max", traction = ["0 Pa", "0 Pa", "{traction:?} Pa"], dead = {dead} }}]
+procedure = {{ kind = "static", steps = 2, tolerance = 1e-12 }}
+output = {{ probes = [["10 mm", "10 mm", "20 mm"]] }}
+method = [{{ id = "hex8", family = "fem", element = "hex8", size = {{ cells = [2, 2, 2] }} }}]
+"#
+        )
+    };
+    let follows = run(&scene(6e3, false));
+    let side = 1.0 + number(&follows[0], "probe-x") / 0.01;
+    assert!(side < 0.95, "{side}");
+    let dead = run(&scene(6e3 * side * side, true));
+    for metric in ["probe-x", "probe-z"] {
+        near(number(&follows[0], metric), number(&dead[0], metric), 1e-12);
+    }
+    let dir = tempfile::tempdir().unwrap();
+    let plan = tissuebench(&["plan", &write(&dir, "scene.toml", &scene(6e3, false))]);
+    assert!(plan.stdout.contains("traction on the deformed area: load[0]"), "{}", plan.stdout);
 }

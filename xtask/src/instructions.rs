@@ -14,10 +14,17 @@ use serde::{Deserialize, Serialize};
 /// Ratio of found to accepted instructions above which a kernel counts as slower.
 const MORE: f64 = 1.02;
 
-/// Accepted counts, with the compiler and the processor, on which the counts depend.
-#[derive(Debug, Deserialize, PartialEq, Serialize)]
+/// The accepted counts of every machine.
+#[derive(Debug, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 struct Accepted {
+    machine: Vec<Machine>,
+}
+
+/// Counts with the compiler and the processor, on which they depend.
+#[derive(Debug, Deserialize, PartialEq, Serialize)]
+#[serde(deny_unknown_fields)]
+struct Machine {
     rustc: String,
     /// Processor, whose caches determine the blocks of matrix products.
     processor: String,
@@ -46,7 +53,7 @@ pub(crate) fn instructions(root: &Path, accept: bool) -> Result<u8> {
     ensure!(lines.len() > 1, "{} printed no names of kernels", program.display());
     let names = lines.split_off(1);
     let version = Command::new("rustc").arg("--version").output().context("could not start rustc")?;
-    let found = Accepted {
+    let found = Machine {
         rustc: String::from_utf8_lossy(&version.stdout).trim().into(),
         processor: processor(),
         path: lines.remove(0),
@@ -56,23 +63,38 @@ pub(crate) fn instructions(root: &Path, accept: bool) -> Result<u8> {
             .collect::<Result<_>>()?,
     };
     let file = root.join("tests/baseline/instructions.toml");
-    if accept {
-        let head = "# Instructions of one run of each kernel: cargo xtask instructions --accept\n";
-        std::fs::write(&file, format!("{head}{}", toml::to_string(&found)?))?;
-        println!("accepted {} kernels in {}", found.kernels.len(), file.display());
-        return Ok(0);
-    }
     let text =
         std::fs::read_to_string(&file).with_context(|| format!("could not read {}", file.display()))?;
-    let accepted: Accepted = toml::from_str(&text).with_context(|| format!("in {}", file.display()))?;
-    let here = |a: &Accepted| format!("{}, {}, {}", a.rustc, a.processor, a.path);
-    if here(&accepted) != here(&found) {
-        println!("not compared: accepted with {}; here it is {}", here(&accepted), here(&found));
+    let mut all: Accepted = toml::from_str(&text).with_context(|| format!("in {}", file.display()))?;
+    let known = all.machine.iter().position(|machine| machine.is_like(&found));
+    if accept {
+        println!("accepted {} kernels in {}", found.kernels.len(), file.display());
+        match known {
+            Some(k) => all.machine[k] = found,
+            None => all.machine.push(found),
+        }
+        let head = "# Instructions of one run of each kernel: cargo xtask instructions --accept\n";
+        std::fs::write(&file, format!("{head}{}", toml::to_string(&all)?))?;
         return Ok(0);
     }
+    let Some(accepted) = known.map(|k| &all.machine[k]) else {
+        let Machine { rustc, processor, path, .. } = &found;
+        println!("not compared: no counts are accepted with {rustc} on {processor}, {path}");
+        return Ok(0);
+    };
     let (lines, slower) = compare(&accepted.kernels, &found.kernels);
     print!("{lines}");
     Ok(u8::from(slower > 0))
+}
+
+impl Machine {
+    fn is_like(&self, other: &Machine) -> bool {
+        let key = |machine: &Machine| {
+            let Machine { rustc, processor, path, .. } = machine;
+            [rustc, processor, path].map(String::clone)
+        };
+        key(self) == key(other)
+    }
 }
 
 fn processor() -> String {

@@ -65,10 +65,13 @@ pub enum Hyperelastic {
     },
     /// `mu/2 (sum l_a^-2 - 3 + (J^(2 beta) - 1) / beta)`, `beta = nu / (1 - 2 nu)`.
     BlatzKo(Elastic),
-    /// `sum_p 2 mu_p / alpha_p^2 (sum_a l_a^alpha_p - 3 + (J^(-alpha_p beta_p) - 1) / beta_p)`.
+    /// `sum_p 2 mu_p / alpha_p^2 (sum_a l_a^alpha_p - 3 + (J^(-alpha_p beta_p) - 1) / beta_p)` and
+    /// `kappa/2 (J - 1)^2`.
     Hyperfoam {
         /// `[mu_p, alpha_p, beta_p]`, Pa and dimensionless.
         terms: Vec<[f64; 3]>,
+        /// Modulus `kappa` of the further volumetric term, Pa.
+        kappa: f64,
     },
     /// `mu sum (l_a - 1)^2 + lambda/2 (sum l_a - 3)^2`.
     Corotational(Elastic),
@@ -140,11 +143,11 @@ impl Hyperelastic {
                 let beta = e.poisson() / (1.0 - 2.0 * e.poisson());
                 nominal(&|l| e.mu() * (jacobian.powf(2.0 * beta) - 1.0 / (l * l)))
             }
-            Hyperelastic::Hyperfoam { terms } => nominal(&|l| {
+            Hyperelastic::Hyperfoam { terms, kappa } => nominal(&|l| {
                 let of_term = |&[mu, alpha, beta]: &[f64; 3]| {
                     2.0 * mu / alpha * (l.powf(alpha) - jacobian.powf(-alpha * beta))
                 };
-                terms.iter().map(of_term).sum()
+                terms.iter().map(of_term).sum::<f64>() + kappa * (jacobian - 1.0) * jacobian
             }),
             Hyperelastic::Corotational(e) => {
                 let sum: f64 = stretch.iter().sum();

@@ -9,7 +9,7 @@ use serde::Deserialize;
 
 use super::mesh_file::MeshFile;
 use super::report::Report;
-use super::selection::Place;
+use super::selection::{Names, Place};
 use super::units::{Length, Q, Unit};
 
 /// The body in its undeformed state
@@ -78,8 +78,9 @@ pub(crate) enum BodyKeys {
     /// A mesh file (Gmsh .msh, Abaqus or CalculiX .inp, FEBio .feb, VTK .vtu or .vtk), which names its own
     /// surfaces, or a closed surface (STL, OBJ, PLY, OFF, VTK .vtp, Medit .mesh)
     File {
-        /// The file, relative to the folder of the scene
-        path: String,
+        /// The file, relative to the folder of the scene; or a list of closed surfaces, which nest or touch and
+        /// become the regions of the body
+        path: Names,
         /// Unit of the numbers in the file
         unit: Unit<Length>,
         /// Join pieces whose faces coincide without shared nodes, in all meshes of this body and its methods
@@ -182,7 +183,7 @@ impl BodyKeys {
                 Body::Kidney { half, mildly_graded }
             }
             BodyKeys::File { path, unit, join, repair, wrap } => {
-                let file = MeshFile::read(&path, Some(unit), "path", report);
+                let file = files(path.into(), unit, report)?;
                 let of_surface = is_surface(&file.path);
                 let help = "leave it out: a closed surface has no nodes to join";
                 report.require(!join || !of_surface, "join", "is for meshes", help);
@@ -191,6 +192,22 @@ impl BodyKeys {
             }
         })
     }
+}
+
+/// A mesh file, or one or several surfaces.
+fn files(paths: Vec<String>, unit: Unit<Length>, report: &Report) -> Option<MeshFile> {
+    if paths.is_empty() {
+        report.add("path", Problem::new("names no file").help("give a file, or several closed surfaces"));
+        return None;
+    }
+    let file = MeshFile::together(&paths, Some(unit), "path", report);
+    let all = file.paths();
+    let other = all.iter().find(|path| all.len() > 1 && path.is_file() && !is_surface(path));
+    if let Some(other) = other {
+        let problem = format!("names several files, but {} is not a surface", other.display());
+        report.add("path", Problem::new(problem).help(mesh_files::SURFACES));
+    }
+    Some(file)
 }
 
 /// Treatment of the surface of a file.

@@ -60,8 +60,8 @@ pub(crate) struct SupportKeys {
     motion: Option<MoveKeys>,
     /// Name of the curve that the motion follows; the common growth unless given
     curve: Option<String>,
-    /// Start and end of the part of the loading in which the support acts, such as [0.4, 1]; in implicit dynamics
-    /// times, such as ["0 s", "2 s"]. One that starts late holds the points where they are then; its motion counts
+    /// Start and end of the part of the loading in which the support acts, such as [0.4, 1]; in dynamics times,
+    /// such as ["0 s", "2 s"]. One that starts late holds the points where they are then; its motion counts
     /// from there. All of the loading unless given
     during: Option<SpanKeys>,
 }
@@ -105,7 +105,8 @@ pub(crate) struct LoadKeys {
     /// Force per area along the inner normal: of the deformed surface with a law of large strain in a procedure
     /// of large displacements, otherwise of the undeformed surface
     pressure: Option<FieldKeys<Pressure>>,
-    /// Whether a pressure acts along the normals and on the areas of the undeformed surface; false unless given
+    /// Whether a pressure acts along the normals and on the areas of the undeformed surface; false unless given.
+    /// With a traction: whether it is per area of the undeformed surface; true unless given
     dead: Option<bool>,
     /// Force as a vector: at each point of 'at', or in total, evenly on the faces of 'on' or 'where'
     force: Option<[Q<Force>; 3]>,
@@ -154,7 +155,8 @@ pub struct Load {
     pub place: Place,
     /// Kind and value.
     pub kind: LoadKind,
-    /// Whether a pressure keeps the normals and the areas of the undeformed surface.
+    /// Whether a pressure keeps the normals and the areas of the undeformed surface, or a traction its areas; true
+    /// for all other loads.
     pub dead: bool,
     /// Factor of the load over time; `None` for the common growth.
     pub curve: Option<Arc<Curve>>,
@@ -279,15 +281,18 @@ impl LoadKeys {
                 return None;
             }
         };
-        let (problem, help) = ("belongs to a pressure", "all other loads are always dead loads");
-        report.require(self.dead.is_none() || matches!(kind, LoadKind::Pressure(_)), "dead", problem, help);
+        let (problem, help) =
+            ("belongs to a pressure or a traction", "all other loads are always dead loads");
+        let is_pressure = matches!(kind, LoadKind::Pressure(_));
+        let is_traction = matches!(kind, LoadKind::Traction(VectorField::Components(_)));
+        report.require(self.dead.is_none() || is_pressure || is_traction, "dead", problem, help);
         report.require(
             has_force || !at,
             "at",
             "belongs to a force",
             "give on or where for a load on a surface",
         );
-        let dead = self.dead.unwrap_or(false);
+        let dead = self.dead.filter(|_| is_pressure || is_traction).unwrap_or(!is_pressure);
         let everywhere = match kind {
             LoadKind::Body(_) => Some(("limits a body force to a region", "a body force acts everywhere")),
             LoadKind::Points { .. } => Some((

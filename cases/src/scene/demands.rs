@@ -116,14 +116,11 @@ pub(crate) fn check(check: &Check, scene: &Scene, report: &Report) {
         let problem = Problem::new("is recorded by phase").found(check.address.to_string());
         return report.add("metric", problem.help("take \"time-total\" or the time of another phase"));
     }
-    let kind = scene.procedure.kind();
-    let reference = scene.reference.as_ref();
+    let (kind, reference) = (scene.procedure.kind(), scene.reference.as_ref());
     let (compared, solved) = (reference.is_some(), reference.is_some_and(Reference::is_solved));
-    let stepped = !kind.has_no_steps();
-    let moves = scene.procedure.ramp().is_some();
+    let (stepped, moves) = (!kind.has_no_steps(), scene.procedure.ramp().is_some());
     let vibrates = kind == ProcedureKind::Modes;
-    let touched = !scene.tools.is_empty();
-    let probed = !scene.output.probes.is_empty();
+    let (touched, probed) = (!scene.tools.is_empty(), !scene.output.probes.is_empty());
     let (holds, needs) = match check.address.metric.needs {
         Needs::Run | Needs::Seeds => return,
         Needs::Axis => (false, "is a metric of a [run.axis] of a study; check the metric there"),
@@ -183,12 +180,32 @@ pub(crate) fn check(check: &Check, scene: &Scene, report: &Report) {
             "needs output.probes and dynamics with [reference] exact = \"...\" in the scene",
         ),
         Needs::Motion => (moves && probed, "needs output.probes and dynamics in the scene"),
+        Needs::Estimate | Needs::ToolEstimate | Needs::PointEstimate | Needs::SupportEstimate => {
+            estimated(check.address.metric.needs, scene)
+        }
         Needs::Transfer => (!scene.output.transfers.is_empty(), "needs output.transfer in the scene"),
     };
     if !holds {
         return report.add("metric", Problem::new(needs).found(check.address.to_string()));
     }
     number(check, scene, report);
+}
+
+/// Whether the scene has what a metric of an estimate needs, and what it needs.
+fn estimated(needs: Needs, scene: &Scene) -> (bool, &'static str) {
+    let (has, needs) = match needs {
+        Needs::ToolEstimate => {
+            (!scene.tools.is_empty(), "needs output.estimate = true and a [[tool]] in the scene")
+        }
+        Needs::PointEstimate => {
+            (!scene.output.probes.is_empty(), "needs output.estimate = true and output.probes in the scene")
+        }
+        Needs::SupportEstimate => {
+            (!scene.supports.is_empty(), "needs output.estimate = true and a [[support]] in the scene")
+        }
+        _ => (true, "needs output.estimate = true in the scene"),
+    };
+    (has && scene.output.estimate, needs)
 }
 
 /// Reports a number of a support, point, tool and the like that the scene does not have.
@@ -203,10 +220,12 @@ fn number(check: &Check, scene: &Scene, report: &Report) {
 /// Number of the things in the scene that a metric's number counts, and what they are.
 fn numbered(needs: Needs, scene: &Scene) -> (usize, &'static str) {
     match needs {
-        Needs::Support | Needs::SupportMoment => (scene.supports.len(), "support"),
+        Needs::Support | Needs::SupportMoment | Needs::SupportEstimate => (scene.supports.len(), "support"),
         Needs::Foundation => (scene.foundations.len(), "foundation"),
         Needs::Mean => (scene.output.means.len(), "face in output.means"),
-        Needs::Point | Needs::Motion => (scene.output.probes.len(), "point in output.probes"),
+        Needs::Point | Needs::Motion | Needs::PointEstimate => {
+            (scene.output.probes.len(), "point in output.probes")
+        }
         Needs::Stretch => (scene.output.stretches.len(), "entry of output.stretches"),
         Needs::RegionEnergy => (scene.output.energies.len(), "region in output.energies"),
         Needs::Enclosed => (scene.output.volumes.len(), "surface in output.volumes"),

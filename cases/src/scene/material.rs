@@ -334,7 +334,9 @@ fn hyperelastic(law: &Law, elastic: Elastic) -> Option<Hyperelastic> {
             Some(Hyperelastic::Polynomial { terms: law.terms().to_vec(), bulk: law.bulk() })
         }
         Law::BlatzKo(_) => Some(Hyperelastic::BlatzKo(elastic)),
-        Law::Hyperfoam(law) => Some(Hyperelastic::Hyperfoam { terms: law.terms().to_vec() }),
+        Law::Hyperfoam(law) => {
+            Some(Hyperelastic::Hyperfoam { terms: law.terms().to_vec(), kappa: law.kappa() })
+        }
         Law::Corotational(_) => Some(Hyperelastic::Corotational(elastic)),
         // Hencky's law takes its moduli from those of the whole law, so the volumetric part can't be taken
         // off.

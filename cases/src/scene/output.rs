@@ -39,6 +39,9 @@ pub(crate) struct OutputKeys {
     /// Whether studies draw the deformed body with each method
     #[serde(default)]
     pictures: bool,
+    /// Whether the errors of each run are estimated, by a prediction with more shape functions on the same body
+    #[serde(default)]
+    estimate: bool,
     /// Repetition of the loading after the first solution, as in a simulator, with each frame timed
     repeated: Option<RepeatedKeys>,
 }
@@ -171,6 +174,8 @@ pub struct Output {
     pub beside: Option<String>,
     /// Whether studies draw the deformed body.
     pub pictures: bool,
+    /// Whether the errors of each run are estimated.
+    pub estimate: bool,
     /// Repetition of the loading in frames.
     pub repeated: Option<Repeated>,
 }
@@ -250,6 +255,7 @@ impl OutputKeys {
             },
             beside: self.beside,
             pictures: self.pictures,
+            estimate: self.estimate,
             repeated: self.repeated.map(|keys| keys.read(&report.at("repeated"))),
         }
     }
@@ -333,6 +339,7 @@ impl Output {
                 ("transfer", !self.transfers.is_empty()),
                 ("beside", self.beside.is_some()),
                 ("pictures", self.pictures),
+                ("estimate", self.estimate),
                 ("repeated", self.repeated.is_some() && kind == ProcedureKind::Prepare),
             ] {
                 report.require(!given, key, problem, help);
@@ -342,6 +349,7 @@ impl Output {
         let help = "take [procedure] kind = \"linear\" or \"static\", or leave it out";
         let sound = at_rest || self.repeated.is_none();
         report.require(sound, "repeated", "is of solutions at rest, not of motion", help);
+        report.require(at_rest || !self.estimate, "estimate", "is of solutions at rest, not of motion", help);
         let compared = !self.transfers.is_empty() || matches!(reference, Some(Reference::Method { .. }));
         let help = "add output.transfer = { to = { file = \"...\" }, ... }";
         let sound = compared || self.beside.is_none();

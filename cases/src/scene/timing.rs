@@ -59,6 +59,10 @@ pub(crate) fn demands(scene: &Scene, report: &Report) {
         let problem = format!("repeats a load that grows in proportion, and this scene has {key}");
         report.add("output.repeated", Problem::new(problem).help("leave one of them out"));
     }
+    if let (true, Some(key)) = (scene.output.estimate, scene.staged().next()) {
+        let problem = format!("is not available with supports of a part of the loading, as {key}");
+        report.add("output.estimate", Problem::new(problem).help("leave one of them out"));
+    }
     for (i, tool) in scene.tools.iter().enumerate() {
         let pulls = |curve: &Arc<Curve>| curve.points().iter().any(|point| point[1] < 0.0);
         let forced = !matches!(tool.drive, Drive::Closure(_));
@@ -75,14 +79,14 @@ fn during(span: Span, scene: &Scene, report: &Report) {
     let kind = scene.procedure.kind();
     let end = match kind {
         ProcedureKind::Static => 1.0,
-        ProcedureKind::ImplicitDynamic => scene.procedure.duration().unwrap_or(0.0),
+        ProcedureKind::ImplicitDynamic | ProcedureKind::Explicit => scene.procedure.duration().unwrap_or(0.0),
         _ => {
             let problem = format!("is not available in a {} procedure", kind.name());
-            let help = "take kind = \"static\" or \"implicit-dynamic\", or leave it out";
+            let help = "take kind = \"static\", \"implicit-dynamic\" or \"explicit\", or leave it out";
             return report.add("during", Problem::new(problem).help(help));
         }
     };
-    let is_timed = kind == ProcedureKind::ImplicitDynamic;
+    let is_timed = kind != ProcedureKind::Static;
     if span.in_time != is_timed {
         let (problem, help) = match is_timed {
             true => {

@@ -200,7 +200,7 @@ fn surface(body: &Body) -> Result<Surface, String> {
         Body::Kidney { half: true, .. } => half_kidney_mesh(kind, CELLS, Drawn::Mildly),
         Body::File(ref file) => {
             if mesh_files::is_surface(&file.path) {
-                return mesh_files::read_treated(&file.path, file.unit, file.treatment)
+                return mesh_files::read_together(&file.paths(), file.unit, file.treatment)
                     .map(|treated| treated.surface)
                     .map_err(|bad| format!("which can't be read: {bad}"));
             }

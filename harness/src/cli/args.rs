@@ -257,8 +257,10 @@ pub struct ConvertArgs {
 /// Arguments of `mesh make`.
 #[derive(Args)]
 pub struct MakeArgs {
-    /// Surface: STL, OBJ, PLY, OFF, VTK .vtp or Medit .mesh
-    pub surface: PathBuf,
+    /// Surface: STL, OBJ, PLY, OFF, VTK .vtp or Medit .mesh. Several files, and several closed parts of a file, nest
+    /// or touch and become regions, such as a tumour in an organ
+    #[arg(required = true, num_args = 1.., value_name = "SURFACE")]
+    pub surface: Vec<PathBuf>,
     /// Mend small faults: doubled corners and triangles, T-junctions, reversed triangles, and holes of up to
     /// a tenth of the surface's diagonal. Every change is listed
     #[arg(long)]

@@ -214,6 +214,8 @@ pub fn places(outcomes: &[Outcome]) -> String {
         });
         section(&mut text, head, rows.collect());
     }
+    let head = ["estimated error", "of", "value", "unit", "error [%]", "predicted"];
+    section(&mut text, &head, outcomes.iter().flat_map(estimates).collect());
     let modes = outcomes.iter().flat_map(|outcome| {
         (1..).zip(&outcome.modes).map(|(number, mode): (usize, _)| {
             let of = |metric: &Metric| {
@@ -225,6 +227,35 @@ pub fn places(outcomes: &[Outcome]) -> String {
     });
     section(&mut text, &["modes of vibration", "mode", "[Hz]", "[rad/s]", "/ exact"], modes.collect());
     text
+}
+
+/// Rows of the estimated errors of a run.
+fn estimates(outcome: &Outcome) -> Vec<Vec<String>> {
+    let known = |of: Address, scale: f64| outcome.value(of).map(|value| digits(scale * value));
+    let row = |of: &str, value: Option<String>, unit: &str, error: Address, predicted: Option<String>| {
+        let texts = [Some(outcome.identity.method.clone()), Some(of.into()), value, Some(unit.into())];
+        let texts = texts.into_iter().chain([Some(known(error, 100.0)?), predicted]);
+        Some(texts.map(|text| text.unwrap_or_else(|| "-".into())).collect())
+    };
+    let tools = outcome.tools.iter().enumerate().map(|(k, name)| {
+        let predicted = known(metric::TOOL_FORCE_PREDICTED.at(k), 1.0);
+        row(name, known(metric::TOOL_FORCE.at(k), 1.0), "N", metric::TOOL_FORCE_ESTIMATE.at(k), predicted)
+    });
+    let supports = outcome.supports.iter().enumerate().map(|(k, support)| {
+        let force = digits(support.resultant.force.norm());
+        row(&support.name, Some(force), "N", metric::REACTION_ESTIMATE.at(k), None)
+    });
+    let probes = (0..outcome.probes.len()).map(|k| {
+        let of = format!("point {}", k + 1);
+        row(&of, known(metric::PROBE.at(k), 1e3), "mm", metric::PROBE_ESTIMATE.at(k), None)
+    });
+    let [largest, energy] = [metric::MAX.whole(), metric::STRAIN_ENERGY.whole()].map(|of| known(of, 1e3));
+    let predicted = known(metric::STRAIN_ENERGY_PREDICTED.whole(), 1e3);
+    let whole = [
+        row("displacement", largest, "mm", metric::DISPLACEMENT_ESTIMATE.whole(), None),
+        row("strain energy", energy, "mJ", metric::STRAIN_ENERGY_ESTIMATE.whole(), predicted),
+    ];
+    tools.chain(supports).chain(probes).chain(whole).flatten().collect()
 }
 
 /// Appends a small table after an empty line, if it has rows.

@@ -11,6 +11,7 @@ use geometry::{Cloud, Mesh, Point3};
 use material::{AtPoint, Law};
 use shape::{DilationGroups, HourglassModulus, Matrix3, RowSource, Rows, SourceError, VolumeRows};
 
+pub(crate) mod enriched;
 pub(crate) mod gradients;
 pub(crate) mod node_set;
 pub(crate) mod place;

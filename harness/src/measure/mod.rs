@@ -4,6 +4,7 @@ mod comparison;
 mod dead_pressure;
 mod displacement;
 mod energies;
+mod estimate;
 mod exact_fit;
 mod face_results;
 mod few_cells;
@@ -45,6 +46,7 @@ use norms::{difference, norms, relative};
 
 pub(crate) use displacement::{displacement, free_norm};
 pub(crate) use energies::energies;
+pub(crate) use estimate::estimates;
 pub(crate) use face_results::places;
 pub(crate) use modes::report as report_modes;
 pub(crate) use over_time::over_time;
@@ -71,13 +73,6 @@ pub(crate) fn measure(
     request: &Request,
 ) -> Result<(), Failure> {
     let Solved { method, setup, prepared, solution } = *run;
-    let body = LinearBody {
-        nodes: method.nodes(),
-        volume: &prepared.volume.rows,
-        materials: &setup.materials,
-        region: &prepared.volume.region,
-        dilation: prepared.volume.groups.as_ref(),
-    };
     if let Some(exact) = setup.exact.as_deref() {
         errors_in_the_volume(metrics, run, recovered, exact)?;
     }
@@ -87,11 +82,7 @@ pub(crate) fn measure(
     }
     push(metrics, &metric::MAX, field.values.iter().fold(0.0, |m: f64, u| m.max(u.norm())));
     push(metrics, &metric::TARGETS_OUTSIDE, field.outside as f64);
-    let energy = match &solution.history {
-        Some(history) => history.last.strain_energy,
-        None => Some(statics::strain_energy(&body, &solution.u)?),
-    };
-    if let Some(energy) = energy {
+    if let Some(energy) = strain_energy(run)? {
         push(metrics, &metric::STRAIN_ENERGY, energy);
         if let Some(part) = hourglass_control::part(run, energy) {
             push(metrics, &metric::HOURGLASS_ENERGY, part);
@@ -132,6 +123,22 @@ pub(crate) fn measure(
     }
     of_tables(metrics, prepared);
     Ok(())
+}
+
+/// Strain energy at the end, J, if it is known.
+fn strain_energy(run: &Solved) -> Result<Option<f64>, Failure> {
+    let Solved { method, setup, prepared, solution } = *run;
+    if let Some(history) = &solution.history {
+        return Ok(history.last.strain_energy);
+    }
+    let body = LinearBody {
+        nodes: method.nodes(),
+        volume: &prepared.volume.rows,
+        materials: &setup.materials,
+        region: &prepared.volume.region,
+        dilation: prepared.volume.groups.as_ref(),
+    };
+    Ok(Some(statics::strain_energy(&body, &solution.u)?))
 }
 
 /// Smallest volume ratio J at the points of the finer quadrature; `None` at small strain. Under-integrated

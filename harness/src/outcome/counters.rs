@@ -61,6 +61,8 @@ pub struct Counters {
     pub transfer_rows: u64,
     /// Tables built for transfer schemes.
     pub transfer_tables: u64,
+    /// Degrees of freedom of the prediction from which errors are estimated.
+    pub predicted_dofs: u64,
 }
 
 impl Counters {
@@ -84,6 +86,7 @@ impl Counters {
             StageName::Friction => self.friction_points,
             StageName::Transfer => self.transfer_rows,
             StageName::Schemes => self.transfer_tables,
+            StageName::Estimate => self.predicted_dofs,
         }
     }
 }
@@ -115,5 +118,6 @@ impl AddAssign for Counters {
         self.inner_iterations += other.inner_iterations;
         self.transfer_rows += other.transfer_rows;
         self.transfer_tables += other.transfer_tables;
+        self.predicted_dofs += other.predicted_dofs;
     }
 }

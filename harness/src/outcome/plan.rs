@@ -72,6 +72,8 @@ stages! {
     Transfer = "transfer",
     /// Comparison of transfer schemes.
     Schemes = "transfer schemes",
+    /// Prediction with more shape functions, from which errors are estimated.
+    Estimate = "error estimate",
 }
 
 /// Stage of a plan with its decision.

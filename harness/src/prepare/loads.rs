@@ -2,8 +2,8 @@
 
 use fem::SurfaceRule;
 use geometry::{Facet, Vector3};
-use shape::{FixedDof, RowSource, SurfaceRows};
-use statics::{FollowingPressure, Load};
+use shape::{FixedDof, FluxRows, RowSource, SurfaceRows};
+use statics::{FollowingLoad, Load};
 
 use super::Prepared;
 use super::region_check::loaded;
@@ -12,7 +12,7 @@ use super::values::{Values, not_finite};
 use crate::discretise::Discretisation;
 use crate::discretise::place::Patch;
 use crate::error::Failure;
-use crate::scenario::setup::{self, Applied, ScalarField, SurfaceLoad};
+use crate::scenario::setup::{self, Applied, SurfaceLoad};
 
 impl Prepared {
     /// Returns the loads for the solver.
@@ -95,8 +95,23 @@ impl Prepared {
         field: &SurfaceLoad,
     ) -> Result<(), Failure> {
         let patch = loaded(load, method.mesh())?;
-        if let (SurfaceLoad::Pressure(field), true) = (field, load.follows) {
-            return self.follow(load, field, &patch);
+        match (field, load.follows) {
+            (SurfaceLoad::Pressure(field), true) => {
+                return self.follow(&patch, |surface| {
+                    let values = surface.points().iter().map(field).collect::<Result<Vec<f64>, _>>();
+                    let values = values.map_err(not_finite(&load.key, "pressure"))?;
+                    Ok(FollowingLoad::pressure(surface, &values)?)
+                });
+            }
+            (SurfaceLoad::Traction(field), true) => {
+                return self.follow(&patch, |surface| {
+                    let at = surface.points().iter().zip(surface.normals());
+                    let values = at.map(|(x, n)| field(x, n)).collect::<Result<Vec<Vector3>, _>>();
+                    let values = values.map_err(not_finite(&load.key, "traction"))?;
+                    Ok(FollowingLoad::traction(surface, &values)?)
+                });
+            }
+            _ => {}
         }
         let area = area(&*self.source, field, &patch)?;
         let at_points = |surface| at_points(&load.key, field, area, surface);
@@ -114,12 +129,14 @@ impl Prepared {
         Ok(())
     }
 
-    /// Evaluates a pressure on the deformed surface, which needs the gradients of the shape functions.
-    fn follow(&mut self, load: &setup::Load, field: &ScalarField, patch: &Patch) -> Result<(), Failure> {
+    /// Adds a load on the deformed surface, which needs the gradients of the shape functions.
+    fn follow(
+        &mut self,
+        patch: &Patch,
+        load: impl Fn(&FluxRows) -> Result<FollowingLoad, Failure>,
+    ) -> Result<(), Failure> {
         for surface in flux(&*self.source, patch)? {
-            let values = surface.points().iter().map(field).collect::<Result<Vec<f64>, _>>();
-            let values = values.map_err(not_finite(&load.key, "pressure"))?;
-            self.following.push(FollowingPressure::new(&surface, &values)?);
+            self.following.push(load(&surface)?);
         }
         Ok(())
     }

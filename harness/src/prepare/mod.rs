@@ -28,7 +28,7 @@ use fem::SurfaceRule;
 use geometry::{FaceKind, Facet, Mesh, Point3, Vector3};
 use shape::{FixedDof, FluxRows, PointRows, RowSource, SurfaceRows, TraceRows, VolumeRows};
 use statics::{
-    Assembled, ConstraintRow, Factored, FollowingPressure, LinearBody, LinearProblem, Load, PenaltySurface,
+    Assembled, ConstraintRow, Factored, FollowingLoad, LinearBody, LinearProblem, Load, PenaltySurface,
     SolveError, Weak, WeakSupport, multiplier_rows,
 };
 
@@ -78,8 +78,8 @@ pub struct Prepared {
     /// Mean node spacing, m.
     pub spacing: f64,
     surfaces: Vec<(SurfaceRows, Values)>,
-    /// Pressures on the deformed surface.
-    following: Vec<FollowingPressure>,
+    /// Pressures and tractions on the deformed surface.
+    following: Vec<FollowingLoad>,
     body_force: Vec<Vec<Vector3>>,
     /// Nodal forces of forces at points, by curve, and of a problem in files, N.
     nodal: Vec<Vec<Vector3>>,
@@ -273,8 +273,8 @@ impl Prepared {
         Ok(fem::surface_rows(self.source.mesh(), facets, &rule)?)
     }
 
-    /// Returns the pressures on the deformed surface, for the solver.
-    pub fn following(&self) -> &[FollowingPressure] {
+    /// Returns the loads on the deformed surface, for the solver.
+    pub fn following(&self) -> &[FollowingLoad] {
         &self.following
     }
 

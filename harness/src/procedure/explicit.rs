@@ -1,6 +1,6 @@
 //! Explicit dynamics: time steps by central differences with contact, and the results of each recorded state.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 
 use cases::scene::Explicit;
 use cases::scene::Precision::{Double, Single};
@@ -13,9 +13,9 @@ use explicit::{
 };
 use geometry::{Point3, Vector3};
 use lanes::LanePath;
-use shape::{Curve, Resultant, VolumeRows};
-use statics::{Curves, nodal_forces_by_curve};
+use shape::{Resultant, VolumeRows};
 
+use super::loading::Loading;
 use super::problem::Problem;
 use super::solution::{Solution, StepHistory};
 use super::stages::Stages;
@@ -57,45 +57,6 @@ pub(super) fn stages(setup: &Setup, asked: &Explicit) -> Stages {
 pub(super) fn solve(problem: &Problem, asked: &Explicit, meters: &mut Meters) -> Result<Solution, Failure> {
     let Meters { timings, counters, .. } = meters;
     timings.time("solve", || motion(problem, asked, counters))
-}
-
-/// Loads and prescribed displacements of the supports, with their curves over time.
-struct Loading<'a> {
-    /// Nodal forces of each curve, N, in the nodes that have any.
-    loads: Vec<(Curve, Vec<(usize, Vector3)>)>,
-    /// Full displacement, m, and the number of the condition with its curve.
-    led: BTreeMap<(u32, u8), (f64, usize)>,
-    curves: Curves<'a>,
-}
-
-impl Loading<'_> {
-    /// Displacement (m) of each prescribed degree of freedom over time (s).
-    fn motions(&self) -> Vec<Box<dyn Fn(f64) -> f64 + Sync + '_>> {
-        let motion = |&(value, index): &(f64, usize)| {
-            let curve = self.curves.fixed.of(index);
-            Box::new(move |t: f64| value * curve.value(t)) as Box<_>
-        };
-        self.led.values().map(motion).collect()
-    }
-
-    /// Active stress of each region (Pa) at a time (s).
-    fn active(&self, setup: &Setup, time: f64) -> Vec<f64> {
-        let curves = &self.curves.active;
-        setup.active.iter().enumerate().map(|(k, full)| full * curves.of(k).value(time)).collect()
-    }
-
-    fn new<'a>(problem: &Problem<'a>, asked: &Explicit) -> Result<Loading<'a>, Failure> {
-        let Problem { prepared, .. } = *problem;
-        let over = asked.ramp.growth();
-        let growth = if over > 0.0 { Curve::growth(over) } else { Curve::at_once() };
-        let curves = prepared.curves(Curves::all(growth));
-        let loads = nodal_forces_by_curve(&prepared.volume.rows, &prepared.loads(), &curves.loads)?;
-        let loaded = |forces: Vec<Vector3>| -> Vec<(usize, Vector3)> {
-            forces.into_iter().enumerate().filter(|(_, force)| *force != Vector3::zeros()).collect()
-        };
-        let loads = loads.into_iter().map(|(curve, forces)| (curve, loaded(forces))).collect();
-        Ok(Loading { loads, led: led(prepared), curves })
-    }
 }
 
 fn motion(problem: &Problem, asked: &Explicit, counters: &mut Counters) -> Result<Solution, Failure> {
@@ -151,7 +112,7 @@ fn motion(problem: &Problem, asked: &Explicit, counters: &mut Counters) -> Resul
         Err(failure @ ExplicitError::StepTooLarge { .. }) => Some(failure),
         Err(failure) => return Err(failure.into()),
         Ok(motion) => {
-            let (nodes, led) = (problem.method.nodes(), loading.led.keys().copied().collect());
+            let (nodes, led) = (problem.method.nodes(), loading.ends());
             let points = (!problem.method.interpolates).then(|| point_masses(rows, &density, &volume.region));
             let masses = points.transpose()?.map(|points| Masses { points, lumped: &mass });
             let mut run = Run { motion, asked, setup, prepared, nodes, led, masses, states, watch };
@@ -275,13 +236,6 @@ fn stiffest(setup: &Setup) -> f64 {
     setup.tools.iter().map(|t| t.tool.law().penalty().max(t.tool.law().stick())).fold(0.0, f64::max)
 }
 
-/// Prescribed degrees of freedom with their full displacement, m, and the number of their condition. Supports
-/// at the same degree of freedom agree: `prepare` refuses others.
-pub(crate) fn led(prepared: &Prepared) -> BTreeMap<(u32, u8), (f64, usize)> {
-    let fixed = prepared.fixed().iter().enumerate();
-    fixed.map(|(index, fixed)| ((fixed.node, fixed.axis), (fixed.value, index))).collect()
-}
-
 /// Smallest volume ratio of all quadrature points.
 pub(crate) fn smallest_j(prepared: &Prepared, u: &[Vector3]) -> f64 {
     prepared.volume.rows.at().smallest_volume_ratio(u)
@@ -367,8 +321,8 @@ struct Run<'a, 'b> {
     prepared: &'b Prepared,
     /// Undeformed positions, m.
     nodes: &'b [Point3],
-    /// Prescribed degrees of freedom, in the order of the integrator.
-    led: Vec<(u32, u8)>,
+    /// Prescribed degrees of freedom, in the order of the integrator, and the time at which each is let go, s.
+    led: Vec<((u32, u8), f64)>,
     /// Masses of a cloud; `None` for elements.
     masses: Option<Masses<'b>>,
     states: States,
@@ -380,9 +334,10 @@ impl Run<'_, '_> {
     /// critical step as the body deforms.
     fn march(&mut self, load: &mut External<'_>, interval: f64) -> Result<(), ExplicitError> {
         for state in 0..=self.asked.ramp.steps {
+            let next = (state + 1) as f64 * interval;
             let mut left = 1;
             if state < self.asked.ramp.steps {
-                left = self.choose_step((state + 1) as f64 * interval)?;
+                left = self.choose_step(next)?;
             }
             // The energy balance at a state is known after the next step. The last state takes an additional
             // step for it.
@@ -413,21 +368,51 @@ impl Run<'_, '_> {
                 self.states.steps.push(step);
                 self.states.fields.push(u);
             }
+            if state == self.asked.ramp.steps {
+                break;
+            }
             left -= 1;
+            if self.let_go(next) {
+                left = self.choose_step(next)?;
+            }
             while left > 0 {
                 let now = left.min(RECHECK);
                 self.motion.run(now, 0, load, &mut |_, _| ())?;
                 left -= now;
-                if left > 0 {
-                    left = self.choose_step((state + 1) as f64 * interval)?;
+                if self.let_go(next) || left > 0 {
+                    left = self.choose_step(next)?;
                 }
             }
         }
         Ok(())
     }
 
-    /// Sets the time step up to `end` (s) and returns the number of steps.
+    /// Lets go of the degrees of freedom whose supports have ended, and returns whether there were any. Those that
+    /// end at `next`, the time (s) of the next state, still hold it.
+    fn let_go(&mut self, next: f64) -> bool {
+        let ended =
+            |until: f64| until < next - self.rounding() && until < self.motion.time() + self.rounding();
+        let gone: Vec<bool> = self.led.iter().map(|&(_, until)| ended(until)).collect();
+        self.led.iter_mut().zip(&gone).filter(|(_, gone)| **gone).for_each(|(led, _)| led.1 = f64::INFINITY);
+        let any = gone.contains(&true);
+        if any {
+            self.motion.release(|k| gone[k]);
+        }
+        any
+    }
+
+    /// Times closer than this are one, s.
+    fn rounding(&self) -> f64 {
+        1e-9 * self.asked.ramp.duration
+    }
+
+    /// Sets the time step up to `end` (s), or to the end of a support before it, and returns the number of steps.
     fn choose_step(&mut self, end: f64) -> Result<usize, ExplicitError> {
+        let now = self.motion.time() + self.rounding();
+        let end = self.led.iter().map(|&(_, until)| until).filter(|until| *until > now).fold(end, f64::min);
+        if end < now {
+            return Ok(0);
+        }
         let critical = self.motion.critical_step()?.dt;
         self.states.critical = self.states.critical.min(critical);
         let longest = self.asked.step.unwrap_or(self.asked.safety * critical);
@@ -436,10 +421,11 @@ impl Run<'_, '_> {
         Ok(count)
     }
 
-    /// Resultant of each support's forces on the body at the last step, whose displacements are `u` (m).
-    fn supports(&self, u: &[Vector3]) -> Vec<Resultant> {
+    /// Resultant of each support's forces on the body at the last step, at a time in s with
+    /// displacements `u` (m).
+    fn supports(&self, u: &[Vector3], time: f64) -> Vec<Resultant> {
         let mut forces = vec![Vector3::zeros(); u.len()];
-        for (&(node, axis), force) in self.led.iter().zip(self.motion.reactions()) {
+        for (&((node, axis), _), force) in self.led.iter().zip(self.motion.reactions()) {
             forces[node as usize][usize::from(axis)] = *force;
         }
         let at = |i: usize| self.nodes[i] + u[i];
@@ -448,7 +434,7 @@ impl Run<'_, '_> {
             nodes: &forces,
             rows: &[],
             weak: &[],
-            time: None,
+            time: Some(time),
         })
     }
 
@@ -468,7 +454,7 @@ impl Run<'_, '_> {
         LoadStep {
             load: time / self.asked.ramp.duration,
             tools: tools.collect(),
-            supports: self.supports(u),
+            supports: self.supports(u, time),
             means: Vec::new(),
             strain_energy: Some(balance.strain),
             smallest_j: smallest_j(self.prepared, u),

@@ -5,6 +5,7 @@ pub(crate) mod external;
 mod implicit_dynamic;
 mod linear;
 mod linear_solver;
+mod loading;
 mod modes;
 mod plan;
 mod problem;
@@ -22,8 +23,20 @@ use crate::outcome::timing::Meters;
 pub(crate) use plan::{Schemes, Wanted, conclude, plan};
 pub(crate) use problem::Problem;
 pub(crate) use refine::refined;
-pub(crate) use solution::{Solution, StepHistory, Vibration};
+pub(crate) use solution::{Carried, Solution, StepHistory, Vibration};
 pub(crate) use statics::{solves, static_params, with_static_problem};
+
+/// Predicts the solution near that of another method. The linear procedure gives the solution itself.
+pub(crate) fn predict(
+    problem: &Problem,
+    carried: &Carried,
+    meters: &mut Meters,
+) -> Result<Solution, Failure> {
+    match (&problem.setup.procedure, &problem.prepared.volume.pressure) {
+        (Procedure::Linear { .. }, None) => solve(problem, meters),
+        _ => statics::predicted(problem, carried),
+    }
+}
 
 /// Solves the problem by the setup's procedure, or by an external solver.
 pub(crate) fn solve(problem: &Problem, meters: &mut Meters) -> Result<Solution, Failure> {

@@ -5,6 +5,7 @@ use cases::scene::{ConstraintRows, Dilation, Procedure};
 use super::solution::Solution;
 use super::stages::Stages;
 use super::{explicit, external, implicit_dynamic, linear, modes, statics};
+use crate::discretise::enriched::NEARLY_INCOMPRESSIBLE;
 use crate::discretise::{Discretisation, Essential};
 use crate::outcome::{Counters, Plan, StageName};
 use crate::scenario::setup::Setup;
@@ -29,9 +30,6 @@ pub(crate) enum Schemes {
     Compared,
 }
 
-/// Poisson's ratio below which a volumetric projection is not worth its cost (kappa < 10 mu).
-const NEARLY_INCOMPRESSIBLE: f64 = 0.45;
-
 /// Stages of a run, in order.
 pub(crate) fn plan(method: &Discretisation, setup: &Setup, wanted: Wanted) -> Plan {
     let stages = stages_of(method, setup);
@@ -55,6 +53,9 @@ pub(crate) fn plan(method: &Discretisation, setup: &Setup, wanted: Wanted) -> Pl
     add(StageName::Friction, friction(setup));
     add(StageName::Transfer, transfer(method, wanted));
     add(StageName::Schemes, schemes(wanted));
+    if setup.output.estimate {
+        add(StageName::Estimate, estimate(method));
+    }
     if let Some(why) = stages.no_transfer {
         plan.skip(StageName::Transfer, why);
         plan.skip(StageName::Schemes, why);
@@ -188,6 +189,13 @@ fn friction(setup: &Setup) -> (bool, String) {
         (false, false) => "no tool has friction",
     };
     (setup.has_friction(), why.into())
+}
+
+fn estimate(method: &Discretisation) -> (bool, String) {
+    match &method.outside {
+        None => (true, "a linear system of quadratic elements on the same body".into()),
+        Some(_) => (false, "the equilibrium is that of another program".into()),
+    }
 }
 
 fn transfer(method: &Discretisation, wanted: Wanted) -> (bool, String) {

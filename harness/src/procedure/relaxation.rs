@@ -12,7 +12,8 @@ use lanes::LanePath;
 use shape::FixedDof;
 use statics::nodal_forces;
 
-use super::explicit::{body, led, smallest_j};
+use super::explicit::{body, smallest_j};
+use super::loading::{Led, led};
 use crate::discretise::{Discretisation, Essential};
 use crate::error::Failure;
 use crate::outcome::{Counters, LoadStep, Metric, ToolStep};
@@ -118,11 +119,7 @@ pub(super) fn continue_from(
         if load <= from.load * (1.0 + 1e-12) {
             continue;
         }
-        let at = |(&(node, axis), (value, _)): (&(u32, u8), &(f64, usize))| FixedDof {
-            node,
-            axis,
-            value: value * load,
-        };
+        let at = |(&(node, axis), led): (&(u32, u8), &Led)| FixedDof { node, axis, value: led.value * load };
         let fixed: Vec<FixedDof> = constrained.iter().map(at).collect();
         let mut external = |u: &[Vector3], f: &mut [Vector3]| {
             f.iter_mut().zip(&loads).for_each(|(f, full)| *f += full * load);

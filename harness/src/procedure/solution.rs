@@ -1,5 +1,6 @@
 //! Results of a procedure.
 
+use contact::ContactHistory;
 use explicit::KernelInfo;
 use geometry::Vector3;
 use shape::Resultant;
@@ -18,6 +19,8 @@ pub(crate) struct Solution {
     pub(crate) pressure: Vec<f64>,
     /// Force of the nodal supports on each node at the end, N; empty if unknown, as after a relaxation.
     pub(crate) reaction: Vec<Vector3>,
+    /// Contact history of each tool at the last equilibrium of a static procedure.
+    pub(crate) contact: Vec<ContactHistory>,
     /// Resultant of each support's forces on the body at the end of a linear procedure.
     pub(crate) supports: Vec<Resultant>,
     /// Number of unknowns, pressures included.
@@ -42,12 +45,25 @@ pub(crate) struct Solution {
     pub(crate) history: Option<StepHistory>,
     /// Modes of a modal analysis.
     pub(crate) vibration: Option<Vibration>,
+    /// Whether a prediction found no equilibrium and is that of the linearised problem.
+    pub(crate) linearised: bool,
     /// Kernel that evaluated the internal forces of explicit dynamics or relaxation.
     pub(crate) forces: Option<KernelInfo>,
     /// Failure that ended Newton's method early, if relaxation continued to the whole load.
     pub(crate) relaxed: Option<Failure>,
     /// Properties of the external program that solved the problem.
     pub(crate) program: Option<OfProgram>,
+}
+
+/// Solution of another method, carried over to the nodes and points of a problem.
+pub(crate) struct Carried<'a> {
+    pub(crate) from: &'a Solution,
+    /// Displacement of the nodes, m.
+    pub(crate) u: &'a [Vector3],
+    /// Parameters of the problem's pressure field, Pa, tension positive.
+    pub(crate) pressure: &'a [f64],
+    /// The other method's contact point next to each contact point.
+    pub(crate) nearest: &'a [u32],
 }
 
 /// Load steps of a static path or recorded states of a motion, up to the end that was reached.

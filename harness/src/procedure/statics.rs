@@ -4,18 +4,18 @@ use std::time::Instant;
 
 use cases::scene::{Newton, OnStall, Static};
 use catalogue::metric;
-use contact::{ContactSurface, DrivenTool};
+use contact::{ContactHistory, ContactSurface, DrivenTool};
 use material::Material as _;
 use shape::{Coarser, Resultant};
 use statics::{
-    Active, Curves, LinearSystems, NewtonParams, Rest, Solid, SolidDilation, StaticError, StaticParams,
-    StaticPath, StaticProblem, Step, solve_static,
+    Active, Curves, LinearSystems, Nearby, NewtonParams, Predicted, Rest, Solid, SolidDilation, StaticError,
+    StaticParams, StaticPath, StaticProblem, Step, predict, solve_static,
 };
 
 use super::linear_solver::tangents;
 use super::problem::Problem;
 use super::relaxation::{self, Relaxed, Start};
-use super::solution::{Solution, StepHistory};
+use super::solution::{Carried, Solution, StepHistory};
 use super::stages::Stages;
 use crate::discretise::Discretisation;
 use crate::error::Failure;
@@ -26,6 +26,9 @@ use crate::scenario::setup::Setup;
 
 /// Smallest fraction of a load step to which the step is cut back: six halvings.
 pub(super) const SMALLEST: f64 = 1.0 / 64.0;
+
+/// Relative residual of a predicted equilibrium, for an estimate of errors.
+const PREDICTED: f64 = 1e-3;
 
 /// Parameters of the static solver.
 pub(crate) fn static_params(asked: &Static) -> StaticParams {
@@ -85,8 +88,7 @@ fn path(problem: &Problem, asked: &Static, counters: &mut Counters) -> Result<(S
     let (mut steps, mut fields) = (Vec::new(), Vec::new());
     let (mut supports, mut points, mut reaction) = (Vec::new(), Vec::new(), Vec::new());
     let start = Instant::now();
-    let mut limit = Limit::default();
-    let mut before = LoadStep::at_start(setup.tools.len());
+    let (mut limit, mut before) = (Limit::default(), LoadStep::at_start(setup.tools.len()));
     let mut params = static_params(asked);
     params.newton.keeps = NewtonParams::KEEPS;
     // A cloud on which tools slide may reach another equilibrium by inexact steps, as the kidney between jaws
@@ -125,7 +127,7 @@ fn path(problem: &Problem, asked: &Static, counters: &mut Counters) -> Result<(S
     let mut relaxed = None;
     if path.failure.is_some() && relaxes {
         let closures = last.tools.iter().map(|tool| tool.closure).collect();
-        let from = Start { load: last.load, u: u.clone(), closures, history: path.history };
+        let from = Start { load: last.load, u: u.clone(), closures, history: path.history.clone() };
         let done = relaxation::continue_from((method.nodes(), setup), asked.steps, prepared, from, counters)?;
         steps.extend(done.steps.iter().cloned());
         fields.extend(done.fields.iter().cloned());
@@ -149,6 +151,7 @@ fn path(problem: &Problem, asked: &Static, counters: &mut Counters) -> Result<(S
         dofs: problem.free_dofs() + path.pressure.len(),
         u,
         pressure: path.pressure,
+        contact: path.history,
         reaction: if forces.is_none() { reaction } else { Vec::new() },
         residual: Some(residual),
         tangents: path.solver.map(|solver| solver.name()),
@@ -158,6 +161,49 @@ fn path(problem: &Problem, asked: &Static, counters: &mut Counters) -> Result<(S
         ..Solution::default()
     };
     Ok((solution, limit))
+}
+
+/// Predicts the equilibrium near the end of another method's solution.
+pub(super) fn predicted(problem: &Problem, carried: &Carried) -> Result<Solution, Failure> {
+    let Problem { method, setup, prepared, .. } = *problem;
+    let Carried { from, u, pressure, nearest } = *carried;
+    let last = from.history.as_ref().map(|history| &history.last);
+    let closures: Vec<f64> = last.iter().flat_map(|last| &last.tools).map(|tool| tool.closure).collect();
+    let load = last.map_or(1.0, |last| last.load);
+    let (contact, tangents) = (prepared.contact(), Tangents::new(problem)?);
+    let each = from.contact.iter().zip(&setup.tools).zip(&closures);
+    let history: Vec<ContactHistory> = (contact.iter().flat_map(|surface| {
+        each.clone()
+            .map(move |((history, set), &closure)| history.carried(nearest, surface, &set.tool, closure, u))
+    }))
+    .collect();
+    let near = Nearby { time: load, u, pressure, closures: &closures, history: &history };
+    let mut params = newton_params(&Newton { tolerance: PREDICTED, iterations: 10, augmentations: 0 });
+    params.keeps = NewtonParams::KEEPS;
+    let usual = Curves::proportional();
+    let found = with_static_problem(method, setup, prepared, contact.as_ref(), usual, |problem| {
+        let problem = StaticProblem { systems: tangents.systems(), ..problem.clone() };
+        predict(&problem, &params, near)
+    })?;
+    let Predicted { u, reaction, penalties, tools, energy, linear } = found;
+    let rest = Rest { u: &u, pressure: &[], reaction: &reaction, penalties: &penalties };
+    let tools = tools.iter().zip(&setup.tools).map(|(state, set)| ToolStep::of(state, &set.tool));
+    let last = LoadStep {
+        load,
+        tools: tools.collect(),
+        supports: support_forces(method, prepared, &rest, load),
+        strain_energy: Some(energy),
+        ..LoadStep::at_start(0)
+    };
+    let history =
+        StepHistory { steps: Vec::new(), fields: Vec::new(), last, metrics: Vec::new(), failure: None };
+    Ok(Solution {
+        dofs: problem.free_dofs(),
+        u,
+        history: Some(history),
+        linearised: linear,
+        ..Solution::default()
+    })
 }
 
 /// Forces of the supports on the body at an equilibrium.

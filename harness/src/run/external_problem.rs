@@ -70,7 +70,7 @@ impl Group<'_> {
         }
         if scenario.following().is_some() {
             return refused(
-                "has a pressure on the deformed surface, which can't be passed to another solver: add dead = true",
+                "has a load on the deformed surface, which can't be passed to another solver: add dead = true",
             );
         }
         if setup.tools.iter().any(|placed| placed.tool.turns()) {

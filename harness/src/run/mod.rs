@@ -1,6 +1,7 @@
 //! A run: prepare, assemble, factor and solve (timed separately and repeated), then errors, probes and
 //! transfers.
 
+mod estimate;
 mod export;
 mod external_problem;
 mod group;
@@ -13,6 +14,7 @@ mod witness;
 use std::time::Instant;
 
 use cases::scene::Procedure;
+use catalogue::warning;
 use geometry::{Point3, Vector3};
 use records::{Record, SurfaceField};
 
@@ -24,11 +26,12 @@ use crate::measure::{
     report_modes, report_steps, states, surface, transfers, warnings,
 };
 use crate::outcome::timing::{Meters, Timed, Timings};
-use crate::outcome::{Counters, Identity, Outcome, Plan, Size, StageName};
+use crate::outcome::{Counters, Identity, Outcome, Plan, Size, StageName, Warning};
 use crate::prepare::{Prepared, check_means, prepare};
 use crate::procedure::{self, Problem, Solution, conclude, refined};
 use crate::process;
 use crate::scenario::setup::Setup;
+use estimate::estimate;
 use memory::Baseline;
 use repeated::repeated;
 
@@ -236,6 +239,16 @@ fn loaded(
     outcome.warnings =
         warnings(run, recovered.as_ref(), &outcome.metrics, &outcome.probes, outcome.last.as_ref())?;
     outcome.warnings.extend(bridging);
+    if outcome.plan.runs(StageName::Estimate) {
+        let estimated = match &solution.forces {
+            None => timings.time("estimate", || estimate(outcome, run, &displaced, request, counters)),
+            Some(_) => Err(Failure::Run("the run ended by relaxation".into())),
+        };
+        if let Err(failure) = estimated {
+            let message = format!("the error can't be estimated: {failure}");
+            outcome.warnings.push(Warning::new(&warning::NO_ESTIMATE, 0.0, "output.estimate", message));
+        }
+    }
     if let Some(ask) = request.repeated.filter(|_| whole && run.method.outside.is_none()) {
         outcome.latencies =
             timings.time("loop", || repeated(ask, run, request.probes, &mut outcome.metrics))?;

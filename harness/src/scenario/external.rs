@@ -5,7 +5,7 @@ use std::path::Path;
 use std::sync::Arc;
 use std::time::Duration;
 
-use cases::scene::{self, Family, ProcedureKind, Setting};
+use cases::scene::{self, Family, LoadKind, ProcedureKind, Setting};
 
 use super::Scenario;
 use crate::adapter::{self, About, Outside};
@@ -84,11 +84,14 @@ impl Scenario<'_> {
         }
     }
 
-    /// Key of the first pressure on the deformed surface.
+    /// Key of the first load on the deformed surface.
     pub(crate) fn following(&self) -> Option<String> {
         let (laws, _) = self.laws().ok()?;
         let index = self.scene.loads.iter().position(|load| self.follows(load, &laws))?;
-        Some(format!("load[{index}].pressure"))
+        Some(match self.scene.loads[index].kind {
+            LoadKind::Pressure(_) => format!("load[{index}].pressure"),
+            _ => format!("load[{index}].traction"),
+        })
     }
 
     /// Lists the loads, materials and tools of the scene that problem files cannot describe yet.
@@ -96,8 +99,8 @@ impl Scenario<'_> {
         let mut unsaid = Vec::new();
         let mut add = |key, what, help| unsaid.push(Unsaid { key, what, help });
         if let Some(key) = self.following() {
-            let what = "a pressure on the deformed surface";
-            add(key, what, "add dead = true for a pressure on the undeformed surface");
+            let what = "a load on the deformed surface";
+            add(key, what, "add dead = true for a load on the undeformed surface");
         }
         for index in 0..self.scene.foundations.len() {
             add(format!("foundation[{index}]"), "springs and dampers on a surface", "leave them out");

@@ -37,9 +37,9 @@ pub enum Fill {
     Spacing { bits: u64, quadratic: bool },
 }
 
-/// Identity of a body when it was read: path, unit, joining and treatment of the file, its length and time of
+/// Identity of a body when it was read: paths, unit, joining and treatment of the files, their lengths and times of
 /// modification.
-type Known = (PathBuf, u64, (bool, String), u64, Option<SystemTime>);
+type Known = (Vec<PathBuf>, u64, (bool, String), Vec<(u64, Option<SystemTime>)>);
 
 /// Files already read. Every method requests the body, and searching a surface for intersections takes as
 /// long as reading it.
@@ -50,16 +50,19 @@ static READ: LazyLock<Mutex<HashMap<Known, Arc<FileBody>>>> = LazyLock::new(Mute
 /// # Errors
 /// Returns an error if the file cannot be read or has no closed surface.
 pub fn load(file: &MeshFile) -> Result<Arc<FileBody>, Failure> {
-    let about = std::fs::metadata(&file.path).ok();
-    let (length, modified) = about.map_or((0, None), |about| (about.len(), about.modified().ok()));
+    let age = |path: &PathBuf| {
+        let about = std::fs::metadata(path).ok();
+        about.map_or((0, None), |about| (about.len(), about.modified().ok()))
+    };
+    let paths = file.paths();
     let how = (file.join, format!("{:?}", file.treatment));
-    let known = (file.path.clone(), file.unit.to_bits(), how, length, modified);
+    let known = (paths.clone(), file.unit.to_bits(), how, paths.iter().map(age).collect());
     if let Some(body) = READ.lock().unwrap_or_else(PoisonError::into_inner).get(&known) {
         return Ok(body.clone());
     }
     let key = || Key::Scene("body.path".into());
     let (treated, mesh) = if mesh_files::is_surface(&file.path) {
-        (mesh_files::read_treated(&file.path, file.unit, file.treatment).map_err(unread)?, None)
+        (mesh_files::read_together(&paths, file.unit, file.treatment).map_err(unread)?, None)
     } else {
         let mesh = mesh_file::read(file, key())?;
         let boundary = BoundaryFaces::new(&mesh).map_err(|bad| {

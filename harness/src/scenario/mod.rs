@@ -195,17 +195,14 @@ impl Scenario<'_> {
             .collect()
     }
 
-    /// Whether a load is a pressure on the deformed surface: unless the scene makes it dead, if the procedure is
-    /// one of large displacements and a law one of large strain.
+    /// Whether a load acts on the deformed surface: a pressure or a traction that the scene does not make dead, if
+    /// the procedure is one of large displacements and a law one of large strain.
     fn follows(&self, load: &scene::Load, laws: &[Law]) -> bool {
         let linear = matches!(
             self.scene.procedure,
             Procedure::Prepare | Procedure::Linear { .. } | Procedure::Modes { .. }
         );
-        matches!(load.kind, LoadKind::Pressure(_))
-            && !load.dead
-            && !linear
-            && laws.iter().any(|law| !law.is_small_strain())
+        !load.dead && !linear && laws.iter().any(|law| !law.is_small_strain())
     }
 
     fn active(&self) -> Vec<f64> {

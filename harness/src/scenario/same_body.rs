@@ -93,8 +93,13 @@ mod tests {
     #[test]
     fn a_body_of_the_same_outline_is_known_by_its_volume() {
         let cube = Body::Box { min: [-0.02; 3], max: [0.02; 3] };
-        let file =
-            MeshFile { path: "ball.msh".into(), unit: 1.0, join: false, treatment: Treatment::AsGiven };
+        let file = MeshFile {
+            path: "ball.msh".into(),
+            unit: 1.0,
+            further: Vec::new(),
+            join: false,
+            treatment: Treatment::AsGiven,
+        };
         let ball = ball_mesh(CellKind::Hex8, 0.02, 8).unwrap();
         let wrong = check(&cube, &file, &ball).unwrap_err().to_string();
         assert!(wrong.contains("6.4000e1 cm^3, from (-20.0, -20.0, -20.0) mm"), "{wrong}");

@@ -107,7 +107,7 @@ pub struct Load {
     pub varies: bool,
     /// Whether the load depends on the outward normal.
     pub along_normal: bool,
-    /// Whether a pressure acts on the deformed surface.
+    /// Whether a pressure or a traction acts on the deformed surface.
     pub follows: bool,
     /// Factor of the load over time; `None` for the common growth.
     pub curve: Option<Arc<Curve>>,
@@ -183,21 +183,27 @@ impl Setup {
         matches!(self.procedure, Procedure::Static(_) | Procedure::ImplicitDynamic(_))
     }
 
-    /// Describes in the plan which pressures follow the deformed surface and which do not; empty without any.
+    /// Describes in the plan which pressures follow the deformed surface and which do not, and which tractions
+    /// follow its area; empty without any.
     pub fn pressures(&self) -> String {
-        let keys = |follows: bool| -> Vec<&str> {
-            let pressure = |load: &&Load| matches!(load.applied, Applied::Surface(SurfaceLoad::Pressure(_)));
-            let of_kind = self.loads.iter().filter(pressure).filter(|load| load.follows == follows);
+        let of = |pressure: bool, follows: bool| -> Vec<&str> {
+            let is = |load: &&Load| match load.applied {
+                Applied::Surface(SurfaceLoad::Pressure(_)) => pressure,
+                Applied::Surface(SurfaceLoad::Traction(_)) => !pressure,
+                _ => false,
+            };
+            let of_kind = self.loads.iter().filter(is).filter(|load| load.follows == follows);
             of_kind.map(|load| load.key.as_str()).collect()
         };
-        let mut text = String::new();
-        for (follows, surface) in [(true, "deformed"), (false, "undeformed")] {
-            let keys = keys(follows);
-            if !keys.is_empty() {
-                text += &format!("; pressure on the {surface} surface: {}", keys.join(", "));
-            }
-        }
-        text
+        [
+            (of(true, true), "pressure on the deformed surface"),
+            (of(true, false), "pressure on the undeformed surface"),
+            (of(false, true), "traction on the deformed area"),
+        ]
+        .into_iter()
+        .filter(|(keys, _)| !keys.is_empty())
+        .map(|(keys, what)| format!("; {what}: {}", keys.join(", ")))
+        .collect()
     }
 
     /// Names in the plan the springs and dampers on surfaces; empty without any.

@@ -13,7 +13,7 @@ use crate::adapter::{self, Found};
 pub(super) fn files(scene: &Scene, method: &scene::Method) -> Vec<PathBuf> {
     let mut found: Vec<PathBuf> = scene.methods.iter().flat_map(scene::Method::files).collect();
     if let scene::Body::File(file) = &scene.body {
-        found.push(file.path.clone());
+        found.extend(file.paths());
     }
     found.extend(scene.tools.iter().filter_map(|tool| tool.file.clone()));
     for transfer in &scene.output.transfers {

@@ -37,6 +37,11 @@ macro_rules! warnings {
 warnings! {
     NOTHING_MOVES: "nothing-moves", None,
         "the scene has no load, no tool and no moving support, so every displacement is 0; no value";
+    NO_ESTIMATE: "no-estimate", None,
+        "the error of a run cannot be estimated; no value";
+    ROUGH_ESTIMATE: "rough-estimate", None,
+        "no equilibrium with more shape functions was found near that of a run, so that its error is estimated from \
+         the linearised problem; value: the estimated error of the displacement";
     EXACT_MISFIT: "exact-misfit", None,
         "the exact solution has other displacements or tractions on the surface than the scene prescribes; \
          value: the largest root mean square difference on a surface divided by the largest value on any \

@@ -40,6 +40,30 @@ impl ContactHistory {
         }
     }
 
+    /// Carries the history over to the points of another surface of the same body with displacement `u` (m): each
+    /// point has the elastic slip and the multiplier of the point `nearest` of this history.
+    pub fn carried(
+        &self,
+        nearest: &[u32],
+        surface: &ContactSurface,
+        tool: &Tool,
+        closure: f64,
+        u: &[Vector3],
+    ) -> ContactHistory {
+        let mut carried = ContactHistory::new(tool, nearest.len());
+        carried.commit_all(None, surface, tool, closure, u);
+        for (slip, &near) in carried.slip.iter_mut().zip(nearest) {
+            *slip = slip.with_stretch(self.slip(near as usize).stretch());
+        }
+        if !self.multiplier.is_empty() {
+            carried.multiplier = nearest.iter().map(|&near| self.multiplier(near as usize)).collect();
+            carried.pressed =
+                (0..nearest.len() as u32).filter(|&q| carried.multiplier(q as usize) > 0.0).collect();
+            carried.largest = self.largest;
+        }
+        carried
+    }
+
     /// Number of points of the surface.
     pub fn points(&self) -> usize {
         self.points

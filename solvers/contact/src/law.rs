@@ -200,6 +200,11 @@ impl Slip {
         Slip(Some(Stick { stretch: Vector3::zeros(), at: *at, gap }))
     }
 
+    /// The same place with another elastic slip, m; no history stays none.
+    pub(super) fn with_stretch(self, stretch: Vector3) -> Slip {
+        Slip(self.0.map(|stick| Stick { stretch, ..stick }))
+    }
+
     /// Elastic slip `e` (m) in the tool's frame, `t_t = -k_t e`; zero for a point that is not in contact.
     pub fn stretch(&self) -> Vector3 {
         self.0.map_or_else(Vector3::zeros, |s| s.stretch)

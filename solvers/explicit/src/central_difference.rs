@@ -4,7 +4,7 @@ use shape::{Matrix3, Vector3};
 
 use super::active::Contraction;
 use super::critical_step::{CriticalStep, Estimate, Springs, critical_step_touching};
-use super::motion::{Balance, DynamicsParams, External, Prescribed};
+use super::motion::{Balance, DynamicsParams, External, Prescribed, constrained};
 use super::step_lanes::{Forces, Inertia, accelerate, advance};
 use super::stiffness_damping::StiffnessDamping;
 use crate::error::ExplicitError;
@@ -18,6 +18,8 @@ pub struct Dynamics<'a, 'b> {
     mass: &'b [f64],
     prescribed: &'b [Prescribed<'b>],
     params: DynamicsParams,
+    /// Indices of the prescribed degrees of freedom that are still held.
+    held: Vec<usize>,
     constrained: Vec<bool>,
     inertia: Inertia,
     tools: Option<Tools<'b>>,
@@ -83,6 +85,7 @@ impl<'a, 'b> Dynamics<'a, 'b> {
             force,
             mass,
             prescribed,
+            held: (0..prescribed.len()).collect(),
             params,
             inertia: Inertia::new(mass, &constrained),
             constrained,
@@ -172,6 +175,21 @@ impl<'a, 'b> Dynamics<'a, 'b> {
     /// Tools in the state of the last recorded or completed step.
     pub fn tools(&self) -> Option<&Tools<'b>> {
         self.tools.as_ref()
+    }
+
+    /// Lets go of the prescribed degrees of freedom whose index `gone` names: from here on they move freely, from
+    /// the velocity that they have.
+    pub fn release(&mut self, gone: impl Fn(usize) -> bool) {
+        for &k in self.held.iter().filter(|k| gone(**k)) {
+            let Prescribed { node, axis, .. } = self.prescribed[k];
+            let (i, axis) = (node as usize, usize::from(axis));
+            // The other half of this step's work is that of no force.
+            self.work[1] += 0.5 * self.before * self.v[i][axis] * std::mem::take(&mut self.reaction[k]);
+            self.constrained[3 * i + axis] = false;
+        }
+        self.held.retain(|k| !gone(*k));
+        self.inertia = Inertia::new(self.mass, &self.constrained);
+        self.estimate = None;
     }
 
     /// Sets the time step `dt` (s) of the steps that follow.
@@ -277,7 +295,7 @@ impl<'a, 'b> Dynamics<'a, 'b> {
     }
 
     /// Forces of the supports on the body in the last completed step, N, in the order of the prescribed
-    /// degrees of freedom given to [`Dynamics::new`].
+    /// degrees of freedom given to [`Dynamics::new`]; zero once released.
     pub fn reactions(&self) -> &[f64] {
         &self.reaction
     }
@@ -351,7 +369,9 @@ impl<'a, 'b> Dynamics<'a, 'b> {
                 self.v[i] = self.v[i] * (1.0 + c) - f * (0.5 * dt / self.mass[i]);
             }
         }
-        self.prescribed.iter().for_each(|p| self.v[p.node as usize][p.axis as usize] = 0.0);
+        for p in self.held.iter().map(|&k| &self.prescribed[k]) {
+            self.v[p.node as usize][p.axis as usize] = 0.0;
+        }
         let forces =
             Forces { external: &self.external, before: &self.previous_external, internal: &self.internal };
         let sums = accelerate(self.force.path(), &self.inertia, [keep, push], forces, &mut self.v);
@@ -360,7 +380,8 @@ impl<'a, 'b> Dynamics<'a, 'b> {
         let [mut lost, mut next_lost] = sums.lost.map(|lost| 0.5 * lost);
         let work = if first { 0.0 } else { 0.5 * before_dt * sums.work };
         // Prescribed velocities, their part of the energies and their reactions.
-        for (p, reaction) in self.prescribed.iter().zip(&mut self.reaction) {
+        for &k in &self.held {
+            let (p, reaction) = (&self.prescribed[k], &mut self.reaction[k]);
             let (i, axis) = (p.node as usize, p.axis as usize);
             let m = self.mass[i];
             let now = self.u[i][axis];
@@ -432,7 +453,7 @@ impl<'a, 'b> Dynamics<'a, 'b> {
         self.before = dt;
         self.step += 1;
         let time = self.time();
-        for p in self.prescribed {
+        for p in self.held.iter().map(|&k| &self.prescribed[k]) {
             self.u[p.node as usize][p.axis as usize] = (p.motion)(time);
         }
     }
@@ -475,22 +496,4 @@ impl<'a, 'b> Dynamics<'a, 'b> {
         }
         Ok(())
     }
-}
-
-/// Marks the (node, axis) pairs of a list among all degrees of freedom; each pair may occur once.
-pub(super) fn constrained(
-    nodes: usize,
-    list: impl Iterator<Item = (u32, u8)>,
-) -> Result<Vec<bool>, ExplicitError> {
-    let mut constrained = vec![false; 3 * nodes];
-    for (node, axis) in list {
-        let bad = |why| Err(ExplicitError::BadDof { node: node as usize, axis, why });
-        if node as usize >= nodes || axis > 2 {
-            return bad("there is no such node or axis");
-        }
-        if std::mem::replace(&mut constrained[3 * node as usize + axis as usize], true) {
-            return bad("the displacement is prescribed twice");
-        }
-    }
-    Ok(constrained)
 }

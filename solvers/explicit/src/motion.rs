@@ -3,6 +3,7 @@
 use shape::Vector3;
 
 use super::critical_step::{CriticalStep, LanczosParams};
+use crate::error::ExplicitError;
 use crate::tools::ToolEnergies;
 
 /// Parameters of a time integration.
@@ -64,4 +65,22 @@ pub struct Balance {
     /// `kinetic + strain + damping + tools.kinetic + tools.stored + tools.friction + tools.damping` less
     /// `external + support + tools.work`.
     pub drift: f64,
+}
+
+/// Marks the (node, axis) pairs of a list among all degrees of freedom; each pair may occur once.
+pub(super) fn constrained(
+    nodes: usize,
+    list: impl Iterator<Item = (u32, u8)>,
+) -> Result<Vec<bool>, ExplicitError> {
+    let mut constrained = vec![false; 3 * nodes];
+    for (node, axis) in list {
+        let bad = |why| Err(ExplicitError::BadDof { node: node as usize, axis, why });
+        if node as usize >= nodes || axis > 2 {
+            return bad("there is no such node or axis");
+        }
+        if std::mem::replace(&mut constrained[3 * node as usize + axis as usize], true) {
+            return bad("the displacement is prescribed twice");
+        }
+    }
+    Ok(constrained)
 }

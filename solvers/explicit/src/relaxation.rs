@@ -3,8 +3,8 @@
 use material::Material;
 use shape::{FixedDof, Vector3};
 
-use super::central_difference::constrained;
 use super::critical_step::{LanczosParams, critical_step_touching};
+use super::motion::constrained;
 use crate::error::ExplicitError;
 use crate::force::InternalForce;
 use crate::pressing::Pressing;

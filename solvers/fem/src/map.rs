@@ -49,10 +49,14 @@ impl<const N: usize> Nodes<N> {
 
     /// Returns whether a mid-edge node is not in the middle of its edge, beyond rounding.
     pub(crate) fn is_curved(&self, cell: &ReferenceCell) -> bool {
-        self.dx[cell.corners..].iter().zip(cell.edges).any(|(middle, &[a, b])| {
+        // One comparison of sums: with one for each edge, rows of tet10 took 9 % more instructions instead of 5 %.
+        let [mut off, mut size] = [0.0; 2];
+        for (middle, &[a, b]) in self.dx[cell.corners..].iter().zip(cell.edges) {
             let (a, b) = (&self.dx[a], &self.dx[b]);
-            (2.0 * middle - a - b).norm() > 1e-10 * (a - b).norm()
-        })
+            off += (2.0 * middle - a - b).norm_squared();
+            size += (a - b).norm_squared();
+        }
+        off > 1e-20 * size
     }
 }
 

@@ -9,6 +9,7 @@ mod ball;
 mod boxes;
 mod convert;
 mod cylinder;
+mod divide;
 mod lattice;
 mod parts;
 mod shell;
@@ -20,6 +21,7 @@ pub use ball::{Drawn, ball_mesh, half_kidney_mesh, kidney_mesh};
 pub use boxes::{Jitter, box_mesh};
 pub use convert::{converted, is_convertible, raise_order, tets_on_nodes, to_tets, turned};
 pub use cylinder::cylinder_mesh;
+pub use divide::divide;
 pub use shell::{ShellExtent, sphere_shell_mesh};
 pub use ventricle::{Ventricle, ventricle_mesh};
 

@@ -32,7 +32,7 @@ fn an_open_surface_is_refused() {
 /// Each repairable error states the number and position of the triangles, and a repair mends it.
 #[test]
 fn what_a_repair_has_to_do_is_said_and_done() {
-    const REGIONS: &str = "yet: give a volume mesh with a region for each body";
+    const REGIONS: &str = "give each body its own closed surface";
     let ball = || sphere_like(4, |n| n);
     let whole = surface(ball()).volume();
     let turn = |soup: &mut Soup, triangle: usize| soup.triangles[triangle].swap(1, 2);
@@ -84,7 +84,6 @@ fn what_a_repair_has_to_do_is_said_and_done() {
     for said in [holes, some, most, inwards, twice, split] {
         assert!(!said.contains("yet"), "{said}");
     }
-    let body_in_body = refused(joined(ball(), sphere_like(2, |n| 0.5 * n))).to_string();
     let tet = Soup {
         points: CORNERS.map(Point3::from).to_vec(),
         triangles: FACES.map(|face| face.map(|corner| corner as u32)).to_vec(),
@@ -98,9 +97,7 @@ fn what_a_repair_has_to_do_is_said_and_done() {
     };
     let touching = refused(joined(tet, mirrored)).to_string();
     assert!(touching.contains("closed parts touch at the edge"), "{touching}");
-    for said in [body_in_body, touching] {
-        assert!(said.contains(REGIONS), "{said}");
-    }
+    assert!(touching.contains(REGIONS), "{touching}");
 }
 
 #[test]

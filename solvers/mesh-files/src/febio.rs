@@ -12,11 +12,15 @@ use geometry::{CellKind, Point3};
 use roxmltree::{Document, Node};
 
 use crate::content::{Content, NO_REGION};
+use crate::data_array::DataArray;
 use crate::error::{Parsed, Place, Problem};
 use crate::left_out::{Kind, LeftOut};
 use crate::rows::Row;
 use crate::text::text;
 use crate::xml::{Lines, line_of_fault, refuse_long_tags};
+
+/// Array of the directions of fibres, `<ElementData type="fiber">`.
+const FIBRES: &str = "fiber";
 
 /// Number of bytes in which the root element of a model begins.
 const HEAD: usize = 4096;
@@ -76,9 +80,11 @@ struct Reader<'a> {
     /// Nodes of elements that are not in the mesh.
     outside: HashSet<u64>,
     elements: HashMap<&'a str, Vec<u64>>,
+    /// Elements of each `<ElementSet>` in the order of the file.
+    sets: HashMap<&'a str, Vec<u64>>,
 }
 
-pub(super) fn parse(bytes: &[u8]) -> Parsed<Content> {
+pub(super) fn parse(bytes: &[u8], wanted: Option<&str>) -> Parsed<Content> {
     let text = text(bytes)?;
     refuse_long_tags(&text)?;
     let document = Document::parse(&text).map_err(|bad| {
@@ -101,6 +107,7 @@ pub(super) fn parse(bytes: &[u8]) -> Parsed<Content> {
         rigid: rigid_parts(root),
         outside: HashSet::new(),
         elements: HashMap::new(),
+        sets: HashMap::new(),
     };
     // Unconnected nodes belong to rigid bodies, springs and shells.
     reader.content.leave_unused_out();
@@ -111,6 +118,8 @@ pub(super) fn parse(bytes: &[u8]) -> Parsed<Content> {
     parts("Surface").try_for_each(|part| reader.surface(part))?;
     parts("NodeSet").try_for_each(|part| reader.node_set(part, &surfaces))?;
     parts("ElementSet").try_for_each(|part| reader.element_set(part))?;
+    let data = child(root, "MeshData").into_iter().flat_map(|section| section.children());
+    data.filter(|node| node.has_tag_name("ElementData")).try_for_each(|part| reader.fibres(part, wanted))?;
     Ok(reader.content)
 }
 
@@ -243,6 +252,7 @@ impl<'a> Reader<'a> {
 
     fn element_set(&mut self, part: Node<'a, 'a>) -> Parsed<()> {
         let name = self.attribute(part, "name")?;
+        self.sets.insert(name, self.members(part)?);
         // The elements of a domain have its name already.
         if self.elements.contains_key(name) {
             return Ok(());
@@ -250,6 +260,43 @@ impl<'a> Reader<'a> {
         let cells: Vec<u32> =
             self.members(part)?.into_iter().filter_map(|number| self.content.cell_of(number)).collect();
         self.content.also(self.place(part), name, &cells)
+    }
+
+    /// Reads the directions of fibres by the places of their elements in a set, as an array of their type.
+    fn fibres(&mut self, part: Node<'a, 'a>, wanted: Option<&str>) -> Parsed<()> {
+        let kind = part.attribute("type").or(part.attribute("var")).unwrap_or_default();
+        if kind != FIBRES {
+            return Ok(());
+        }
+        let place = self.place(part);
+        let (of_cells, name) = (true, kind.to_string());
+        let mut array =
+            DataArray { name, place, of_cells, components: 3, numbers: Vec::new(), values: Vec::new() };
+        if wanted == Some(kind) {
+            let set = part.attribute("elem_set").unwrap_or_default();
+            let Some(members) = self.sets.get(set).or_else(|| self.elements.get(set)) else {
+                let expected = "an elem_set of the mesh";
+                return Err((place, Problem::Expected { expected, found: format!("'{set}'") }));
+            };
+            for node in part.children().filter(Node::is_element) {
+                let at = self.place(node);
+                let word = node.attribute("lid").unwrap_or_default();
+                let local = word.parse::<usize>().ok().and_then(|local| members.get(local.checked_sub(1)?));
+                let Some(number) = local else {
+                    let expected = "the place of an element in the set, from 1, as attribute 'lid'";
+                    return Err((at, Problem::Expected { expected, found: format!("'{word}'") }));
+                };
+                let values: Vec<f64> = words(node).filter_map(|word| word.parse().ok()).collect();
+                if values.len() != 3 || words(node).count() != 3 {
+                    let found = words(node).collect::<Vec<_>>().join(", ");
+                    return Err((at, Problem::Expected { expected: "three components", found }));
+                }
+                array.numbers.push(*number);
+                array.values.extend(values);
+            }
+        }
+        self.content.arrays.push(array);
+        Ok(())
     }
 
     /// Members of a set, as text or each in its own element.

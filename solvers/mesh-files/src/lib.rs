@@ -40,7 +40,9 @@ pub use read::{
     READ, included, inverted, is_mesh, left_out, read, read_bytes, read_numbered, read_without_unused,
 };
 pub use rows::{Row, Rows};
-pub use surface::{SURFACES, is_surface, read_surface, read_surface_bytes, read_treated, read_treated_bytes};
+pub use surface::{
+    SURFACES, is_surface, read_surface, read_surface_bytes, read_together, read_treated, read_treated_bytes,
+};
 pub use vectors::{Vectors, read_vectors, read_vectors_bytes};
 pub use vtu::write::{Values, solution_vtu, surface_vtu};
 pub use write::{write, write_as};

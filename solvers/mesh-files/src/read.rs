@@ -116,7 +116,7 @@ pub(crate) fn parse(bytes: &[u8], file: &Path, wanted: Option<&str>) -> Parsed<C
     match &bytes[start..] {
         [b'$', next, ..] if next.is_ascii_alphabetic() => gmsh::parse(bytes, wanted),
         [b'*', ..] => abaqus::parse(bytes, file),
-        [b'<', ..] if febio::is_model(bytes) => febio::parse(bytes),
+        [b'<', ..] if febio::is_model(bytes) => febio::parse(bytes, wanted),
         [b'<', ..] if vtu::is_surface(bytes) => Err((Place::Line(1), Problem::Surface)),
         [b'<', ..] => vtu::parse(bytes, wanted),
         rest if rest.starts_with(b"# vtk") => vtk::parse(bytes, wanted),

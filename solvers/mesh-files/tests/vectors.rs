@@ -1,4 +1,4 @@
-//! Vectors of cells and nodes in VTK and Gmsh files.
+//! Vectors of cells and nodes in VTK, Gmsh and FEBio files.
 
 mod common;
 
@@ -215,4 +215,42 @@ fn binary_gmsh_data_are_read() {
     file.extend(reals(&[0.0, 0.5, 0.0]));
     file.extend(b"\n$EndElementData\n");
     assert_eq!(read(file, "fibers").unwrap().vectors, [Some(Vector3::new(0.0, 0.5, 0.0))]);
+}
+
+/// Two tetrahedra with fibres by their places in an element set.
+const MODEL: &str = r#"<febio_spec version="4.0">
+<Mesh>
+<Nodes><node id="1">0,0,0</node><node id="2">1,0,0</node><node id="3">0,1,0</node><node id="4">0,0,1</node>
+<node id="5">1,1,1</node></Nodes>
+<Elements type="tet4" name="Wall"><elem id="7">1,2,3,4</elem><elem id="8">2,3,4,5</elem></Elements>
+<ElementSet name="Turned">8,7</ElementSet>
+</Mesh>
+<MeshData>
+<ElementData type="fiber" elem_set="Turned">
+<e lid="1">1,0,0</e>
+<e lid="2">0,0.6,0.8</e>
+</ElementData>
+</MeshData>
+</febio_spec>
+"#;
+
+#[test]
+fn fibres_of_a_model_belong_to_the_elements_of_their_set() {
+    let of = |vectors: Vectors| {
+        assert!(vectors.of_cells);
+        vectors.numbers.into_iter().zip(vectors.vectors).collect::<Vec<_>>()
+    };
+    let second = Some(Vector3::new(0.0, 0.6, 0.8));
+    assert_eq!(of(read(MODEL, "fiber").unwrap()), [(7, second), (8, Some(Vector3::x()))]);
+    let own = MODEL.replace("elem_set=\"Turned\"", "elem_set=\"Wall\"");
+    assert_eq!(of(read(own, "fiber").unwrap()), [(7, Some(Vector3::x())), (8, second)]);
+    for (from, to, said) in [
+        ("lid=\"2\"", "lid=\"3\"", "m:11: expected the place of an element in the set"),
+        ("lid=\"2\"", "lid=\"0\"", "m:11: expected the place of an element in the set"),
+        ("0,0.6,0.8", "0,0.6", "m:11: expected three components"),
+        ("elem_set=\"Turned\"", "elem_set=\"Other\"", "m:9: expected an elem_set of the mesh"),
+    ] {
+        let bad = read(MODEL.replace(from, to), "fiber").unwrap_err();
+        assert!(bad.contains(said), "{bad}");
+    }
 }

@@ -94,9 +94,9 @@ pub use laplace::{LaplaceProblem, solve_laplace};
 pub use load::{Load, nodal_forces, nodal_forces_by_curve};
 pub use modes::{ALL_MODES_LIMIT, Modes, lowest_modes, modes};
 pub use nonlinear::{
-    Active, Curves, FollowingPressure, Frames, Inverted, Iteration, LinearSystems, NewtonParams,
-    PenaltySurface, Rest, Solid, SolidDilation, StaticError, StaticParams, StaticPath, StaticProblem,
-    StaticWork, Step, Timing, Worst, solve_static,
+    Active, Curves, FollowingLoad, Frames, Inverted, Iteration, LinearSystems, Nearby, NewtonParams,
+    PenaltySurface, Predicted, Rest, Solid, SolidDilation, StaticError, StaticParams, StaticPath,
+    StaticProblem, StaticWork, Step, Timing, Worst, predict, solve_static,
 };
 pub use problem::{Assembled, LinearProblem, assemble};
 pub use recover::{body_stress, mean_pressure, strain_energy, stress};

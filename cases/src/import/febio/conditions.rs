@@ -128,16 +128,21 @@ impl<'a> Conditions<'a, '_> {
 
     fn pressure(&mut self, fields: &Fields<'a, '_>) {
         let node = fields.node;
-        let pressure = fields.scaled("pressure");
+        let pressure = fields.field("pressure");
         let dead = fields.flag("linear");
         self.refuse_bottom(fields);
         fields.pass(&["symmetric_stiffness"]);
         let (Some(pressure), Some(surface)) = (pressure, self.mesh.surface_of(node, self.source)) else {
             return;
         };
+        let (pressure, formula) = pressure;
         let Some(course) = self.controllers.course(pressure) else { return };
         let part = Part::new("[[load]]").note(self.origin(node)).key("on", quoted(surface));
-        let part = part.key("pressure", self.units.pressures(pressure.value * course.factor));
+        let value = match formula {
+            None => self.units.pressures(pressure.value * course.factor),
+            Some(formula) => formula.pressure(pressure.value * course.factor, self.units),
+        };
+        let part = part.key("pressure", value);
         let part = part.maybe("dead", dead.then(|| "true".into()));
         self.loads.push(part.maybe("curve", course.curve.map(|curve| quoted(&curve))));
     }
@@ -152,10 +157,7 @@ impl<'a> Conditions<'a, '_> {
         let node = fields.node;
         let traction = fields.vector("traction");
         let scale = fields.scaled("scale");
-        if !fields.flag("linear") {
-            let help = "a traction of a scene acts on the undeformed area: give <linear>1</linear>";
-            self.source.refuse(node, "the traction acts on the area of the deformed surface", help);
-        }
+        let dead = fields.flag("linear");
         self.refuse_bottom(fields);
         let surface = self.mesh.surface_of(node, self.source);
         let (Some((traction, vector)), Some(surface)) = (traction, surface) else { return };
@@ -164,6 +166,8 @@ impl<'a> Conditions<'a, '_> {
         let part = Part::new("[[load]]").note(self.origin(node)).key("on", quoted(surface));
         let value = traction.map(|t| self.units.pressures(t * scale.value * course.factor));
         let part = part.key("traction", list(value));
+        // A traction of a scene is per undeformed area unless it says otherwise.
+        let part = part.maybe("dead", (!dead).then(|| "false".into()));
         self.loads.push(part.maybe("curve", course.curve.map(|curve| quoted(&curve))));
     }
 

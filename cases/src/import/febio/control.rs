@@ -15,7 +15,7 @@ pub(super) struct Control {
     pub steps: usize,
     /// Whether mass acts.
     pub dynamic: bool,
-    /// Spectral radius of the time integration at infinite frequency.
+    /// Spectral radius of the time integration at infinite frequency; negative for Newmark's trapezoidal rule.
     radius: f64,
 }
 
@@ -56,25 +56,25 @@ pub(super) fn read(node: Node, source: &Source) -> Option<Control> {
         return None;
     }
     let stepper = fields.take("time_stepper");
-    let radius = fields.take("solver").map_or(Some(-2.0), |solver| solver_radius(solver, source))?;
+    let radius = fields.take("solver").map_or(Some(-2.0), |solver| solver_radius(solver, dynamic, source))?;
     fields.pass(&STEERING);
     fields.finish();
     let line = source.line(node);
     source.findings.leave_out(line, "tolerances, line search and output of <Control>");
-    if dynamic && radius < 0.0 {
-        let what = "Newmark's trapezoidal rule (rhoi below 0): the scene takes generalised-alpha of spectral radius 1";
+    if dynamic && radius >= 0.0 {
+        let what = "the forces of the mean deformation of each step (rhoi 0 to 1), with energy conserved for rhoi = 1: \
+            the scene takes the mean of the forces at both ends";
         source.findings.leave_out(line, what);
     }
     let end = steps * size;
     // The automatic time stepper never exceeds its largest step.
     let most = stepper.and_then(|stepper| inner(stepper, "dtmax")).filter(|most| dynamic && *most > 0.0);
     let steps = most.map_or(steps, |most| steps.max((end / most - ROUNDING).ceil())).min(MOST_STEPS);
-    let radius = if radius < 0.0 { 1.0 } else { radius };
     Some(Control { end, steps: steps as usize, dynamic, radius })
 }
 
 /// Spectral radius of a solver; negative for Newmark's method.
-fn solver_radius(solver: Node, source: &Source) -> Option<f64> {
+fn solver_radius(solver: Node, dynamic: bool, source: &Source) -> Option<f64> {
     if let Some(kind) = solver.attribute("type").filter(|kind| *kind != "solid") {
         source.refuse(solver, format!("<solver> is '{kind}'"), "the solver 'solid' is read");
         return None;
@@ -86,6 +86,11 @@ fn solver_radius(solver: Node, source: &Source) -> Option<f64> {
         }
     }
     let radius = value("rhoi").unwrap_or(-2.0);
+    for (tag, usual) in [("beta", 0.25), ("gamma", 0.5)].into_iter().filter(|_| dynamic && radius < 0.0) {
+        if let Some(found) = value(tag).filter(|found| *found != usual) {
+            source.refuse(solver, format!("<{tag}> is {found}"), &format!("{usual} is read"));
+        }
+    }
     if radius == -1.0 || radius > 1.0 {
         source.refuse(solver, format!("<rhoi> is {radius}"), "0 to 1, and -2 are read");
     }
@@ -104,11 +109,16 @@ impl Control {
         let part = Part::new("[procedure]").note(format!("<Control> (line {line})"));
         match self.dynamic {
             false => part.key("kind", quoted("static")).key("steps", self.steps.to_string()),
-            true => part
-                .key("kind", quoted("implicit-dynamic"))
-                .key("duration", units.times(self.end))
-                .key("steps", self.steps.to_string())
-                .key("spectral_radius", number(self.radius)),
+            true => {
+                let part = part
+                    .key("kind", quoted("implicit-dynamic"))
+                    .key("duration", units.times(self.end))
+                    .key("steps", self.steps.to_string());
+                match self.radius {
+                    radius if radius < 0.0 => part.key("alpha", number(0.0)),
+                    radius => part.key("spectral_radius", number(radius)),
+                }
+            }
         }
     }
 }

@@ -5,6 +5,7 @@ use std::cell::RefCell;
 use mesh_files::Lines;
 use roxmltree::Node;
 
+use super::formula::Formula;
 use crate::import::finding::Findings;
 
 /// The model that is being read.
@@ -81,6 +82,22 @@ impl<'a, 's> Fields<'a, 's> {
         let node = self.take(tag)?;
         let value = *numbers(node, self.source, 1)?.first()?;
         Some(Scaled { value, controller: node.attribute("lc"), node })
+    }
+
+    /// A number, or 1 with the formula that multiplies it, with its load controller.
+    pub fn field(&self, tag: &str) -> Option<(Scaled<'a>, Option<Formula>)> {
+        let formula = |node: &Node| node.has_tag_name(tag) && node.attribute("type") == Some("math");
+        if !self.rest.borrow().iter().any(formula) {
+            return self.scaled(tag).map(|scaled| (scaled, None));
+        }
+        let node = self.take(tag)?;
+        let text = node.text().unwrap_or_default().trim();
+        let Some(formula) = Formula::read(text) else {
+            let help = "sums and products of numbers, X, Y and Z are read";
+            self.source.refuse(node, format!("<{tag}> is the formula '{text}'"), help);
+            return None;
+        };
+        Some((Scaled { value: 1.0, controller: node.attribute("lc"), node }, Some(formula)))
     }
 
     /// Three numbers with their load controller.

@@ -33,6 +33,8 @@ pub(super) struct Mesh<'a> {
     /// Primary and secondary surface.
     pairs: HashMap<&'a str, [&'a str; 2]>,
     places: HashMap<u64, Node<'a, 'a>>,
+    /// Whether `<MeshData>` has directions of fibres for elements.
+    pub has_fibres: bool,
 }
 
 impl<'a> Mesh<'a> {
@@ -44,6 +46,7 @@ impl<'a> Mesh<'a> {
             surfaces: HashMap::new(),
             pairs: HashMap::new(),
             places: HashMap::new(),
+            has_fibres: false,
         };
         for node in mesh.children().filter(Node::is_element) {
             let name = node.attribute("name").unwrap_or_default();
@@ -72,6 +75,20 @@ impl<'a> Mesh<'a> {
             }
         }
         read
+    }
+
+    /// Reads `<MeshData>`: the mesh reader takes the directions of fibres, other parts are refused.
+    pub fn data(&mut self, section: Node, source: &Source) {
+        for node in section.children().filter(Node::is_element) {
+            let (tag, kind) = (node.tag_name().name(), node.attribute("type").or(node.attribute("var")));
+            match (tag, kind) {
+                ("ElementData", Some("fiber")) => self.has_fibres = true,
+                _ => {
+                    let kind = kind.map_or(String::new(), |kind| format!(" '{kind}'"));
+                    source.refuse(node, format!("<{tag}>{kind} of <MeshData> can't be expressed"), "");
+                }
+            }
+        }
     }
 
     /// Name of the group of the mesh that a condition on nodes names.

@@ -5,6 +5,7 @@ mod contact;
 mod control;
 mod curves;
 mod fields;
+mod formula;
 mod material;
 mod mesh;
 mod rigid;
@@ -28,12 +29,13 @@ use super::units::Units;
 /// Sections that a scene has no use for.
 const UNUSED: [&str; 2] = ["Output", "Globals"];
 /// Sections that are read.
-const READ: [&str; 13] = [
+const READ: [&str; 14] = [
     "Module",
     "Control",
     "Material",
     "Mesh",
     "MeshDomains",
+    "MeshData",
     "Boundary",
     "Loads",
     "LoadData",
@@ -99,7 +101,8 @@ fn scene<'a>(root: Node<'a, 'a>, model: &Model, source: &Source) -> Option<Vec<P
             other_section(node, tag, source);
         }
     }
-    let mesh = Mesh::read(mesh_node?, source);
+    let mut mesh = Mesh::read(mesh_node?, source);
+    own("MeshData").into_iter().for_each(|section| mesh.data(section, source));
     let materials = Materials::read(section("Material"), section("MeshDomains"), &mesh, model.units, source);
     let control: Control = control::read(control_node?, source)?;
     let controllers = Controllers::read(section("LoadData"), control, source);
@@ -120,7 +123,7 @@ fn scene<'a>(root: Node<'a, 'a>, model: &Model, source: &Source) -> Option<Vec<P
     let boundary = children("Boundary");
     let attached: Vec<Node> = boundary.into_iter().filter(|node| !conditions.boundary(*node)).collect();
     children("Loads").into_iter().for_each(|node| conditions.load(node));
-    let body_parts = materials.body(&mesh, model, source);
+    let body_parts = materials.body(&mesh, &controllers, model, source);
     let mut bodies = materials.rigid;
     rigid::read(&mut bodies, &attached, children("Rigid"), &mut conditions);
     children("Contact").into_iter().for_each(|node| contact::pair(node, &bodies, &mut conditions));
@@ -242,7 +245,13 @@ impl<'a> Materials<'a> {
     }
 
     /// The body, its materials and the method.
-    fn body(&self, mesh: &Mesh<'a>, model: &Model, source: &Source) -> Option<Vec<Part>> {
+    fn body(
+        &self,
+        mesh: &Mesh<'a>,
+        controllers: &Controllers<'a, '_>,
+        model: &Model,
+        source: &Source,
+    ) -> Option<Vec<Part>> {
         let Some(((first, _), others)) = self.deformable.split_first() else {
             if !source.findings.refuses() {
                 source.findings.refuse(1, "the model has no deformable solid", "");
@@ -258,11 +267,12 @@ impl<'a> Materials<'a> {
             .key("shape", quoted("file"))
             .key("path", quoted(model.path))
             .key("unit", quoted(model.units.length()));
-        let mut parts = vec![body, first.keys(Part::new("[material]").note(origin(first)), model.units)];
+        let mut parts =
+            vec![body, first.keys(Part::new("[material]").note(origin(first)), controllers, model.units)?];
         for (material, own) in others {
             let part = Part::new("[[region]]").note(origin(material)).key("name", quoted(material.name));
             parts.push(part.key("on", names(own)));
-            parts.push(material.keys(Part::new("[region.material]"), model.units));
+            parts.push(material.keys(Part::new("[region.material]"), controllers, model.units)?);
         }
         parts.push(self.method(mesh, model, source)?);
         Some(parts)

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use geometry::quality::CellShape;
+use geometry::surface::Region;
 use geometry::{CellKind, Facet, Mesh, Point3, Surface, Vector3, pieces, quality};
 use mesh_files::Row;
 use serde_json::{Value, json};
@@ -53,9 +54,11 @@ fn of_surface(file: &Path, surface: &Surface, unit: LengthUnit, format: Format) 
     if format == Format::Json {
         let named = groups.iter().map(|(name, triangles)| json!({ "name": name, "triangles": triangles }));
         let named: Vec<Value> = named.collect();
+        let volume = |region: &Region| json!({ "name": region.name, "volume_m3": region.surface.volume() });
+        let regions: Vec<Value> = surface.regions().iter().map(volume).collect();
         let object = json!({
             "file": file, "kind": "surface", "points": points, "triangles": triangles, "area_m2": surface.area(),
-            "volume_m3": surface.volume(), "surfaces": named, "extent_m": extent_json(low, high), "unit": unit.name,
+            "volume_m3": surface.volume(), "regions": regions, "surfaces": named, "extent_m": extent_json(low, high), "unit": unit.name,
             "unit_guess": guess((high - low).amax(), unit),
         });
         println!("{object}");
@@ -69,6 +72,10 @@ fn of_surface(file: &Path, surface: &Surface, unit: LengthUnit, format: Format) 
     row("unit", &of_unit((high - low).amax(), unit));
     row("area", &format!("{} cm^2", digits(surface.area() / CENTIMETRE.powi(2))));
     row("volume", &format!("{} cm^3", digits(surface.volume() / CENTIMETRE.powi(3))));
+    for (at, region) in surface.regions().iter().enumerate() {
+        let volume = digits(region.surface.volume() / CENTIMETRE.powi(3));
+        row(if at == 0 { "regions" } else { "" }, &format!("{}: {volume} cm^3", region.name));
+    }
     row("next", "tissuebench mesh make fills the surface with tetrahedra");
     Ok(())
 }

@@ -2,7 +2,7 @@
 
 use geometry::stuffing::{self, Stuffed, Stuffing};
 use geometry::surface::{Gaps, Treated, Treatment};
-use geometry::{Surface, quality};
+use geometry::{Mesh, Surface, quality};
 
 use crate::cli::args::MakeArgs;
 use crate::cli::errors::{input, spare};
@@ -14,9 +14,9 @@ const NEAR: f64 = 0.1;
 
 /// Fills a surface, writes the mesh and prints how closely it fits.
 pub fn make(args: &MakeArgs) -> Result<(), Failure> {
-    let MakeArgs { surface: file, unit, out, .. } = args;
+    let MakeArgs { surface: files, unit, out, .. } = args;
     let treatment = treatment(args)?;
-    let treated = mesh_files::read_treated(file, unit.metres, treatment).map_err(input)?;
+    let treated = mesh_files::read_together(files, unit.metres, treatment).map_err(input)?;
     let surface = &treated.surface;
     let doublings = if args.uniform { 0 } else { args.coarser };
     spare(out)?;
@@ -59,6 +59,7 @@ pub fn make(args: &MakeArgs) -> Result<(), Failure> {
             length(fit.hausdorff())
         ),
     );
+    regions(surface, &mesh);
     let quality = quality::check(&mesh).map_err(input)?;
     let (sharpest, bluntest) = (quality.min_dihedral.value, quality.max_dihedral.value);
     row("angles", &format!("{sharpest:.1} to {bluntest:.1} degrees between two faces of a cell"));
@@ -78,8 +79,7 @@ fn treatment(args: &MakeArgs) -> Result<Treatment, Failure> {
         None if args.repair => ("--repair", Treatment::Repair),
         None => return Ok(Treatment::AsGiven),
     };
-    let file = &args.surface;
-    if file.is_file() && !mesh_files::is_surface(file) {
+    if let Some(file) = args.surface.iter().find(|file| file.is_file() && !mesh_files::is_surface(file)) {
         let name = file.display();
         return Err(input(format!("{option}: {name} is not a surface; {}", mesh_files::SURFACES)));
     }
@@ -110,6 +110,25 @@ fn report(treated: &Treated, args: &MakeArgs) {
 fn wanted(nodes: u32, made: usize) {
     if (made as f64 / f64::from(nodes) - 1.0).abs() > NEAR {
         row("wanted", &format!("{nodes} nodes; no tried cell size gives a closer number"));
+    }
+}
+
+/// Prints the volume of each region, if there are several.
+fn regions(surface: &Surface, mesh: &Mesh) {
+    let mut volumes = vec![0.0; mesh.region_names().len()];
+    for (cell, volume) in quality::volumes(mesh).into_iter().enumerate() {
+        volumes[usize::from(mesh.region(cell))] += volume;
+    }
+    for (at, (region, volume)) in surface.regions().iter().zip(volumes).enumerate() {
+        let (volume, of_surface) = (1e6 * volume, 1e6 * region.surface.volume());
+        let off = 100.0 * (volume / of_surface - 1.0);
+        let line = format!(
+            "{}: {} cm^3, {off:+.2} % of the surfaces' {}",
+            region.name,
+            digits(volume),
+            digits(of_surface)
+        );
+        row(if at == 0 { "regions" } else { "" }, &line);
     }
 }
 

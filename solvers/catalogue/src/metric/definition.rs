@@ -117,6 +117,14 @@ pub enum Needs {
     Motion,
     /// Dynamics with probes, and an exact solution that depends on time.
     Exact,
+    /// A requested estimate of errors.
+    Estimate,
+    /// A requested estimate of errors, and a tool.
+    ToolEstimate,
+    /// A requested estimate of errors, and probes.
+    PointEstimate,
+    /// A requested estimate of errors, and a support.
+    SupportEstimate,
 }
 
 impl Metric {

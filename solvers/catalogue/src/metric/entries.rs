@@ -56,6 +56,22 @@ metrics! {
          the probes";
     TIP: "tip", "ratio of computed to exact", None, Value, Probes,
         "ratio of computed to exact displacement at the first probe";
+    // Estimated errors.
+    DISPLACEMENT_ESTIMATE: "displacement-error-estimate", "estimated displacement error", None, Value, Estimate,
+        "estimated root mean square error of the displacement, divided by the root mean square of the predicted \
+         displacement";
+    PROBE_ESTIMATE: "probe-error-estimate", "estimated error of a point", None, Place, PointEstimate,
+        "estimated error of the displacement of a point of output.probes, relative to the predicted displacement";
+    TOOL_FORCE_ESTIMATE: "tool-force-error-estimate", "estimated force error", None, Tool, ToolEstimate,
+        "estimated error of the tool's force, relative to the predicted force";
+    TOOL_FORCE_PREDICTED: "tool-force-predicted", "predicted tool force", Force, Tool, ToolEstimate,
+        "force of the tool that more shape functions predict";
+    REACTION_ESTIMATE: "reaction-error-estimate", "estimated error of a support force", None, Place, SupportEstimate,
+        "estimated error of a support's force, relative to the largest predicted force of a support";
+    STRAIN_ENERGY_ESTIMATE: "strain-energy-error-estimate", "estimated energy error", None, Value, Estimate,
+        "estimated error of the strain energy, relative to the predicted energy";
+    STRAIN_ENERGY_PREDICTED: "strain-energy-predicted", "predicted strain energy", Energy, Value, Estimate,
+        "strain energy that more shape functions predict";
     // Parts of an error, and distances from a secondary reference.
     INTEGRATION_RMS: "integration-rms", "integration error", Length, Error, Reference, Vector,
         "root mean square difference from the same method with the study's integration rule";

@@ -1,12 +1,18 @@
 //! Sharp edges of a surface, which a stuffed mesh rounds off.
 
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 
 use crate::surface::Surface;
 use crate::{Point3, Vector3};
 
 /// Cosine of the angle between the normals of two triangles beyond which their edge is sharp.
 const SHARP: f64 = 0.5;
+
+/// Cosine of the angle between two edges beyond which they meet at a corner.
+const STRAIGHT: f64 = 0.7;
+
+/// Distance from an edge, over the length of an edge of the mesh, below which a node lies on it.
+const ON: f64 = 1e-6;
 
 /// Ends of the sharp edges.
 pub(super) struct Edges(Vec<[Point3; 2]>);
@@ -24,6 +30,45 @@ impl Edges {
             }
         }
         Edges(sharp)
+    }
+
+    /// Whether there are no sharp edges.
+    pub(super) fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    /// Points at which a sharp edge ends, branches or turns.
+    pub(super) fn corners(&self) -> Vec<Point3> {
+        let mut at: BTreeMap<[u64; 3], Vec<(Point3, Vector3)>> = BTreeMap::new();
+        for [a, b] in &self.0 {
+            for (from, to) in [(a, b), (b, a)] {
+                let key = [from.x, from.y, from.z].map(f64::to_bits);
+                at.entry(key).or_default().push((*from, (to - from).normalize()));
+            }
+        }
+        let turns = |lines: &[(Point3, Vector3)]| lines.len() != 2 || lines[0].1.dot(&lines[1].1) > -STRAIGHT;
+        at.into_values().filter(|lines| turns(lines)).map(|lines| lines[0].0).collect()
+    }
+
+    /// The edges away from the outer surface.
+    pub(super) fn inside(self, outer: &Surface) -> Edges {
+        let is_inside = |[a, b]: &[Point3; 2]| {
+            let middle = nalgebra::center(a, b);
+            outer.signed_distance(&middle) < -ON * nalgebra::distance(a, b)
+        };
+        Edges(self.0.into_iter().filter(is_inside).collect())
+    }
+
+    /// The sharp edge between two points on its different sides; `None` if there is none, or if a point lies on it.
+    pub(super) fn between(&self, surface: &Surface, ends: &[Point3; 2]) -> Option<[Point3; 2]> {
+        let [a, b] = ends.map(|end| normal(surface, surface.closest(&end).1));
+        if self.0.is_empty() || a.dot(&b) >= SHARP {
+            return None;
+        }
+        let middle = nalgebra::center(&ends[0], &ends[1]);
+        let nearest = self.0.iter().min_by(|a, b| distance(&middle, a).total_cmp(&distance(&middle, b)))?;
+        let length = nalgebra::distance(&ends[0], &ends[1]);
+        ends.iter().all(|end| distance(end, nearest) > ON * length).then_some(*nearest)
     }
 
     /// Whether a face of the mesh cuts off an edge: its nodes lie on both sides of one that is near.
@@ -49,8 +94,13 @@ fn normal(surface: &Surface, triangle: usize) -> Vector3 {
 }
 
 /// Distance of a point from a segment.
-fn distance(p: &Point3, [a, b]: &[Point3; 2]) -> f64 {
+fn distance(p: &Point3, segment: &[Point3; 2]) -> f64 {
+    nalgebra::distance(p, &foot(p, segment))
+}
+
+/// Closest point of a segment.
+pub(super) fn foot(p: &Point3, [a, b]: &[Point3; 2]) -> Point3 {
     let along = b - a;
     let part = ((p - a).dot(&along) / along.norm_squared()).clamp(0.0, 1.0);
-    (p - a - along * part).norm()
+    a + along * part
 }

@@ -7,7 +7,8 @@
 //! part, both have tried a spacing whose number of nodes lies between the two requests. So a larger request
 //! never gives fewer nodes.
 
-use super::{MEAN_EDGE, Stuffed, Stuffing, StuffingError, expected_nodes, fill};
+use super::fill::fill;
+use super::{MEAN_EDGE, Stuffed, Stuffing, StuffingError, expected_nodes};
 use crate::mesh::Mesh;
 use crate::quality;
 use crate::surface::Surface;
@@ -143,7 +144,9 @@ impl<'a, F: Fn(&Mesh) -> usize> Search<'a, F> {
         let spacing = self.spacing(step);
         let stuffed = match fill(self.surface, Stuffing { spacing, doublings: self.doublings }) {
             Ok(stuffed) if self.is_whole(&stuffed.mesh) => stuffed,
-            Ok(_) | Err(StuffingError::TooCoarse { .. }) => return self.hoped(spacing),
+            Ok(_) | Err(StuffingError::TooCoarse { .. } | StuffingError::RegionTooSmall { .. }) => {
+                return self.hoped(spacing);
+            }
             // The best mesh so far is used.
             Err(StuffingError::TooFine { .. }) if self.best.is_some() => return Ok(Found::More),
             Err(bad) => return Err(bad),
@@ -160,8 +163,17 @@ impl<'a, F: Fn(&Mesh) -> usize> Search<'a, F> {
         })
     }
 
+    /// Whether a mesh fills the surface, and each of its regions.
     fn is_whole(&self, mesh: &Mesh) -> bool {
-        quality::volumes(mesh).iter().sum::<f64>() >= WHOLE * self.surface.volume()
+        let volumes = quality::volumes(mesh);
+        let in_region = |region: usize| {
+            let own =
+                volumes.iter().enumerate().filter(|(cell, _)| usize::from(mesh.region(*cell)) == region);
+            own.map(|(_, volume)| volume).sum::<f64>()
+        };
+        volumes.iter().sum::<f64>() >= WHOLE * self.surface.volume()
+            && (self.surface.regions().iter().enumerate())
+                .all(|(at, region)| in_region(at) >= WHOLE * region.surface.volume())
     }
 
     /// Treats a spacing that does not fill the body as one with too few nodes.

@@ -5,6 +5,7 @@ use std::collections::HashMap;
 
 use rayon::prelude::*;
 
+use super::walls::Walls;
 use crate::surface::Surface;
 use crate::{Point3, Vector3};
 
@@ -55,8 +56,10 @@ pub(super) fn middle(cube: Cube, level: usize) -> [i32; 3] {
 }
 
 impl Octree {
-    /// Divides cubes in and around a surface. Cubes inside are at most of the level `coarsest`.
+    /// Divides cubes in and around a surface, and along its walls. Cubes inside are at most of the level
+    /// `coarsest`.
     pub(super) fn new(surface: &Surface, frame: Frame, coarsest: usize) -> Octree {
+        let walls = Walls(surface.regions());
         let edge = 2.0 * frame.half;
         let [low, high] = surface.bounds();
         let longest = (high - low).amax() / edge;
@@ -78,10 +81,12 @@ impl Octree {
             // Distance from the centre of a cube to that of its farthest smallest cube, plus the margin.
             let reach = NEAR * edge + 0.5 * 3f64.sqrt() * (size - edge);
             let state = |cube: &Cube| {
-                let distance = surface.signed_distance(&frame.place(middle(*cube, level)));
-                match distance {
+                let middle = frame.place(middle(*cube, level));
+                match surface.signed_distance(&middle) {
                     d if d > reach => None,
-                    d if level > 0 && (d > -reach || level > coarsest) => Some(State::Divided),
+                    _ if level == 0 => Some(State::Leaf),
+                    d if d > -reach || level > coarsest => Some(State::Divided),
+                    _ if walls.are_near(&middle, reach) => Some(State::Divided),
                     _ => Some(State::Leaf),
                 }
             };

@@ -8,7 +8,8 @@ const FEWEST: usize = 8;
 
 /// Tetrahedra of the parts that are kept.
 pub(super) struct Parts {
-    pub tets: Vec<[u32; 4]>,
+    /// Indices of the tetrahedra.
+    pub tets: Vec<usize>,
     /// Number of the face-connected part to which each tetrahedron belongs. Numbers may have gaps.
     pub part: Vec<u32>,
     /// Number of parts that are omitted.
@@ -47,8 +48,7 @@ pub(super) fn connected(tets: &[[u32; 4]], sides: &[Side]) -> Parts {
     roots.sort_unstable();
     roots.dedup();
     let left_out = roots.iter().filter(|&&part| !large[part as usize]).count();
-    let kept = tets.iter().zip(part).filter(|(_, part)| large[*part as usize]);
-    let (tets, part) = kept.map(|(tet, part)| (*tet, part)).unzip();
+    let (tets, part) = part.into_iter().enumerate().filter(|(_, part)| large[*part as usize]).unzip();
     Parts { tets, part, left_out }
 }
 

@@ -9,6 +9,17 @@ pub(super) enum Side {
     Outside,
 }
 
+impl Side {
+    /// The side as seen from the other side.
+    pub(super) fn turned(self) -> Side {
+        match self {
+            Side::Inside => Side::Outside,
+            Side::On => Side::On,
+            Side::Outside => Side::Inside,
+        }
+    }
+}
+
 /// A tetrahedron of a lattice: corners with their sides. The edges 01 and 23 are longer than the others.
 pub(super) struct Tet {
     pub corners: [u32; 4],
@@ -24,10 +35,10 @@ impl Tet {
     /// Calls `add` with each tetrahedron of the part inside, whose corners may be in any order. `cut` returns
     /// the node where the surface cuts the edge from an inner to an outer corner. `apart` returns the
     /// distance of two nodes.
-    pub(super) fn inside(
+    pub(super) fn inside<D: PartialOrd>(
         &self,
         cut: impl Fn(u32, u32) -> u32,
-        apart: impl Fn(u32, u32) -> f64,
+        apart: impl Fn(u32, u32) -> D,
         mut add: impl FnMut([u32; 4]),
     ) {
         let (mut ins, mut outs, mut on) = (Vec::with_capacity(4), Vec::with_capacity(4), 0);
@@ -65,8 +76,8 @@ impl Tet {
                 let (a, b) = if self.halved_from(a, b, c) { (a, b) } else { (b, a) };
                 let [ac, ad, bc, bd] = [cut(a, c), cut(a, d), cut(b, c), cut(b, d)];
                 add([node(a), node(b), bc, bd]);
-                // The quadrilateral on the surface belongs to this tetrahedron alone, so the shorter diagonal
-                // is free to choose.
+                // The quadrilateral on the surface belongs to this tetrahedron alone, or to its two parts on
+                // both sides, so the shorter diagonal is free to choose.
                 if apart(ac, bd) <= apart(ad, bc) {
                     add([node(a), ac, ad, bd]);
                     add([node(a), ac, bc, bd]);

@@ -9,8 +9,11 @@ use super::soup::{Soup, WELD};
 const FEWEST: usize = 4;
 
 /// Returns the triangles with coinciding corners merged, and the neighbours of each triangle across its
-/// edges.
-pub(super) fn closed(soup: Soup) -> Result<(Soup, Vec<[u32; 3]>), SurfaceProblem> {
+/// edges, which `neighbours` finds.
+pub(super) fn closed(
+    soup: Soup,
+    neighbours: impl Fn(&Soup) -> Result<Vec<[u32; 3]>, SurfaceProblem>,
+) -> Result<(Soup, Vec<[u32; 3]>), SurfaceProblem> {
     let same = soup.welded(0.0);
     if let Ok(neighbours) = neighbours(&same) {
         return Ok((same, neighbours));

@@ -18,8 +18,8 @@ const CHUNK: usize = 256;
 const FEW: u64 = 1_000_000;
 const MANY: u64 = 100;
 
-/// Rejects triangles that cross.
-pub(super) fn refuse(soup: &Soup) -> Result<(), SurfaceProblem> {
+/// Rejects triangles that cross. `parts` returns the connected part of each triangle.
+pub(super) fn refuse(soup: &Soup, parts: impl Fn() -> Vec<u32>) -> Result<(), SurfaceProblem> {
     let tree = Tree::new(&soup.points, &soup.triangles);
     let count = soup.triangles.len();
     let near = |first: usize, found: &mut dyn FnMut(usize)| {
@@ -57,6 +57,10 @@ pub(super) fn refuse(soup: &Soup) -> Result<(), SurfaceProblem> {
         triangles: [first, second].map(|t| soup.faces[t]),
         at: soup.middle(first),
         places: crossed.len(),
+        bodies: {
+            let parts = parts();
+            parts[first] != parts[second]
+        },
     })
 }
 

@@ -64,6 +64,8 @@ pub enum SurfaceProblem {
         at: Point3,
         /// Number of triangles that cross a later triangle.
         places: usize,
+        /// Whether the two triangles belong to different closed parts.
+        bodies: bool,
     },
     /// A part with the wrong orientation: clockwise as seen from outside, or counter-clockwise for a cavity.
     InsideOut {
@@ -105,8 +107,9 @@ const WRAP: &str = "tissuebench mesh make --wrap SIZE makes a closed surface of 
 const LARGE: &str = "a repair closes holes of up to a tenth of the surface's diagonal and 500 edges";
 
 /// Advice for regions without their own surfaces.
-const REGIONS: &str = "give a volume mesh with a region for each body (.msh, .inp, .vtu), or the outer \
-                       surface only, with a [[region]] of the scene (where = ...)";
+const REGIONS: &str = "give each body its own closed surface, with the same triangles at the wall, a volume \
+                       mesh with a region for each (.msh, .inp, .vtu), or the outer surface only, with a \
+                       [[region]] of the scene (where = ...)";
 
 impl fmt::Display for SurfaceProblem {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -158,14 +161,8 @@ impl fmt::Display for SurfaceProblem {
                     false => write!(f, "no reversal achieves this, so the surface has no outside"),
                 }
             }
-            SurfaceProblem::Crossing { triangles, at, places } => {
-                let more = if *places > 1 { format!(" ({places} such places)") } else { String::new() };
-                let triangles = list(triangles);
-                write!(
-                    f,
-                    "the surface crosses itself: triangles {triangles} intersect near {}{more}",
-                    point(at)
-                )
+            SurfaceProblem::Crossing { triangles, at, places, bodies } => {
+                crossing(f, *triangles, at, *places, *bodies)
             }
             SurfaceProblem::InsideOut { triangle, at, volume, within: 0, part: [part, all] } => write!(
                 f,
@@ -221,6 +218,27 @@ impl SurfaceProblem {
 
 impl std::error::Error for SurfaceProblem {}
 
+/// Writes where two triangles cross.
+fn crossing(
+    f: &mut fmt::Formatter<'_>,
+    triangles: [u32; 2],
+    at: &Point3,
+    places: usize,
+    bodies: bool,
+) -> fmt::Result {
+    let more = if places > 1 { format!(" ({places} such places)") } else { String::new() };
+    let triangles = list(&triangles);
+    write!(f, "the surface crosses itself: triangles {triangles} intersect near {}{more}", point(at))?;
+    match bodies {
+        true => write!(
+            f,
+            "; they belong to two bodies, which may lie within each other or touch at common triangles (the same \
+             corners in both), but not cross"
+        ),
+        false => Ok(()),
+    }
+}
+
 /// Writes which triangles have to be reversed.
 fn reversible(f: &mut fmt::Formatter<'_>, turned: &[u32], all: usize) -> fmt::Result {
     write!(f, "{} of {all} are clockwise ({})", turned.len(), list(turned))
@@ -234,14 +252,6 @@ fn within_others(f: &mut fmt::Formatter<'_>, triangle: u32, at: &Point3, within:
         "the part with triangle {triangle}, {at}, lies within {within} others and has the wrong orientation: \
          triangles of a cavity have to be clockwise seen from outside the cavity, all other triangles \
          counter-clockwise"
-    )?;
-    if within.is_multiple_of(2) {
-        return Ok(());
-    }
-    write!(
-        f,
-        "; if the part is a body within a body, such as a tumour in an organ, this program does not make two \
-         regions of them yet: {REGIONS}"
     )
 }
 
@@ -264,17 +274,10 @@ fn branched(
             write!(f, "triangles {pair} have the same corners")
         }
         None if triangles.len().is_multiple_of(2) => {
-            write!(
-                f,
-                "closed parts touch at the edge; this program does not make regions of them yet: {REGIONS}"
-            )
+            write!(f, "closed parts touch at the edge, but have no common triangle there; {REGIONS}")
         }
         None => {
-            write!(
-                f,
-                "a wall ends at the edge; this program does not make regions of its two sides yet: \
-                       {REGIONS}"
-            )
+            write!(f, "a wall ends at the edge, which bounds no body by itself; {REGIONS}")
         }
     }
 }

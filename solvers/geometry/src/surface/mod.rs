@@ -17,6 +17,7 @@ mod nested;
 mod of_mesh;
 mod orientation;
 mod polygon;
+mod regions;
 mod repair;
 mod samples;
 mod shape;
@@ -25,6 +26,7 @@ mod soup;
 mod treated;
 mod treatment;
 mod tree;
+mod walls;
 mod winding;
 mod wrap;
 
@@ -42,6 +44,8 @@ use tree::Closest;
 pub(crate) use tree::Tree;
 pub use wrap::WrapProblem;
 
+use needles::Across;
+
 use crate::triangle::Feature;
 use crate::{Point3, Vector3};
 
@@ -55,6 +59,15 @@ pub struct Surface {
     volume: f64,
     /// Cumulative area of the triangles, m^2.
     areas: Vec<f64>,
+    regions: Vec<Region>,
+}
+
+/// A part of the inside of a surface.
+pub struct Region {
+    /// Name: that of a group of triangles of this region alone, or a number.
+    pub name: String,
+    /// Closed surface of the region, with the walls to other regions.
+    pub surface: Surface,
 }
 
 /// Normals of faces, edges and corners, of arbitrary length.
@@ -72,17 +85,18 @@ impl Surface {
     /// Too few triangles, too many parts, or a surface that is open, crosses itself or is inside out. The
     /// error has the triangle and the position in the unit of the triangles.
     pub fn new(soup: Soup, unit: f64) -> Result<Surface, SurfaceProblem> {
-        let (mut soup, mut neighbours) = closed::closed(soup)?;
-        if let Err(crossing) = crossing::refuse(&soup) {
-            // Needles are searched only after a crossing was found, because most surfaces have none.
-            (soup, neighbours) = needles::cut(&soup, &neighbours).ok_or(crossing)??;
-            crossing::refuse(&soup)?;
-        }
+        let (soup, neighbours) = closed::closed(soup, closed::neighbours)?;
+        let (soup, neighbours) = without_crossings(soup, neighbours)?;
         nested::refuse(&soup, &neighbours)?;
+        Ok(Surface::of(soup, &neighbours, unit))
+    }
+
+    /// The surface of triangles that were checked.
+    fn of(soup: Soup, neighbours: &[[u32; 3]], unit: f64) -> Surface {
         let Soup { points, triangles, groups, .. } = soup;
         let groups = groups.without_empty();
         let points: Vec<Point3> = points.iter().map(|p| Point3::from(p.coords * unit)).collect();
-        let normals = Normals::new(&points, &triangles, &neighbours);
+        let normals = Normals::new(&points, &triangles, neighbours);
         let tree = Tree::new(&points, &triangles);
         let corners = |t: &[u32; 3]| t.map(|p| points[p as usize]);
         let [low, high] = tree.bounds();
@@ -99,7 +113,12 @@ impl Surface {
             sum
         });
         let areas = areas.collect();
-        Ok(Surface { volume, areas, points, triangles, groups, normals, tree })
+        Surface { volume, areas, points, triangles, groups, normals, tree, regions: Vec::new() }
+    }
+
+    /// Regions inside the surface; empty for a single body, and for bodies that touch no other.
+    pub fn regions(&self) -> &[Region] {
+        &self.regions
     }
 
     /// Positions of the corners, m.
@@ -183,33 +202,51 @@ impl Surface {
     /// the distance, which is known at both ends.
     pub(crate) fn cut(&self, inside: (&Point3, f64), outside: (&Point3, f64)) -> f64 {
         let line = outside.0 - inside.0;
-        let length = line.norm();
-        let (mut low, mut high) = ((0.0, inside.1), (1.0, outside.1));
-        // Illinois method: the value at an end that is retained twice is halved, so that both ends converge.
-        let mut last = 0;
-        for _ in 0..60 {
-            let t: f64 = (low.0 * high.1 - high.0 * low.1) / (high.1 - low.1);
-            let t = if t > low.0 && t < high.0 { t } else { 0.5 * (low.0 + high.0) };
+        zero([inside.1, outside.1], line.norm(), |t, reach| {
             let at = inside.0 + line * t;
-            // The distance changes at most as fast as the position.
-            let reach = (low.1.abs() + (t - low.0) * length).max(high.1 + (high.0 - t) * length);
-            let distance =
-                self.distance_within(&at, 1.001 * reach).unwrap_or_else(|| self.signed_distance(&at));
-            if distance.abs() <= 1e-9 * length || (high.0 - low.0) < 1e-12 {
-                return t;
-            }
-            if distance < 0.0 {
-                low = (t, distance);
-                high.1 *= if last == -1 { 0.5 } else { 1.0 };
-                last = -1;
-            } else {
-                high = (t, distance);
-                low.1 *= if last == 1 { 0.5 } else { 1.0 };
-                last = 1;
-            }
-        }
-        0.5 * (low.0 + high.0)
+            self.distance_within(&at, 1.001 * reach).unwrap_or_else(|| self.signed_distance(&at))
+        })
     }
+}
+
+/// Zero of a signed distance along a line of the given length, as a fraction of the line. `ends` are the
+/// distances at the ends, the first of which is negative. `distance` is called with a fraction and the largest
+/// distance possible there.
+pub(crate) fn zero(ends: [f64; 2], length: f64, distance: impl Fn(f64, f64) -> f64) -> f64 {
+    let (mut low, mut high) = ((0.0, ends[0]), (1.0, ends[1]));
+    // Illinois method: the value at an end that is retained twice is halved, so that both ends converge.
+    let mut last = 0;
+    for _ in 0..60 {
+        let t: f64 = (low.0 * high.1 - high.0 * low.1) / (high.1 - low.1);
+        let t = if t > low.0 && t < high.0 { t } else { 0.5 * (low.0 + high.0) };
+        // The distance changes at most as fast as the position.
+        let reach = (low.1.abs() + (t - low.0) * length).max(high.1 + (high.0 - t) * length);
+        let distance = distance(t, reach);
+        if distance.abs() <= 1e-9 * length || (high.0 - low.0) < 1e-12 {
+            return t;
+        }
+        if distance < 0.0 {
+            low = (t, distance);
+            high.1 *= if last == -1 { 0.5 } else { 1.0 };
+            last = -1;
+        } else {
+            high = (t, distance);
+            low.1 *= if last == 1 { 0.5 } else { 1.0 };
+            last = 1;
+        }
+    }
+    0.5 * (low.0 + high.0)
+}
+
+/// Rejects triangles that cross, after needles are replaced.
+fn without_crossings(soup: Soup, neighbours: Across) -> Result<(Soup, Across), SurfaceProblem> {
+    // Needles are searched only after a crossing was found, because most surfaces have none.
+    let Err(crossing) = crossing::refuse(&soup, || nested::parts(&neighbours)) else {
+        return Ok((soup, neighbours));
+    };
+    let (soup, neighbours) = needles::cut(&soup, &neighbours).ok_or(crossing)??;
+    crossing::refuse(&soup, || nested::parts(&neighbours))?;
+    Ok((soup, neighbours))
 }
 
 impl Normals {

@@ -9,7 +9,7 @@ use super::error::SurfaceProblem;
 use super::soup::{Soup, WELD};
 
 /// Neighbours of each triangle across its edges.
-type Across = Vec<[u32; 3]>;
+pub(super) type Across = Vec<[u32; 3]>;
 
 /// Replaces all needles and their neighbours; `None` without needles.
 pub(super) fn cut(soup: &Soup, across: &Across) -> Option<Result<(Soup, Across), SurfaceProblem>> {

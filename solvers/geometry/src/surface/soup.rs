@@ -77,6 +77,26 @@ impl Soup {
         Soup { points, triangles, faces, groups: self.groups.of_triangles(&kept) }
     }
 
+    /// Merges the triangles of several files. The name of a file is a group of its triangles, before their own
+    /// groups, and faces are numbered on from file to file.
+    pub fn of_files(files: Vec<(String, Soup)>) -> Soup {
+        let mut all = Soup::default();
+        files.iter().for_each(|(name, _)| {
+            all.groups.set([&**name]);
+        });
+        for (name, soup) in files {
+            let (first, faces) = (all.points.len() as u32, all.faces.iter().copied().max().unwrap_or(0));
+            all.points.extend(soup.points);
+            for (t, (corners, face)) in soup.triangles.into_iter().zip(soup.faces).enumerate() {
+                let own = soup.groups.of(t).iter().map(|&group| &*soup.groups.names()[group as usize]);
+                let set = all.groups.set(std::iter::once(&*name).chain(own));
+                all.triangle((faces + face) as usize, corners.map(|corner| first + corner));
+                all.groups.fill(all.triangles.len(), set);
+            }
+        }
+        all
+    }
+
     /// Adds a triangle with the face and the groups of another triangle.
     pub(super) fn add_beside(&mut self, other: usize, corners: [u32; 3]) {
         self.triangle(self.faces[other] as usize, corners);

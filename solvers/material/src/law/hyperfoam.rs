@@ -9,19 +9,22 @@ use crate::material::{Material, Tangent};
 use crate::principal::{Principal, Slopes, sinh_over};
 
 /// Hyperfoam law `W = sum_p 2 mu_p / alpha_p^2 (l_1^alpha_p + l_2^alpha_p + l_3^alpha_p - 3
-/// + (J^(-alpha_p beta_p) - 1) / beta_p)` with `beta_p = nu_p / (1 - 2 nu_p)`; moduli in Pa.
+/// + (J^(-alpha_p beta_p) - 1) / beta_p) + kappa/2 (J - 1)^2` with `beta_p = nu_p / (1 - 2 nu_p)`; moduli in Pa.
 ///
-/// The shear modulus at small strain is `sum mu_p`. Source: Storakers, J. Mech. Phys. Solids 34 (1986)
+/// The shear modulus at small strain is `sum mu_p`. With `nu_p = 0` and `kappa` it is the unconstrained law of
+/// Ogden in FEBio. Source: Storakers, J. Mech. Phys. Solids 34 (1986)
 /// 125-145; form as in the Abaqus Theory Guide, Hyperelastic behavior in elastomeric foams.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Hyperfoam {
     /// `mu_p` (Pa), `alpha_p` and `beta_p` of each term.
     terms: Vec<[f64; 3]>,
+    /// Modulus of the further volumetric term, Pa.
+    kappa: f64,
 }
 
 pub(super) const ENTRY: Entry<Build<Hyperfoam>> = Entry {
     name: "hyperfoam",
-    meaning: "sum_p 2 mu_p/alpha_p^2 (l_1^alpha_p + l_2^alpha_p + l_3^alpha_p - 3 + (J^(-alpha_p beta_p) - 1)/beta_p), beta_p = nu_p / (1 - 2 nu_p)",
+    meaning: "sum_p 2 mu_p/alpha_p^2 (l_1^alpha_p + l_2^alpha_p + l_3^alpha_p - 3 + (J^(-alpha_p beta_p) - 1)/beta_p) + kappa/2 (J - 1)^2, beta_p = nu_p / (1 - 2 nu_p)",
     source: "Storakers (1986); Abaqus Theory Guide, Hyperelastic behavior in elastomeric foams",
     parameters: &[
         Parameter::required("mu", Dimension::Pressure, "constant of each term").of(Kind::List),
@@ -29,6 +32,13 @@ pub(super) const ENTRY: Entry<Build<Hyperfoam>> = Entry {
         Parameter::required("nu", Dimension::None, "Poisson's ratio of each term")
             .of(Kind::List)
             .within(Range::Between(-1.0, 0.5)),
+        Parameter::default(
+            "kappa",
+            Dimension::Pressure,
+            0.0,
+            "modulus of a further volumetric term; 0 unless given",
+        )
+        .within(Range::NotNegative),
     ],
     build,
 };
@@ -42,7 +52,8 @@ fn build(values: &Values) -> Result<Hyperfoam, Problem> {
         }
     }
     let terms: Vec<[f64; 3]> = (0..mu.len()).map(|p| [mu[p], alpha[p], nu[p]]).collect();
-    Hyperfoam::new(&terms).map_err(|bad| match bad {
+    let law = Hyperfoam::new(&terms).and_then(|law| law.with_volume(values.number("kappa").unwrap_or_default()));
+    law.map_err(|bad| match bad {
         MaterialError::Shear { .. } => Problem::new("does not give a positive shear modulus")
             .help("the sum of mu, which is the shear modulus, must be positive")
             .of("mu"),
@@ -69,7 +80,22 @@ impl Hyperfoam {
         if !(mu > 0.0) {
             return Err(MaterialError::Shear { mu });
         }
-        Ok(Hyperfoam { terms: terms.iter().map(|&[mu, alpha, nu]| [mu, alpha, nu / (1.0 - 2.0 * nu)]).collect() })
+        let terms = terms.iter().map(|&[mu, alpha, nu]| [mu, alpha, nu / (1.0 - 2.0 * nu)]).collect();
+        Ok(Hyperfoam { terms, kappa: 0.0 })
+    }
+
+    /// Returns the law with the further term `kappa/2 (J - 1)^2` (Pa, zero or more).
+    ///
+    /// # Errors
+    /// A `kappa` that is negative or not finite.
+    pub fn with_volume(self, kappa: f64) -> Result<Hyperfoam, MaterialError> {
+        MaterialError::check_not_negative("kappa", kappa)?;
+        Ok(Hyperfoam { kappa, ..self })
+    }
+
+    /// Modulus of the further volumetric term, Pa.
+    pub fn kappa(&self) -> f64 {
+        self.kappa
     }
 
     /// Returns the terms `[mu_p, alpha_p, beta_p]`: `mu_p` in Pa.
@@ -77,10 +103,10 @@ impl Hyperfoam {
         &self.terms
     }
 
-    /// Returns `tau_a = sum_p 2 mu_p / alpha_p (l_a^alpha_p - J^(-alpha_p beta_p))`.
+    /// Returns `tau_a = sum_p 2 mu_p / alpha_p (l_a^alpha_p - J^(-alpha_p beta_p)) + kappa J (J - 1)`.
     fn kirchhoff(&self, principal: &Principal) -> [f64; 3] {
         let log = principal.j.ln_1p();
-        let mut tau = [0.0; 3];
+        let mut tau = [self.kappa * (1.0 + principal.j) * principal.j; 3];
         for &[mu, alpha, beta] in &self.terms {
             let volume = (-alpha * beta * log).exp_m1();
             for (tau, e) in tau.iter_mut().zip(principal.log) {
@@ -92,7 +118,8 @@ impl Hyperfoam {
 
     fn slopes(&self, principal: &Principal) -> Slopes {
         let (e, log) = (principal.log, principal.j.ln_1p());
-        let (mut slope, mut quotient) = ([[0.0; 3]; 3], [0.0; 3]);
+        let J = 1.0 + principal.j;
+        let (mut slope, mut quotient) = ([[self.kappa * J * (J + principal.j); 3]; 3], [0.0; 3]);
         for &[mu, alpha, beta] in &self.terms {
             let volume = 2.0 * mu * beta * (-alpha * beta * log).exp();
             for a in 0..3 {
@@ -117,7 +144,7 @@ impl Material for Hyperfoam {
             let volume = if beta == 0.0 { 0.0 } else { exp_m1_less(-alpha * beta * log) / beta };
             2.0 * mu / (alpha * alpha) * (shape + volume)
         };
-        self.terms.iter().map(of_term).sum()
+        self.terms.iter().map(of_term).sum::<f64>() + 0.5 * self.kappa * principal.j * principal.j
     }
 
     fn stress(&self, H: &Matrix3) -> Matrix3 {
@@ -135,6 +162,6 @@ impl Material for Hyperfoam {
     }
 
     fn lambda(&self) -> f64 {
-        self.terms.iter().map(|[mu, _, beta]| 2.0 * mu * beta).sum()
+        self.terms.iter().map(|[mu, _, beta]| 2.0 * mu * beta).sum::<f64>() + self.kappa
     }
 }

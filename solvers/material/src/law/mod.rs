@@ -8,6 +8,7 @@ mod isochoric;
 mod moduli;
 mod of_strain;
 mod reinforced;
+mod straightening;
 mod with_volumetric;
 
 use catalogue::{Build, Entry, Problem, Value, Values};
@@ -184,6 +185,8 @@ laws! {
     holzapfel_ogden::HolzapfelOgden,
     holzapfel_gasser_ogden::HolzapfelGasserOgden,
     trans_iso_mooney_rivlin::TransIsoMooneyRivlin,
+    trans_iso_neo_hookean::TransIsoNeoHookean,
+    porous_neo_hookean::PorousNeoHookean,
 }
 
 /// Shares of the shear modulus and exponents of a rubber in Ogden's law, for [`Law::all`].
@@ -193,15 +196,17 @@ pub(crate) const SECOND: f64 = 0.3;
 /// Exponent of Demiray's law and limit of Gent's law, for [`Law::all`].
 const STIFFENING: f64 = 0.2;
 const LONGEST: f64 = 60.0;
-/// Laws that [`Law::all`] leaves out: those of foams, whose volumetric terms have the power `nu / (1 - 2 nu)`
+/// Laws that [`Law::all`] leaves out: those of foams and porous solids, whose volumetric terms have the power `nu / (1 - 2 nu)`
 /// of `J` and explode as the material becomes incompressible, and those that depend on directions.
-const OTHER_MODULI: [&str; 6] = [
+const OTHER_MODULI: [&str; 8] = [
     "blatz-ko",
     "hyperfoam",
     "guccione",
     "holzapfel-ogden",
     "holzapfel-gasser-ogden",
     "trans-iso-mooney-rivlin",
+    "trans-iso-neo-hookean",
+    "porous-neo-hookean",
 ];
 
 impl Law {

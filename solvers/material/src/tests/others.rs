@@ -23,9 +23,12 @@ fn others() -> Vec<Law> {
         BlatzKo::new(20e3, 0.25).unwrap().into(),
         BlatzKo::new(20e3, 0.0).unwrap().into(),
         Hyperfoam::new(&[[3e3, 2.5, 0.2], [2e3, -1.5, 0.0]]).unwrap().into(),
+        Hyperfoam::new(&[[3e3, 6.8, 0.0]]).unwrap().with_volume(7e3).unwrap().into(),
+        PorousNeoHookean::new(20e3, 0.1).unwrap().into(),
         HolzapfelOgden::new([2e3, 0.5], [8e3, 0.7], [3e3, 0.4], [1e3, 0.6], 50e3).unwrap().into(),
         HolzapfelGasserOgden::new(2e3, [6e3, 0.6], ANGLE, DISPERSION, 50e3).unwrap().into(),
         TransIsoMooneyRivlin::new([1e3, 4e2], [2e3, 3.0, 9e3], STRAIGHT, 50e3).unwrap().into(),
+        TransIsoNeoHookean::new([3e3, 0.3], [2e3, 3.0, 9e3], STRAIGHT).unwrap().into(),
     ];
     let forms: Vec<Law> = laws.iter().flat_map(other_volumes).collect();
     laws.into_iter().chain(forms).collect()
@@ -47,6 +50,10 @@ fn distance_to_jump(law: &Law, H: &Matrix3) -> f64 {
             .to_vec(),
         "trans-iso-mooney-rivlin" => {
             let l = square(1.0, 0.0).sqrt() / F.determinant().cbrt();
+            vec![l - 1.0, l - STRAIGHT]
+        }
+        "trans-iso-neo-hookean" => {
+            let l = square(1.0, 0.0).sqrt();
             vec![l - 1.0, l - STRAIGHT]
         }
         _ => vec![],
@@ -145,6 +152,8 @@ fn shear_modulus_of_fibres_is_the_largest_at_rest() {
         HolzapfelGasserOgden::new(2e3, [6e3, 0.6], ANGLE, DISPERSION, 50e3).unwrap().into(),
         HolzapfelGasserOgden::new(2e3, [6e3, 0.6], 0.1, 0.0, 50e3).unwrap().into(),
         TransIsoMooneyRivlin::new([1e3, 4e2], [2e3, 3.0, 9e3], STRAIGHT, 50e3).unwrap().into(),
+        // A shear modulus of 1 kPa.
+        TransIsoNeoHookean::new([450e3 / 151.0, 148.0 / 302.0], [2e3, 3.0, 9e3], STRAIGHT).unwrap().into(),
     ];
     for law in fibres {
         let law: Law = law;

@@ -7,7 +7,7 @@ mod off;
 mod ply;
 mod stl;
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use geometry::Surface;
 use geometry::surface::{Soup, Treated, Treatment};
@@ -61,6 +61,27 @@ pub fn read_treated_bytes(
     treatment: Treatment,
 ) -> Result<Treated, SurfaceError> {
     check_unit(file, unit)?;
+    treated(triangles(bytes, file)?, file, unit, treatment)
+}
+
+/// Reads the closed surfaces of several files as [`read_treated`] does, as one surface. Each of them names its
+/// triangles, and faces are numbered on from file to file.
+///
+/// # Errors
+/// As for [`read_treated`].
+pub fn read_together(files: &[PathBuf], unit: f64, treatment: Treatment) -> Result<Treated, SurfaceError> {
+    let [first, _, ..] = files else { return read_treated(&files[0], unit, treatment) };
+    check_unit(first, unit)?;
+    let read = |file: &PathBuf| {
+        let name = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        Ok((name, triangles(&bytes(file)?, file)?))
+    };
+    let soups = files.iter().map(read).collect::<Result<Vec<_>, SurfaceError>>()?;
+    let names: Vec<String> = files.iter().map(|file| file.display().to_string()).collect();
+    treated(Soup::of_files(soups), Path::new(&names.join(", ")), unit, treatment)
+}
+
+fn triangles(bytes: &[u8], file: &Path) -> Result<Soup, FileError> {
     let bytes = unmarked(bytes);
     let soup = match kind(bytes, file) {
         Some(Kind::Stl) => stl::parse(bytes),
@@ -71,8 +92,10 @@ pub fn read_treated_bytes(
         Some(Kind::Vtp) => vtu::surface(bytes),
         None => unknown(bytes),
     };
-    let at = |(place, problem)| FileError::At { file: file.to_path_buf(), place, problem };
-    let soup: Soup = soup.map_err(at)?;
+    soup.map_err(|(place, problem)| FileError::At { file: file.to_path_buf(), place, problem })
+}
+
+fn treated(soup: Soup, file: &Path, unit: f64, treatment: Treatment) -> Result<Treated, SurfaceError> {
     Surface::treated(soup, unit, treatment).map_err(|problem| SurfaceError::Surface {
         file: file.to_path_buf(),
         repaired: treatment == Treatment::Repair,

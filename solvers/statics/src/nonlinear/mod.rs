@@ -36,9 +36,9 @@ pub(crate) use system::SurfaceTable;
 
 pub use curves::{Curves, Timing};
 pub use error::{Inverted, StaticError, Worst};
-pub use following::FollowingPressure;
+pub use following::FollowingLoad;
 pub use frames::Frames;
-pub use newton::{Iteration, NewtonParams};
+pub use newton::{Iteration, Nearby, NewtonParams, Predicted, predict};
 pub use penalty::PenaltySurface;
 pub use problem::{LinearSystems, StaticProblem};
 pub use solid::{Active, Solid, SolidDilation};

@@ -4,7 +4,7 @@ use contact::{ContactSurface, Drive, DrivenTool};
 use shape::{Coarser, FixedDof, Point3};
 
 use super::curves::Curves;
-use super::following::FollowingPressure;
+use super::following::FollowingLoad;
 use super::penalty::PenaltySurface;
 use super::solid::Solid;
 use crate::load::Load;
@@ -33,7 +33,7 @@ pub struct StaticProblem<'a> {
     /// Dead loads (per reference area or volume), which are summed.
     pub loads: &'a [Load<'a>],
     /// Pressures on the deformed surface.
-    pub following: &'a [FollowingPressure],
+    pub following: &'a [FollowingLoad],
     /// Prescribed nodal parameters.
     pub fixed: &'a [FixedDof],
     /// Surfaces constrained by penalty, and surfaces on springs and dampers.

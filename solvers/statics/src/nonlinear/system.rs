@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use shape::{Matrix3, Vector3};
 
 use super::energy::{Hessian, Internal};
-use super::following::{FollowingPressure, Pressed};
+use super::following::{FollowingLoad, Pressed};
 use super::groups::Pairs;
 use super::lanes::{BlockSum, Vector4, group_products, point_products};
 use super::solid::{Solid, SolidDilation};
@@ -109,7 +109,7 @@ pub(crate) struct SurfaceStiffness {
     /// By surface, for every point, N/m: `-w dt/dx` with the weight `w`, the traction `t` and the position
     /// `x`.
     pub blocks: Vec<Vec<Matrix3>>,
-    /// By following pressure.
+    /// By load on the deformed surface.
     pub pressed: Vec<Pressed>,
 }
 
@@ -117,8 +117,8 @@ pub(crate) struct SurfaceStiffness {
 pub(crate) struct Skew {
     /// (surface, point, block in N/m) for every sliding point.
     points: Vec<(usize, usize, Matrix3)>,
-    /// Pairs of nodes under a following pressure, each with the vector `c` (N/m) of the block `[c]x`.
-    pairs: Vec<([u32; 2], Vector3)>,
+    /// Pairs of nodes i <= j under a load on the deformed surface, each with its block (N/m).
+    pairs: Vec<([u32; 2], Matrix3)>,
 }
 
 /// Structure of the system of a solid with loaded or constrained surfaces.
@@ -134,7 +134,7 @@ pub(crate) struct System<'a> {
     pub surfaces: Vec<SurfaceTable>,
     /// Springs of hourglass control, whose nodes at each point are those of the solid's points.
     pub springs: Option<SurfaceTable>,
-    following: &'a [FollowingPressure],
+    following: &'a [FollowingLoad],
     /// The last assembled tangent of the displacements.
     pub stiffness: Stiffness,
     /// Index of each degree of freedom among the unknowns, [`CONSTRAINED`] if prescribed; pressures follow.
@@ -151,7 +151,7 @@ impl<'a> System<'a> {
         solid: Solid<'a>,
         constrained: &[bool],
         surfaces: Vec<SurfaceTable>,
-        following: &'a [FollowingPressure],
+        following: &'a [FollowingLoad],
     ) -> System<'a> {
         let nodes = solid.node_count();
         let rows = solid.volume.rows();
@@ -177,7 +177,7 @@ impl<'a> System<'a> {
         let mut tables = vec![(points.connectivity(), &points_of)];
         tables.extend(groups.zip(groups_of.as_ref()));
         tables.extend(surfaces.iter().map(|s| (s.rows.connectivity(), &s.of_node)));
-        tables.extend(following.iter().map(FollowingPressure::pattern));
+        tables.extend(following.iter().map(FollowingLoad::pattern));
         let stiffness = Stiffness::zeros(BlockPattern::new(nodes, &tables));
         let mut free = 0;
         let place = constrained
@@ -357,11 +357,11 @@ impl<'a> System<'a> {
             let force = block * at;
             nodes.iter().zip(values).for_each(|(&node, v)| out[node as usize] += force * *v);
         }
-        for &([i, j], axial) in &skew.pairs {
+        for &([i, j], block) in &skew.pairs {
             let (i, j) = (i as usize, j as usize);
-            out[i] += axial.cross(&u[j]);
+            out[i] += block * u[j];
             if i != j {
-                out[j] += axial.cross(&u[i]);
+                out[j] -= block.transpose() * u[i];
             }
         }
     }
@@ -371,7 +371,8 @@ impl<'a> System<'a> {
     pub fn entries(&self, skew: &Skew) -> Vec<(usize, usize, f64)> {
         let mut entries = Vec::new();
         let mut add = |i: u32, j: u32, block: &Matrix3, [vi, vj]: [f64; 2]| {
-            for (a, b) in [(0, 1), (0, 2), (1, 2), (1, 0), (2, 0), (2, 1)] {
+            let diagonal = [(0, 0), (1, 1), (2, 2)].into_iter().filter(|at| block[*at] != 0.0);
+            for (a, b) in [(0, 1), (0, 2), (1, 2), (1, 0), (2, 0), (2, 1)].into_iter().chain(diagonal) {
                 let (row, column) = (self.place[3 * i as usize + a], self.place[3 * j as usize + b]);
                 if row != CONSTRAINED && column != CONSTRAINED {
                     entries.push((row, column, block[(a, b)] * vi * vj));
@@ -386,11 +387,10 @@ impl<'a> System<'a> {
                 }
             }
         }
-        for &([i, j], axial) in &skew.pairs {
-            let block = axial.cross_matrix();
+        for &([i, j], block) in &skew.pairs {
             add(i, j, &block, [1.0; 2]);
             if i != j {
-                add(j, i, &block, [1.0; 2]);
+                add(j, i, &-block.transpose(), [1.0; 2]);
             }
         }
         entries

@@ -22,7 +22,7 @@ const TOLERANCE: f64 = 1e-5;
 
 /// Repairs the triangles and creates their surface, with lengths multiplied by `unit` (m).
 pub(super) fn repaired(soup: Soup, unit: f64) -> Result<Treated, SurfaceProblem> {
-    if let Ok(surface) = Surface::new(soup.clone(), unit) {
+    if let Ok(surface) = Surface::with_regions(soup.clone(), unit) {
         return Ok(Treated { surface, changes: Vec::new(), gaps: None });
     }
     let soup = soup.welded(0.0).used();
@@ -42,7 +42,7 @@ pub(super) fn repaired(soup: Soup, unit: f64) -> Result<Treated, SurfaceProblem>
     orientation.apply(&mut soup);
     changes.extend(holes::close(&mut soup));
     changes.extend(outwards::turn(&mut soup));
-    let surface = Surface::new(soup.used(), unit)?;
+    let surface = Surface::with_regions(soup.used(), unit)?;
     Ok(Treated { surface, changes, gaps: None })
 }
 

@@ -86,8 +86,10 @@ pub(super) struct Equations<'a> {
     pub counts: ContactCounts,
     /// Number of evaluated states.
     pub evaluations: u64,
-    /// Full nodal forces of the dead loads of each curve, N.
+    /// Full nodal forces of the dead loads of each curve, N, then those of [`Equations::load_also`].
     loads: Vec<(Curve, Vec<Vector3>)>,
+    /// Number of the problem's own curves of loads.
+    own_loads: usize,
     /// Volume of the body, m^3.
     volume: f64,
     /// Stiffness of each node of the undeformed body against its own displacement, N/m.
@@ -124,6 +126,7 @@ impl<'a> Equations<'a> {
             peak: 0.0,
             counts: ContactCounts::default(),
             evaluations: 0,
+            own_loads: loads.len(),
             loads,
             volume: problem.solid.volume.weights().iter().sum(),
             stiffness: stiffness(&problem.solid),
@@ -238,6 +241,27 @@ impl<'a> Equations<'a> {
         StaticError::NotConverged { iterations, residual, tolerance, worst, smallest, smallest_at }
     }
 
+    /// Adds constant forces (N) on the nodes, in place of those added before; nothing if empty.
+    pub fn load_also(&mut self, forces: Vec<Vector3>) {
+        self.loads.truncate(self.own_loads);
+        if !forces.is_empty() {
+            self.loads.push((Curve::at_once(), forces));
+        }
+    }
+
+    /// Computes the contact of each tool in a state.
+    pub fn contacts(&mut self, state: &State) -> Result<Vec<Option<Contacts>>, StaticError> {
+        let StaticProblem { contact, tools, .. } = self.problem;
+        let each = tools.iter().zip(&state.closures).zip(&state.history).enumerate();
+        each.map(|(tool, ((driven, &closure), history))| match contact {
+            Some(surface) => surface
+                .evaluate(driven.tool, closure, &state.u, history, &mut self.counts)
+                .map_err(|cause| StaticError::Contact { tool, cause }),
+            None => Ok(None),
+        })
+        .collect()
+    }
+
     /// Computes the forces in a state.
     pub fn balance(&mut self, state: &State, time: f64) -> Result<Balance, StaticError> {
         self.evaluations += 1;
@@ -277,20 +301,9 @@ impl<'a> Equations<'a> {
             };
             table.add_force(&penalty.tractions(&at, &moving, factor), &mut out);
         }
-        let mut contacts = Vec::new();
-        for (tool, ((driven, &closure), history)) in
-            self.problem.tools.iter().zip(&state.closures).zip(&state.history).enumerate()
-        {
-            let found = match self.problem.contact {
-                Some(surface) => surface
-                    .evaluate(driven.tool, closure, &state.u, history, &mut self.counts)
-                    .map_err(|cause| StaticError::Contact { tool, cause })?,
-                None => None,
-            };
-            if let (Some(found), Some(surface)) = (&found, self.problem.contact) {
-                found.add_force(surface.rows(), &mut out);
-            }
-            contacts.push(found);
+        let contacts = self.contacts(state)?;
+        if let Some(surface) = self.problem.contact {
+            contacts.iter().flatten().for_each(|found| found.add_force(surface.rows(), &mut out));
         }
         let norm = |f: &[Vector3]| f.iter().map(|v| v.norm_squared()).sum::<f64>().sqrt();
         let mut scale = norm(&inner).max(norm(&out)).max(self.peak);

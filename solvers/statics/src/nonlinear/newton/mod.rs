@@ -7,6 +7,7 @@ mod factors;
 mod iterative;
 mod levels;
 mod policy;
+mod predict;
 mod rigid;
 mod search;
 mod state;
@@ -35,6 +36,7 @@ pub(crate) use self::state::State;
 pub(crate) use self::tool_checks::shortest_travel;
 
 pub use self::policy::{Iteration, NewtonParams};
+pub use self::predict::{Nearby, Predicted, predict};
 
 /// Newton's method for a problem: its equations, the memory of the last tangents, and the rules of a step.
 pub(crate) struct Newton<'a> {
