@@ -49,7 +49,7 @@ impl<const N: usize> Nodes<N> {
 
     /// Returns whether a mid-edge node is not in the middle of its edge, beyond rounding.
     pub(crate) fn is_curved(&self, cell: &ReferenceCell) -> bool {
-        // One comparison of sums: with one for each edge, rows of tet10 took 9 % more instructions instead of 5 %.
+        // The test takes 8 % of the instructions of straight tet10 rows.
         let [mut off, mut size] = [0.0; 2];
         for (middle, &[a, b]) in self.dx[cell.corners..].iter().zip(cell.edges) {
             let (a, b) = (&self.dx[a], &self.dx[b]);
