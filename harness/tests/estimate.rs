@@ -41,7 +41,7 @@ fn the_prediction_is_the_solution_of_quadratic_elements() {
     assert!((estimate / error - 1.0).abs() < 0.1, "{error} {estimate}");
 }
 
-/// Starting from the pressure of the dilation, Newton's method would not find the equilibrium.
+/// The richer elements are eighths of the cells with a pressure field.
 #[test]
 fn a_nearly_incompressible_body_is_estimated_from_its_pressure() {
     let dir = tempfile::tempdir().unwrap();
