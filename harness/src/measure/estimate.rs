@@ -1,4 +1,5 @@
-//! Estimated errors: the distance of a run from the solution that more shape functions on the same body predict.
+//! Estimated errors: the distance of a run from the solution that more shape functions on the same body
+//! predict.
 
 use catalogue::metric;
 use geometry::Point3;
@@ -51,8 +52,8 @@ pub(crate) fn estimates(
     Ok(())
 }
 
-/// Adds the distances of the supports' forces, relative to the largest of these forces: many a support on rollers
-/// has none. Nothing is added if all are rounding beside `scale`, N.
+/// Adds the distances of the supports' forces, relative to the largest of these forces: many a support on
+/// rollers has none. Nothing is added if all are rounding beside `scale`, N.
 fn supports(metrics: &mut Vec<Metric>, run: &Solved, predicted: &Solved, scale: f64) {
     let [own, right] = [run, predicted].map(|run| run.solution.support_forces());
     let largest = right.iter().map(|support| support.force.norm()).fold(0.0, f64::max);

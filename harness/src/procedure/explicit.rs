@@ -321,7 +321,8 @@ struct Run<'a, 'b> {
     prepared: &'b Prepared,
     /// Undeformed positions, m.
     nodes: &'b [Point3],
-    /// Prescribed degrees of freedom, in the order of the integrator, and the time at which each is let go, s.
+    /// Prescribed degrees of freedom, in the order of the integrator, and the time at which each is let go,
+    /// s.
     led: Vec<((u32, u8), f64)>,
     /// Masses of a cloud; `None` for elements.
     masses: Option<Masses<'b>>,
@@ -387,8 +388,8 @@ impl Run<'_, '_> {
         Ok(())
     }
 
-    /// Lets go of the degrees of freedom whose supports have ended, and returns whether there were any. Those that
-    /// end at `next`, the time (s) of the next state, still hold it.
+    /// Lets go of the degrees of freedom whose supports have ended, and returns whether there were any.
+    /// Those that end at `next`, the time (s) of the next state, still hold it.
     fn let_go(&mut self, next: f64) -> bool {
         let ended =
             |until: f64| until < next - self.rounding() && until < self.motion.time() + self.rounding();
@@ -406,7 +407,8 @@ impl Run<'_, '_> {
         1e-9 * self.asked.ramp.duration
     }
 
-    /// Sets the time step up to `end` (s), or to the end of a support before it, and returns the number of steps.
+    /// Sets the time step up to `end` (s), or to the end of a support before it, and returns the number of
+    /// steps.
     fn choose_step(&mut self, end: f64) -> Result<usize, ExplicitError> {
         let now = self.motion.time() + self.rounding();
         let end = self.led.iter().map(|&(_, until)| until).filter(|until| *until > now).fold(end, f64::min);

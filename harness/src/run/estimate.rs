@@ -1,8 +1,8 @@
-//! Estimate of a run's error: its solution is carried to more shape functions on the same body, where Newton's method
-//! finds the equilibrium nearby, and one linear system that of a linear problem.
+//! Estimate of a run's error: its solution is carried to more shape functions on the same body, where
+//! Newton's method finds the equilibrium nearby, and one linear system that of a linear problem.
 //!
-//! The distance from this equilibrium is the error of the run, apart from the error of the richer method, which is of
-//! higher order. Points of contact take the friction of the run's next point.
+//! The distance from this equilibrium is the error of the run, apart from the error of the richer method,
+//! which is of higher order. Points of contact take the friction of the run's next point.
 
 use cases::scene::Dilation;
 use catalogue::{metric, warning};
@@ -15,7 +15,8 @@ use crate::outcome::{Counters, Outcome, Warning};
 use crate::prepare::{Prepared, prepare};
 use crate::procedure::{Carried, Problem, Wanted, plan, predict};
 
-/// Most nodes of elements with a pressure field, whose systems are always factored: each of 45,000 nodes takes 15 s.
+/// Most nodes of elements with a pressure field, whose systems are always factored: each of 45,000 nodes
+/// takes 15 s.
 const MOST_MIXED: usize = 50_000;
 
 /// Adds the estimated errors to the metrics of a run.
@@ -79,8 +80,9 @@ fn nearest(from: &[Point3], to: &[Point3]) -> Result<Vec<u32>, Failure> {
     Ok(to.iter().map(|at| search.nearest(at, 1)[0].index).collect())
 }
 
-/// Pressure of a run, Pa, tension positive, as parameters of the pressure field of `tables`: means over the cells, then
-/// over the surroundings of each corner. Empty without such a field, zero if the run's points belong to no cells.
+/// Pressure of a run, Pa, tension positive, as parameters of the pressure field of `tables`: means over the
+/// cells, then over the surroundings of each corner. Empty without such a field, zero if the run's points
+/// belong to no cells.
 fn pressure(run: &measure::Solved, tables: &Prepared) -> Result<Vec<f64>, Failure> {
     let Some(rows) = &tables.volume.pressure else { return Ok(Vec::new()) };
     let mut sums = vec![[0.0; 2]; rows.node_count()];

@@ -40,8 +40,8 @@ impl ContactHistory {
         }
     }
 
-    /// Carries the history over to the points of another surface of the same body with displacement `u` (m): each
-    /// point has the elastic slip and the multiplier of the point `nearest` of this history.
+    /// Carries the history over to the points of another surface of the same body with displacement `u`
+    /// (m): each point has the elastic slip and the multiplier of the point `nearest` of this history.
     pub fn carried(
         &self,
         nearest: &[u32],

@@ -177,8 +177,8 @@ impl<'a, 'b> Dynamics<'a, 'b> {
         self.tools.as_ref()
     }
 
-    /// Lets go of the prescribed degrees of freedom whose index `gone` names: from here on they move freely, from
-    /// the velocity that they have.
+    /// Lets go of the prescribed degrees of freedom whose index `gone` names: from here on they move
+    /// freely, from the velocity that they have.
     pub fn release(&mut self, gone: impl Fn(usize) -> bool) {
         for &k in self.held.iter().filter(|k| gone(**k)) {
             let Prescribed { node, axis, .. } = self.prescribed[k];

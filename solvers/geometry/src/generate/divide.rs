@@ -18,9 +18,9 @@ const INNER: [[[usize; 2]; 4]; 4] = [
     [[0, 2], [1, 2], [2, 3], [1, 3]],
 ];
 
-/// Divides every cell into eight cells of its kind, with nodes where the cell's shape functions map those of the
-/// reference cell. Regions and groups are kept. A group of nodes gains the new nodes of each edge and face of which
-/// it has all nodes.
+/// Divides every cell into eight cells of its kind, with nodes where the cell's shape functions map those
+/// of the reference cell. Regions and groups are kept. A group of nodes gains the new nodes of each edge
+/// and face of which it has all nodes.
 pub fn divide(mesh: &Mesh) -> Mesh {
     let mut patterns = HashMap::new();
     let mut numbers = HashMap::new();
@@ -79,8 +79,8 @@ fn middles(mesh: &Mesh) -> HashMap<[u32; 2], u32> {
 
 /// The parts of the reference cell of one kind.
 struct Pattern {
-    /// Reference coordinates of each part's nodes, and the values there of the linear shape functions of the cell's
-    /// corners in 64ths. The nodes with such values are the same node in all cells.
+    /// Reference coordinates of each part's nodes, and the values there of the linear shape functions of
+    /// the cell's corners in 64ths. The nodes with such values are the same node in all cells.
     nodes: Vec<Vec<([f64; 3], Vec<u8>)>>,
     /// Parts and their faces that lie in each face of the cell.
     faces: Vec<Vec<[u8; 2]>>,

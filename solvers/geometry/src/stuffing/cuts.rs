@@ -55,9 +55,9 @@ enum Kind {
 }
 
 impl Cuts {
-    /// Finds the cuts. `distances` (m) are the signed distances of the points from the surface, negative inside.
-    /// `cut` returns the position of a cut as a fraction of the edge from its inner end. `long` is the length of
-    /// the long edges of the lattice, m.
+    /// Finds the cuts. `distances` (m) are the signed distances of the points from the surface, negative
+    /// inside. `cut` returns the position of a cut as a fraction of the edge from its inner end. `long` is
+    /// the length of the long edges of the lattice, m.
     pub(super) fn new(
         cells: &Cells,
         points: &[Point3],

@@ -59,7 +59,8 @@ impl Edges {
         Edges(self.0.into_iter().filter(is_inside).collect())
     }
 
-    /// The sharp edge between two points on its different sides; `None` if there is none, or if a point lies on it.
+    /// The sharp edge between two points on its different sides; `None` if there is none, or if a point
+    /// lies on it.
     pub(super) fn between(&self, surface: &Surface, ends: &[Point3; 2]) -> Option<[Point3; 2]> {
         let [a, b] = ends.map(|end| normal(surface, surface.closest(&end).1));
         if self.0.is_empty() || a.dot(&b) >= SHARP {

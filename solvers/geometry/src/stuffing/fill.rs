@@ -33,8 +33,8 @@ pub fn stuff(surface: &Surface, how: Stuffing) -> Result<Stuffed, StuffingError>
     Ok(fill(surface, how)?.linear(surface))
 }
 
-/// Fills a surface with quadratic tetrahedra, whose nodes on the boundary lie on the surface. `how.spacing` is that of
-/// the corners.
+/// Fills a surface with quadratic tetrahedra, whose nodes on the boundary lie on the surface. `how.spacing`
+/// is that of the corners.
 ///
 /// # Errors
 /// As for [`stuff`].

@@ -37,8 +37,8 @@ pub(super) fn linear(mesh: Mesh, surface: &Surface) -> Mesh {
     balanced(mesh, surface, has_angles)
 }
 
-/// Whether the angles of a linear tetrahedron are those proven. A mirrored tetrahedron has the same angles, but no
-/// volume.
+/// Whether the angles of a linear tetrahedron are those proven. A mirrored tetrahedron has the same angles,
+/// but no volume.
 pub(super) fn has_angles(_: CellKind, points: &[Point3]) -> bool {
     let (low, high) = quality::dihedrals(CellKind::Tet4, points);
     let [a, b, c] = [1, 2, 3].map(|k| points[k] - points[0]);
@@ -65,8 +65,8 @@ pub(super) fn quadratic(mesh: Mesh, surface: &Surface) -> Mesh {
     balanced(moved(&mesh, moves, sound), surface, sound)
 }
 
-/// Extends the moves of straight quadratic tetrahedra by those of middle nodes to the walls. On the surface, a node
-/// moves to both.
+/// Extends the moves of straight quadratic tetrahedra by those of middle nodes to the walls. On the
+/// surface, a node moves to both.
 fn to_walls(mesh: &Mesh, surface: &Surface, moves: &mut [Vector3]) {
     let walls = Walls(surface.regions());
     for Facets { between: [first, second], facets } in facets_between(mesh) {
@@ -120,8 +120,8 @@ fn extent(nodes: &[Vector3]) -> f64 {
     nodes.iter().flat_map(|a| nodes.iter().map(move |b| (a - b).norm())).fold(0.0, f64::max)
 }
 
-/// Moves along the normals of several sheets: in each the unit normal of every node and the distance along it, m.
-/// A node keeps its distance from earlier sheets.
+/// Moves along the normals of several sheets: in each the unit normal of every node and the distance along
+/// it, m. A node keeps its distance from earlier sheets.
 fn combined(sheets: &[Vec<(Vector3, f64)>]) -> Vec<Vector3> {
     let of_node = |node: usize| {
         let mut moved = Vector3::zeros();
@@ -249,8 +249,8 @@ fn triangles(
 }
 
 impl<D: Fn(&Point3) -> f64 + Sync, C: Fn(&[Vector3]) -> bool + Sync> Sheet<'_, D, C> {
-    /// Returns the unit normal of every node, and the distance (m) by which it moves along it: the mean distance
-    /// `int N d dA / int N dA` of the surface from the triangles around it.
+    /// Returns the unit normal of every node, and the distance (m) by which it moves along it: the mean
+    /// distance `int N d dA / int N dA` of the surface from the triangles around it.
     fn moves(&self, mesh: &Mesh) -> Vec<(Vector3, f64)> {
         let of_face = |facet: &Facet| triangles(mesh, *facet, &self.distance, &self.cuts_an_edge);
         let faces: Vec<Vec<Triangle>> = self.facets.par_iter().with_min_len(CHUNK).map(of_face).collect();

@@ -46,8 +46,8 @@ pub struct Stuffing {
 #[derive(Clone, Debug)]
 pub struct Stuffed {
     /// The mesh, with its boundary as the group "surface". Groups of the surface become facet groups, and one
-    /// named "surface" replaces the boundary. A group much smaller than the cells may have no facets. Regions of the
-    /// surface become regions of the mesh.
+    /// named "surface" replaces the boundary. A group much smaller than the cells may have no facets.
+    /// Regions of the surface become regions of the mesh.
     pub mesh: Mesh,
     /// Number of omitted parts with fewer than eight lattice nodes inside, tips that the surface cuts off
     /// from the rest.

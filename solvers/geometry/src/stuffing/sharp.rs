@@ -1,8 +1,9 @@
 //! Moves nodes of a stuffed mesh onto sharp edges and corners of its surface.
 //!
-//! The lattice rounds a sharp edge off: edges of the mesh pass from one of its sides to the other. The nearer end
-//! of each moves to the sharp edge, along its own side, if the angles stay within their bounds; else the other
-//! end. A node that cannot move all the way moves a part of it. Surfaces without sharp edges keep their meshes.
+//! The lattice rounds a sharp edge off: edges of the mesh pass from one of its sides to the other. The
+//! nearer end of each moves to the sharp edge, along its own side, if the angles stay within their bounds;
+//! else the other end. A node that cannot move all the way moves a part of it. Surfaces without sharp edges
+//! keep their meshes.
 
 use std::collections::{BTreeMap, BTreeSet};
 

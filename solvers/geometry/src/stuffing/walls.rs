@@ -1,11 +1,11 @@
 //! Divides the tetrahedra inside a surface among its regions.
 //!
-//! One region after the other is separated from the rest by the signed distance of the wall between them. Whole
-//! tetrahedra of the lattice are cut as along the outer surface, here into the parts on both sides: the rules for
-//! diagonals do not depend on the side, so the parts fit together, at the same proven angles. All other
-//! tetrahedra, along the outer surface and earlier walls, are not cut a second time: of each edge that the wall
-//! crosses, the nearer end becomes a node of the wall. Such nodes move to the wall later, as far as the angles
-//! allow.
+//! One region after the other is separated from the rest by the signed distance of the wall between them.
+//! Whole tetrahedra of the lattice are cut as along the outer surface, here into the parts on both sides:
+//! the rules for diagonals do not depend on the side, so the parts fit together, at the same proven angles.
+//! All other tetrahedra, along the outer surface and earlier walls, are not cut a second time: of each edge
+//! that the wall crosses, the nearer end becomes a node of the wall. Such nodes move to the wall later, as
+//! far as the angles allow.
 
 use std::collections::HashMap;
 
@@ -24,8 +24,8 @@ const CHUNK: usize = 64;
 pub(super) struct Walls<'a>(pub &'a [Region]);
 
 impl Walls<'_> {
-    /// Signed distance of a point from the wall between two regions, m; negative in the first. It is that from
-    /// the region outside of which the point lies: its own region also ends at the outer surface.
+    /// Signed distance of a point from the wall between two regions, m; negative in the first. It is that
+    /// from the region outside of which the point lies: its own region also ends at the outer surface.
     pub(super) fn between(&self, first: usize, second: usize, p: &Point3) -> f64 {
         let [own, other] = [first, second].map(|region| self.0[region].surface.signed_distance(p));
         if own < other { -other } else { own }

@@ -210,8 +210,8 @@ impl Surface {
 }
 
 /// Zero of a signed distance along a line of the given length, as a fraction of the line. `ends` are the
-/// distances at the ends, the first of which is negative. `distance` is called with a fraction and the largest
-/// distance possible there.
+/// distances at the ends, the first of which is negative. `distance` is called with a fraction and the
+/// largest distance possible there.
 pub(crate) fn zero(ends: [f64; 2], length: f64, distance: impl Fn(f64, f64) -> f64) -> f64 {
     let (mut low, mut high) = ((0.0, ends[0]), (1.0, ends[1]));
     // Illinois method: the value at an end that is retained twice is halved, so that both ends converge.

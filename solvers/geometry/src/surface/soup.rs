@@ -77,8 +77,8 @@ impl Soup {
         Soup { points, triangles, faces, groups: self.groups.of_triangles(&kept) }
     }
 
-    /// Merges the triangles of several files. The name of a file is a group of its triangles, before their own
-    /// groups, and faces are numbered on from file to file.
+    /// Merges the triangles of several files. The name of a file is a group of its triangles, before their
+    /// own groups, and faces are numbered on from file to file.
     pub fn of_files(files: Vec<(String, Soup)>) -> Soup {
         let mut all = Soup::default();
         files.iter().for_each(|(name, _)| {

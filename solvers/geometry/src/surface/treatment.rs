@@ -24,8 +24,8 @@ impl Surface {
     /// Creates a surface of these triangles after a treatment, with lengths multiplied by `unit` (m).
     ///
     /// # Errors
-    /// As for [`Surface::with_regions`], for the faults that the treatment leaves; a size of a wrap that does not fit
-    /// the triangles.
+    /// As for [`Surface::with_regions`], for the faults that the treatment leaves; a size of a wrap that
+    /// does not fit the triangles.
     pub fn treated(soup: Soup, unit: f64, treatment: Treatment) -> Result<Treated, SurfaceProblem> {
         match treatment {
             Treatment::AsGiven => Surface::with_regions(soup, unit).map(|surface| Treated {

@@ -34,8 +34,9 @@ fn is_even(corners: [u32; 3]) -> bool {
     corners[(lowest + 1) % 3] < corners[(lowest + 2) % 3]
 }
 
-/// Finds the neighbours of each triangle across its edges, as [`closed::neighbours`] does. Bodies may touch at
-/// walls: of the triangles at an edge of several bodies, two are neighbours if the same body lies between them.
+/// Finds the neighbours of each triangle across its edges, as [`closed::neighbours`] does. Bodies may touch
+/// at walls: of the triangles at an edge of several bodies, two are neighbours if the same body lies
+/// between them.
 pub(super) fn neighbours(soup: &Soup) -> Result<Vec<[u32; 3]>, SurfaceProblem> {
     closed::neighbours(soup).or_else(|problem| between_bodies(soup).ok_or(problem))
 }

@@ -196,8 +196,9 @@ pub(crate) const SECOND: f64 = 0.3;
 /// Exponent of Demiray's law and limit of Gent's law, for [`Law::all`].
 const STIFFENING: f64 = 0.2;
 const LONGEST: f64 = 60.0;
-/// Laws that [`Law::all`] leaves out: those of foams and porous solids, whose volumetric terms have the power `nu / (1 - 2 nu)`
-/// of `J` and explode as the material becomes incompressible, and those that depend on directions.
+/// Laws that [`Law::all`] leaves out: those of foams and porous solids, whose volumetric terms have the
+/// power `nu / (1 - 2 nu)` of `J` and explode as the material becomes incompressible, and those that depend
+/// on directions.
 const OTHER_MODULI: [&str; 8] = [
     "blatz-ko",
     "hyperfoam",

@@ -12,9 +12,9 @@ use crate::material::{Material, Tangent};
 /// Porous neo-Hookean law `W = mu/2 (R I1 - 3 - 2 ln Jp)` with the volume ratio of the pores
 /// `Jp = (J - phi) / (1 - phi)`, `R = (Jp / J)^(2/3)` and the solid fraction `phi`; `mu` in Pa.
 ///
-/// It is the neo-Hookean law without `lambda` of the deformation whose volume ratio is `Jp`: the stress grows without
-/// limit as `J` falls to `phi`. With `phi = 0` it is that law itself. Young's modulus is
-/// `6 mu / (2 + (1 - phi)^2)`. Source: FEBio User Manual, Porous Neo-Hookean.
+/// It is the neo-Hookean law without `lambda` of the deformation whose volume ratio is `Jp`: the stress
+/// grows without limit as `J` falls to `phi`. With `phi = 0` it is that law itself. Young's modulus is `6
+/// mu / (2 + (1 - phi)^2)`. Source: FEBio User Manual, Porous Neo-Hookean.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PorousNeoHookean {
     mu: f64,
@@ -71,8 +71,8 @@ impl PorousNeoHookean {
 }
 
 impl Material for PorousNeoHookean {
-    /// `3/2 (R I1/3 - 1) - ln Jp = 3/2 (exp(y) - 1 - y) + 3/2 ln(J^(-2/3) I1 / 3)` with `y = ln(R I1 / 3)`: the
-    /// first-order terms cancel and are left out.
+    /// `3/2 (R I1/3 - 1) - ln Jp = 3/2 (exp(y) - 1 - y) + 3/2 ln(J^(-2/3) I1 / 3)` with `y = ln(R I1 / 3)`:
+    /// the first-order terms cancel and are left out.
     fn energy(&self, H: &Matrix3) -> f64 {
         let state = self.state(H);
         1.5 * self.mu * (exp_m1_less(state.log) + state.k.ln_i1_bar())

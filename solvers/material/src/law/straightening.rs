@@ -52,8 +52,8 @@ const GAUSS: [(f64, f64); 4] = [
 ];
 
 impl Straightening {
-    /// Builds the energy from `c3` (Pa, zero or more), `c4` (positive), `c5` (Pa, zero or more) and the stretch
-    /// `lm` (1 or more) at which the fibres are straight.
+    /// Builds the energy from `c3` (Pa, zero or more), `c4` (positive), `c5` (Pa, zero or more) and the
+    /// stretch `lm` (1 or more) at which the fibres are straight.
     pub fn new([c3, c4, c5]: [f64; 3], lm: f64) -> Result<Straightening, MaterialError> {
         MaterialError::check_not_negative("c3", c3)?;
         MaterialError::check_positive("c4", c4)?;
@@ -105,8 +105,8 @@ impl Straightening {
         [energy, p / (2.0 * square), (l * slope - 2.0 * p) / (4.0 * square * square)]
     }
 
-    /// Largest shear modulus at small strain, Pa: `F2 = c3 c4/2 Eff^2` on a tensor whose deviator has the square
-    /// 2/3.
+    /// Largest shear modulus at small strain, Pa: `F2 = c3 c4/2 Eff^2` on a tensor whose deviator has the
+    /// square 2/3.
     pub fn shear(&self) -> f64 {
         4.0 / 3.0 * self.at(0.0)[2]
     }

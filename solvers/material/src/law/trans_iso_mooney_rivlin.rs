@@ -14,12 +14,12 @@ use crate::volumetric::Volumetric;
 
 /// Transversely isotropic Mooney-Rivlin law
 /// `W = C10 (J^(-2/3) I1 - 3) + C01 (J^(-4/3) I2 - 3) + F2(l) + kappa/2 (J - 1)^2` with the isochoric stretch
-/// `l = J^(-1/3) |F f|` of the fibre, and the energy `F2` of fibres that straighten; constants in Pa except `c4` and
-/// `lm`.
+/// `l = J^(-1/3) |F f|` of the fibre, and the energy `F2` of fibres that straighten; constants in Pa except
+/// `c4` and `lm`.
 ///
-/// The fibres see the isochoric stretch, as in FEBio. FEBio's volumetric energy is the logarithmic one. Sources: Weiss, Maker and
-/// Govindjee, Comput. Methods Appl. Mech. Eng. 135 (1996) 107-128; FEBio User Manual, Transversely Isotropic
-/// Mooney-Rivlin.
+/// The fibres see the isochoric stretch, as in FEBio. FEBio's volumetric energy is the logarithmic one.
+/// Sources: Weiss, Maker and Govindjee, Comput. Methods Appl. Mech. Eng. 135 (1996) 107-128; FEBio User
+/// Manual, Transversely Isotropic Mooney-Rivlin.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TransIsoMooneyRivlin {
     matrix: MooneyRivlin,

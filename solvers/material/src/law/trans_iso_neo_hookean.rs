@@ -12,12 +12,13 @@ use crate::material::{Material, Tangent};
 use crate::separated::Separated;
 use crate::volumetric::Volumetric;
 
-/// Transversely isotropic neo-Hookean law `W = mu/2 (I1 - 3 - 2 ln J) + lambda/2 (ln J)^2 + F2(l)` with the stretch
-/// `l = |F f|` of the fibre and the energy `F2` of fibres that straighten; moduli of the matrix in Pa.
+/// Transversely isotropic neo-Hookean law `W = mu/2 (I1 - 3 - 2 ln J) + lambda/2 (ln J)^2 + F2(l)` with the
+/// stretch `l = |F f|` of the fibre and the energy `F2` of fibres that straighten; moduli of the matrix in
+/// Pa.
 ///
-/// The fibres see the whole stretch. Shape and volume are not split. Sources: Weiss, Maker and Govindjee, Comput.
-/// Methods Appl. Mech. Eng. 135 (1996) 107-128; FEBio User Manual, Coupled Transversely Isotropic Mooney-Rivlin,
-/// for c2 = 0.
+/// The fibres see the whole stretch. Shape and volume are not split. Sources: Weiss, Maker and Govindjee,
+/// Comput. Methods Appl. Mech. Eng. 135 (1996) 107-128; FEBio User Manual, Coupled Transversely Isotropic
+/// Mooney-Rivlin, for c2 = 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TransIsoNeoHookean {
     matrix: NeoHookean,
@@ -36,9 +37,9 @@ pub(super) const ENTRY: Entry<Build<TransIsoNeoHookean>> = Entry {
 };
 
 impl TransIsoNeoHookean {
-    /// Builds the law from Young's modulus (Pa, positive) and Poisson's ratio (-1 < nu < 0.5) of the matrix, the
-    /// constants `c3` (Pa, zero or more), `c4` (positive) and `c5` (Pa, zero or more) of the fibres, and the
-    /// stretch `lm` (1 or more) at which they are straight.
+    /// Builds the law from Young's modulus (Pa, positive) and Poisson's ratio (-1 < nu < 0.5) of the
+    /// matrix, the constants `c3` (Pa, zero or more), `c4` (positive) and `c5` (Pa, zero or more) of the
+    /// fibres, and the stretch `lm` (1 or more) at which they are straight.
     ///
     /// # Errors
     /// A constant out of its range.
@@ -85,7 +86,8 @@ material_of_reinforced!(TransIsoNeoHookean);
 mod tests {
     use super::*;
 
-    /// `sigma_11 J = mu (l^2 - 1) + lambda ln J + l dF2/dl` of a stretch along the fibre, with the sides held.
+    /// `sigma_11 J = mu (l^2 - 1) + lambda ln J + l dF2/dl` of a stretch along the fibre, with the sides
+    /// held.
     #[test]
     fn a_held_bar_along_the_fibre_has_the_stress_of_the_formula() {
         let law = TransIsoNeoHookean::new([3e3, 0.25], [2e3, 4.0, 9e3], 1.2).unwrap();

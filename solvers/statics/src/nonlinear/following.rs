@@ -9,9 +9,9 @@
 //! is closed or its rim is held. Source: Bonet and Wood, Nonlinear Continuum Mechanics for Finite Element
 //! Analysis, 2nd edition, section 8.5.
 //!
-//! A traction t of fixed direction per deformed area has the nodal forces `f_I = sum_q w N_I |m| t` and, with the
-//! deformed normal `n = m / |m|`, the tangent `-df_I = -sum_J w N_I t ((b_J x n) . du_J)`, of rank one and
-//! unsymmetric.
+//! A traction t of fixed direction per deformed area has the nodal forces `f_I = sum_q w N_I |m| t` and,
+//! with the deformed normal `n = m / |m|`, the tangent `-df_I = -sum_J w N_I t ((b_J x n) . du_J)`, of rank
+//! one and unsymmetric.
 
 use algebra::{Connectivity, Incidence};
 use shape::{FluxRows, Matrix3, Vector3};
@@ -69,8 +69,8 @@ impl FollowingLoad {
         FollowingLoad::new(surface, values, |p| p.is_finite(), |p, w| Push::Pressure(w * p))
     }
 
-    /// Prepares a traction of fixed direction with one of `values` (Pa, per deformed area) at each point of the
-    /// undeformed surface.
+    /// Prepares a traction of fixed direction with one of `values` (Pa, per deformed area) at each point of
+    /// the undeformed surface.
     ///
     /// # Errors
     /// As for [`FollowingLoad::pressure`].
@@ -167,8 +167,8 @@ impl FollowingLoad {
         }
     }
 
-    /// Returns the skew part of the tangent: for pairs of nodes i <= j the block `S` (N/m) of (i, j); that of (j, i)
-    /// is `-S^T`. Pairs whose terms cancel are left out.
+    /// Returns the skew part of the tangent: for pairs of nodes i <= j the block `S` (N/m) of (i, j); that
+    /// of (j, i) is `-S^T`. Pairs whose terms cancel are left out.
     pub(crate) fn skew_part(&self, pressed: &Pressed) -> Vec<([u32; 2], Matrix3)> {
         let mut terms = Vec::new();
         for (q, pressed) in pressed.iter().enumerate() {

@@ -25,8 +25,8 @@ pub struct Nearby<'a> {
     pub history: &'a [ContactHistory],
 }
 
-/// Equilibrium near a state; that of the linearised problem, in which the same points touch the tools, if none was
-/// found.
+/// Equilibrium near a state; that of the linearised problem, in which the same points touch the tools, if
+/// none was found.
 #[derive(Clone, Debug)]
 pub struct Predicted {
     /// Nodal parameters, m.
