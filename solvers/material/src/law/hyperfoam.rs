@@ -8,9 +8,9 @@ use crate::differences::exp_m1_less;
 use crate::material::{Material, Tangent};
 use crate::principal::{Principal, Slopes, sinh_over};
 
-/// Hyperfoam law `W = sum_p 2 mu_p / alpha_p^2 (l_1^alpha_p + l_2^alpha_p + l_3^alpha_p - 3
-/// + (J^(-alpha_p beta_p) - 1) / beta_p) + kappa/2 (J - 1)^2` with `beta_p = nu_p / (1 - 2 nu_p)`; moduli
-/// in Pa.
+/// Hyperfoam law `W = sum_p 2 mu_p / alpha_p^2 (l_1^alpha_p + l_2^alpha_p + l_3^alpha_p - 3 +
+/// (J^(-alpha_p beta_p) - 1) / beta_p) + kappa/2 (J - 1)^2` with `beta_p = nu_p / (1 - 2 nu_p)`; moduli in
+/// Pa.
 ///
 /// The shear modulus at small strain is `sum mu_p`. With `nu_p = 0` and `kappa` it is the unconstrained law
 /// of Ogden in FEBio. Source: Storakers, J. Mech. Phys. Solids 34 (1986) 125-145; form as in the Abaqus
