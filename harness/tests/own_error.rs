@@ -187,3 +187,22 @@ method = [{ id = "tet4", family = "fem", element = "tet4", size = { level = 1 } 
     assert_eq!((&run["reference"]["method"], &run["reference"]["unknown"]), (&"affine".into(), &"".into()));
     assert_eq!(run["work"]["factorisations"], 1, "{}", run["work"]);
 }
+
+/// By its own estimate hex20 is more than 15 % off on 4 x 4 x 2 cells and 8 % on 8 x 8 x 4 cells.
+#[test]
+fn the_spacing_of_a_reference_is_halved_until_it_is_accurate() {
+    let dir = tempfile::tempdir().unwrap();
+    let coarse = "method = \"hex20\", size = { cells = [4, 4, 2] }, accuracy = \"15 %\"";
+    let [found, good] = [coarse, GOOD].map(|reference| objects(&dir, &block(reference)));
+    assert_eq!(found[0]["reference"]["nodes"], good[0]["reference"]["nodes"]);
+    assert_eq!(own(&found[0], "relative-rms"), own(&good[0], "relative-rms"));
+    assert!(!warns(&found[0], "reference-rough"));
+    let bad = write(&dir, "bad.toml", &block(&format!("{GOOD}, accuracy = \"200 %\"")));
+    common::assert_fails(
+        &tissuebench(&["run", &bad]),
+        2,
+        "key 'reference.accuracy': is not between 0 and 100 %",
+    );
+    let bad = write(&dir, "bad.toml", &block("exact = \"affine\", accuracy = \"1 %\""));
+    common::assert_fails(&tissuebench(&["run", &bad]), 2, "reference.accuracy': applies to method only");
+}

@@ -15,6 +15,7 @@ mod provenance;
 mod record;
 mod reference;
 mod run_set;
+mod samples;
 pub mod store;
 pub mod text;
 
@@ -28,6 +29,7 @@ pub use reference::Reference;
 pub use run_set::{
     Check, Failure, PlanEntry, RunSet, Section, SectionCell, Status, SurfaceField, ToolHull, Warning,
 };
+pub use samples::{Input, Output, Sample, SampleResults, Samples};
 pub use store::{
     begin, end, is_incomplete, provenance_of, read_numbers, read_run, source_of, write_run, write_text,
 };

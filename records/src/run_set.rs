@@ -9,6 +9,7 @@ use crate::error::RecordError;
 use crate::provenance::Provenance;
 use crate::record::{Family, Record};
 use crate::reference::Reference;
+use crate::samples::Samples;
 
 /// Outcome of a check.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
@@ -235,4 +236,6 @@ pub struct RunSet {
     pub references: Vec<Reference>,
     /// Outcomes of methods along axes.
     pub axes: Vec<Axis>,
+    /// Samples of scenes with uncertain inputs.
+    pub samples: Vec<Samples>,
 }

@@ -10,6 +10,7 @@
 //! | `warnings.json` | warnings about the numbers of runs |
 //! | `references.json` | references of the runs, with their own errors |
 //! | `axes.json` | outcomes of methods along the axes of the study |
+//! | `samples.json` | samples of uncertain inputs with their results, if a scene has any |
 //! | `fields/CASE--METHOD.json` | surface displacements and states, see below |
 //! | `incomplete.json` | present from the start of a study or run until all files are written |
 //!
@@ -35,9 +36,13 @@ use crate::frame;
 use crate::provenance::{FORMAT, Provenance};
 use crate::record::Record;
 use crate::run_set::RunSet;
+use crate::samples::Samples;
 
 /// Name of the mark of a folder whose results are not those of the last study or run started there.
 const MARK: &str = "incomplete.json";
+
+/// Name of the file of samples.
+const SAMPLES: &str = "samples.json";
 
 /// Content of the mark.
 #[derive(Serialize, Deserialize)]
@@ -112,6 +117,7 @@ pub fn write_marked(dir: &Path, run: &RunSet) -> Result<(), RecordError> {
     write_json(&dir.join("warnings.json"), &run.warnings)?;
     write_json(&dir.join("references.json"), &run.references)?;
     write_json(&dir.join("axes.json"), &run.axes)?;
+    write_samples(&dir.join(SAMPLES), &run.samples)?;
     let mut csv = String::from("case,method,metric,value,bound,status,reason\n");
     for c in &run.checks {
         let value = c.value.map(|v| format!("{v:e}")).unwrap_or_default();
@@ -144,6 +150,15 @@ pub fn write_marked(dir: &Path, run: &RunSet) -> Result<(), RecordError> {
         taken.push(name);
     }
     Ok(())
+}
+
+/// Writes the samples, or removes those of an earlier run if there are none.
+fn write_samples(path: &Path, samples: &[Samples]) -> Result<(), RecordError> {
+    match samples.is_empty() {
+        false => write_json(path, &samples),
+        true if path.exists() => disk::remove(path).map_err(|source| unwritten(path, source)),
+        true => Ok(()),
+    }
 }
 
 /// Rejects rows with the same key.
@@ -227,6 +242,10 @@ pub fn read_marked(dir: &Path) -> Result<RunSet, RecordError> {
             _ => Vec::new(),
         },
         axes: read_json(&dir.join("axes.json"))?,
+        samples: match dir.join(SAMPLES) {
+            path if path.exists() => read_json(&path)?,
+            _ => Vec::new(),
+        },
     };
     run.records.iter().try_for_each(|r| r.check())?;
     run.fields.iter().try_for_each(|f| f.check())?;

@@ -18,6 +18,8 @@ pub(crate) struct Question {
     pub(crate) name: &'static str,
     /// Relative errors that measure the result, in order of preference. A case uses one of them.
     errors: &'static [&'static Metric],
+    /// Estimate of the error, which measures the result in a case without a reference.
+    pub(crate) estimate: Option<&'static Metric>,
     /// Whether the result is a single number, which may be right by chance, rather than a field.
     pub(crate) scalar: bool,
 }
@@ -28,11 +30,30 @@ pub(crate) const QUESTIONS: [Question; 4] = [
         ending: "",
         name: "displacement",
         errors: &[&metric::L2, &metric::RELATIVE_RMS],
+        estimate: Some(&metric::DISPLACEMENT_ESTIMATE),
         scalar: false,
     },
-    Question { ending: "-pressure", name: "pressure", errors: &[&metric::PRESSURE], scalar: false },
-    Question { ending: "-force", name: "tool force", errors: &[&metric::TOOL_FORCE_ERROR], scalar: true },
-    Question { ending: "-peak", name: "peak displacement", errors: &[&metric::PEAK_ERROR], scalar: true },
+    Question {
+        ending: "-pressure",
+        name: "pressure",
+        errors: &[&metric::PRESSURE],
+        estimate: None,
+        scalar: false,
+    },
+    Question {
+        ending: "-force",
+        name: "tool force",
+        errors: &[&metric::TOOL_FORCE_ERROR],
+        estimate: Some(&metric::TOOL_FORCE_ESTIMATE),
+        scalar: true,
+    },
+    Question {
+        ending: "-peak",
+        name: "peak displacement",
+        errors: &[&metric::PEAK_ERROR],
+        estimate: None,
+        scalar: true,
+    },
 ];
 
 impl Question {
@@ -54,7 +75,18 @@ impl Question {
             let least = if error.kind == metric::Kind::Tool { FLOOR } else { 0.0 };
             runs.iter().filter_map(|run| worst(run, error)).any(|e| e > least)
         };
-        self.errors.iter().copied().find(|error| found(error))
+        let measured = |error: &'static Metric| runs.iter().any(|run| worst(run, error).is_some());
+        match self.estimate {
+            Some(estimate) if !self.errors.iter().copied().any(measured) => {
+                Some(estimate).filter(|e| found(e))
+            }
+            _ => self.errors.iter().copied().find(|error| found(error)),
+        }
+    }
+
+    /// The estimated error of a run beside its measured error `error`.
+    pub(crate) fn estimated(&self, run: &Run, error: &'static Metric) -> Option<f64> {
+        self.estimate.filter(|estimate| *estimate != error).and_then(|estimate| worst(run, estimate))
     }
 }
 
@@ -290,6 +322,11 @@ pub(crate) mod tests {
             asked(&[("tool-force-error", 0.0), ("tool-force-error-2", 0.02)])[2],
             Some("tool-force-error")
         );
+        // Estimates answer if nothing is measured.
+        let estimates = [("displacement-error-estimate", 0.1), ("tool-force-error-estimate", 0.2)];
+        let estimated = [Some(estimates[0].0), None, Some(estimates[1].0), None];
+        assert_eq!(asked(&estimates), estimated);
+        assert_eq!(asked(&[estimates[1], ("tool-force-error", 4e-11)])[2], None);
     }
 
     #[test]

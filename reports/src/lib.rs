@@ -45,6 +45,7 @@ mod seconds;
 mod select;
 mod table;
 mod tables;
+mod uncertain;
 
 #[cfg(test)]
 mod blank;
@@ -56,3 +57,4 @@ pub use figures::svg_over_commits;
 pub use order::{Order, observed as observed_order};
 pub use render::{Rendered, render, render_over_commits, write_with_report};
 pub use seconds::{Seconds, Took};
+pub use uncertain::{FINE_ENOUGH, Uncertain, uncertain};

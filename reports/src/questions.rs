@@ -15,6 +15,8 @@ pub(crate) struct Timed {
     pub(crate) seconds: f64,
     /// Half the interquartile range of the repeats, s.
     pub(crate) spread: Option<f64>,
+    /// Estimated error, if the error is measured.
+    pub(crate) estimate: Option<f64>,
     /// Relative error.
     pub(crate) error: f64,
     /// Effective error of the answer: [`counts`].
@@ -152,7 +154,8 @@ fn line(
         let spread =
             run.time("total", "spread").filter(|s| clock == Clock::First && *s > 0.0).map(|s| 0.5 * s);
         let counts = counts(run, question, displacement, (error, off));
-        Some(Timed { run: run.is.run.clone(), seconds, spread, error: off, counts })
+        let estimate = question.estimated(run, error);
+        Some(Timed { run: run.is.run.clone(), seconds, spread, estimate, error: off, counts })
     };
     Line { label, family: series.is().family, runs: series.runs.iter().filter_map(timed).collect() }
 }

@@ -14,6 +14,7 @@ use crate::figures::{self, Figure};
 use crate::page::{self, Drawn};
 use crate::select;
 use crate::tables;
+use crate::uncertain;
 
 /// Files written by a rendering.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -75,6 +76,7 @@ fn render_set(
     let mut all = select::runs(as_they_are);
     busy::decide(&mut all, &set.provenance.machine);
     let (runs, clouds) = clouds::part(&all);
+    let uncertain = uncertain::uncertain(set);
     let (table_dir, figure_dir) = (out.join("tables"), out.join("figures"));
     make_dir(&table_dir)?;
     make_dir(&figure_dir)?;
@@ -84,13 +86,13 @@ fn render_set(
         files.push(path);
         Ok(())
     };
-    let tables = tables::all(set, &runs, &clouds, &trends);
+    let tables = tables::all(set, (&runs, &clouds), &uncertain, &trends);
     for table in &tables {
         for (ending, text) in [("csv", table.csv()), ("md", table.markdown()), ("tex", table.latex())] {
             write(table_dir.join(format!("{}.{ending}", table.name)), text.as_bytes())?;
         }
     }
-    let drawn: Vec<_> = figures::all(set, &runs, &trends).into_par_iter().map(draw).collect();
+    let drawn: Vec<_> = figures::all(set, &runs, &uncertain, &trends).into_par_iter().map(draw).collect();
     let drawn: Vec<Painted> = drawn.into_iter().collect::<Result<_, ReportError>>()?;
     for Painted { drawn: Drawn { figure, svg }, png, pdf } in &drawn {
         let path = |ending: &str| figure_dir.join(format!("{}.{ending}", figure.name));

@@ -20,13 +20,11 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 use toml::Value;
 
-use super::document::Document;
-use super::error::{ErrorKind, SceneError};
+use super::altered::{altered, refused};
+use super::error::SceneError;
 use super::expression::Expression;
-use super::load::resolved;
 use super::report::Report;
 use super::scene::Scene;
-use super::shared;
 
 /// An axis along which a scene is varied, and the criterion for a correct result.
 #[derive(Clone, Debug)]
@@ -98,30 +96,15 @@ impl Axis {
     /// All findings about the scene, as given or at this value; or a key of the axis that the scene cannot
     /// have.
     pub fn at(&self, scene: &Scene, methods: &[String], value: f64) -> Result<Scene, Vec<SceneError>> {
-        let refuse = |key: &str, problem: Problem| {
-            vec![scene.error(
-                ErrorKind::Invalid,
-                key,
-                &format!("can't be driven: {}", problem.problem),
-                problem.help.as_deref(),
-            )]
-        };
         let filled = self.set.iter().map(|(key, template)| match fill(template, value) {
-            Ok(filled) => Ok((key.as_str(), Some(filled.to_string()))),
-            Err(problem) => Err(refuse(key, problem)),
+            Ok(filled) => Ok((key.as_str(), filled.to_string())),
+            Err(problem) => Err(refused(scene, key, problem)),
         });
         let filled = filled.collect::<Result<Vec<_>, _>>()?;
-        let mut document = Document::parse(scene.text(), scene.file())?;
-        document.keep(methods);
-        // Checks apply to the unvaried scene.
-        document.root.get_mut().remove("check");
         let left_out = self.unset.iter().map(|key| (key.as_str(), None));
+        let set = filled.iter().map(|(key, value)| (*key, Some(value.as_str())));
         let driver = format!("{} along '{}' at {value}", scene.file(), self.name);
-        for (key, value) in left_out.chain(filled.iter().map(|(key, value)| (*key, value.as_deref()))) {
-            document.set(key, value, &driver).map_err(|problem| refuse(key, problem))?;
-        }
-        let (keys, origin) = shared::keys(document)?;
-        let mut varied = resolved(keys, origin)?;
+        let mut varied = altered(scene, methods, &left_out.chain(set).collect::<Vec<_>>(), &driver)?;
         varied.varied = Some((self.name.clone(), value));
         Ok(varied)
     }

@@ -11,7 +11,7 @@ use super::selection::Names;
 /// A bare number, or a quantity in quotes
 #[derive(Deserialize, JsonSchema)]
 #[serde(untagged)]
-enum NumberKeys {
+pub(crate) enum NumberKeys {
     Number(f64),
     Quantity(String),
 }
@@ -127,7 +127,7 @@ impl CheckKeys {
 
 impl NumberKeys {
     /// The number in the SI unit of a dimension.
-    fn read(self, dimension: Dimension) -> Result<f64, Problem> {
+    pub fn read(self, dimension: Dimension) -> Result<f64, Problem> {
         match self {
             NumberKeys::Number(value) if dimension.is_plain() => Ok(value),
             NumberKeys::Number(value) => {

@@ -1,12 +1,16 @@
 //! Contradictions between the parts of a scene, and between its checks and the scene.
 
-use catalogue::metric::{self, Needs};
+use catalogue::metric::{self, Address, Needs};
 use catalogue::{Problem, Values};
 use material::Material as _;
 
-use super::check::Check;
+use super::body::Body;
+use super::check::{Bound, Check};
+use super::condition::LoadKind;
 use super::material::medium;
-use super::procedure::ProcedureKind;
+use super::method::{Method, Size};
+use super::output::Output;
+use super::procedure::{Procedure, ProcedureKind};
 use super::purpose::Purpose;
 use super::reference::Reference;
 use super::report::{Report, which};
@@ -34,6 +38,9 @@ pub(crate) fn scene(scene: &Scene, report: &Report) {
     let regions = scene.regions.iter().map(|region| region.name.as_str());
     scene.output.check_regions(std::iter::once("body").chain(regions), &report.at("output"));
     scene.output.demands(kind, reference, &report.at("output"));
+    if scene.output.bounds {
+        bounds(scene, report);
+    }
     if let Some(reference) = reference {
         self::reference(reference, scene, report);
     }
@@ -155,7 +162,7 @@ pub(crate) fn check(check: &Check, scene: &Scene, report: &Report) {
             touched && scene.output.moments_about.is_some(),
             "needs a [[tool]] and output.moments_about in the scene",
         ),
-        Needs::Mean => (!scene.output.means.is_empty(), "needs output.means in the scene"),
+        Needs::Mean | Needs::Bounds | Needs::MeanBounds => of_output(check.address.metric.needs, scene),
         Needs::Point => (probed, "needs output.probes in the scene"),
         Needs::Stretch => (!scene.output.stretches.is_empty(), "needs output.stretches in the scene"),
         Needs::Enclosed => (!scene.output.volumes.is_empty(), "needs output.volumes in the scene"),
@@ -180,15 +187,79 @@ pub(crate) fn check(check: &Check, scene: &Scene, report: &Report) {
             "needs output.probes and dynamics with [reference] exact = \"...\" in the scene",
         ),
         Needs::Motion => (moves && probed, "needs output.probes and dynamics in the scene"),
-        Needs::Estimate | Needs::ToolEstimate | Needs::PointEstimate | Needs::SupportEstimate => {
-            estimated(check.address.metric.needs, scene)
-        }
+        Needs::Estimate
+        | Needs::ToolEstimate
+        | Needs::PointEstimate
+        | Needs::SupportEstimate
+        | Needs::ModeEstimate => estimated(check.address.metric.needs, scene),
         Needs::Transfer => (!scene.output.transfers.is_empty(), "needs output.transfer in the scene"),
     };
     if !holds {
         return report.add("metric", Problem::new(needs).found(check.address.to_string()));
     }
     number(check, scene, report);
+}
+
+/// Reports a metric of uncertain inputs that a run of the scene does not give.
+pub(crate) fn varied(address: Address, scene: &Scene, report: &Report) {
+    if matches!(address.metric.needs, Needs::Levels | Needs::Seeds) {
+        return report.add(
+            "",
+            Problem::new("is of several runs").found(address.to_string()).help("name a metric of one run"),
+        );
+    }
+    if matches!(address.metric.kind, metric::Kind::Phase(_)) {
+        let problem = Problem::new("depends on the machine").found(address.to_string());
+        return report.add("", problem.help("name a metric of the solution"));
+    }
+    let bound = Bound::Within { at_least: None, at_most: None };
+    check(&Check { address, methods: Vec::new(), bound, at: String::new() }, scene, report);
+}
+
+/// Reports the parts of a scene for which no strict bounds are known.
+fn bounds(scene: &Scene, report: &Report) {
+    let refuse = |sound: bool, key: &str, problem: &str, help: &str| {
+        if !sound {
+            report.add(key, Problem::new(problem).help(help));
+        }
+    };
+    let own = "output.bounds";
+    let kind = scene.procedure.kind();
+    let problem = format!("is for linear elasticity, not for a {} procedure", kind.name());
+    let help = "take [procedure] kind = \"linear\", or leave it out";
+    refuse(kind == ProcedureKind::Linear, own, &problem, help);
+    let is_file = |method: &Method| matches!(method.size(), Some(Size::File(_)));
+    let filled = match &scene.body {
+        Body::Box { .. } => true,
+        Body::File(_) => scene.methods.iter().all(is_file),
+        _ => false,
+    };
+    let problem = format!("needs a body that tetrahedra fill exactly, not a {}", scene.body.name());
+    refuse(filled, own, &problem, "take a box, or a mesh file as the body and as the size of each method");
+    refuse(scene.tools.is_empty(), own, "is not available with tools", "move a support instead");
+    refuse(
+        scene.foundations.is_empty(),
+        own,
+        "is not available with a [[foundation]]",
+        "leave one of them out",
+    );
+    let staged = scene.supports.iter().any(|support| support.during.is_some());
+    refuse(!staged, own, "is not available with supports of a part of the loading", "leave one of them out");
+    for (key, material) in scene.materials() {
+        let elastic = material.prony.is_empty() && material.active == 0.0;
+        let problem = format!("is for elastic tissue at rest, and {key} is viscous or active");
+        refuse(elastic, own, &problem, "leave one of them out");
+    }
+    for (i, load) in scene.loads.iter().enumerate() {
+        let problem = match load.kind {
+            LoadKind::Body(_) => "has no strict bounds: the stress of the bounds balances no body force",
+            LoadKind::Points { .. } => {
+                "has no strict bounds: the exact energy of a force at a point is infinite"
+            }
+            _ => continue,
+        };
+        refuse(false, &format!("load[{i}]"), problem, "load a surface, or leave output.bounds out");
+    }
 }
 
 /// Whether the scene has what a metric of an estimate needs, and what it needs.
@@ -203,9 +274,28 @@ fn estimated(needs: Needs, scene: &Scene) -> (bool, &'static str) {
         Needs::SupportEstimate => {
             (!scene.supports.is_empty(), "needs output.estimate = true and a [[support]] in the scene")
         }
-        _ => (true, "needs output.estimate = true in the scene"),
+        Needs::ModeEstimate => (
+            matches!(scene.procedure, Procedure::Modes { .. }),
+            "needs output.estimate = true and [procedure] kind = \"modes\" in the scene",
+        ),
+        _ => (
+            !matches!(scene.procedure, Procedure::Modes { .. }),
+            "needs output.estimate = true and displacements in the scene",
+        ),
     };
     (has && scene.output.estimate, needs)
+}
+
+/// Whether the scene has what a metric of means or strict bounds needs, and what it needs.
+fn of_output(needs: Needs, scene: &Scene) -> (bool, &'static str) {
+    let Output { bounds, means, .. } = &scene.output;
+    match needs {
+        Needs::MeanBounds => {
+            (*bounds && !means.is_empty(), "needs output.bounds = true and output.means in the scene")
+        }
+        Needs::Mean => (!means.is_empty(), "needs output.means in the scene"),
+        _ => (*bounds, "needs output.bounds = true in the scene"),
+    }
 }
 
 /// Reports a number of a support, point, tool and the like that the scene does not have.
@@ -222,7 +312,11 @@ fn numbered(needs: Needs, scene: &Scene) -> (usize, &'static str) {
     match needs {
         Needs::Support | Needs::SupportMoment | Needs::SupportEstimate => (scene.supports.len(), "support"),
         Needs::Foundation => (scene.foundations.len(), "foundation"),
-        Needs::Mean => (scene.output.means.len(), "face in output.means"),
+        Needs::ModeEstimate => match scene.procedure {
+            Procedure::Modes { count } => (count, "mode"),
+            _ => (0, "mode"),
+        },
+        Needs::Mean | Needs::MeanBounds => (scene.output.means.len(), "face in output.means"),
         Needs::Point | Needs::Motion | Needs::PointEstimate => {
             (scene.output.probes.len(), "point in output.probes")
         }

@@ -49,6 +49,12 @@ impl Origin {
         self.places.contains_key(key)
     }
 
+    /// Whether the file has `key`, in which brackets stand for any entry of a list.
+    pub(crate) fn has_any(&self, key: &str) -> bool {
+        let key = unnumbered(key);
+        self.places.keys().any(|place| unnumbered(place) == key)
+    }
+
     /// An error at `key`, such as `method[1].size.nodes`, with the value in the file. If the file does not
     /// have the key, the error is at the nearest key above it.
     pub(crate) fn error(&self, kind: ErrorKind, key: &str, problem: Problem) -> SceneError {
@@ -66,6 +72,13 @@ impl Origin {
         let found = problem.found.or(if at == key { text } else { None });
         self.files.error(kind, place, key, Problem { found, ..problem })
     }
+}
+
+/// The key with empty brackets.
+pub(crate) fn unnumbered(key: &str) -> String {
+    let mut parts = key.split('[');
+    let first = parts.next().unwrap_or_default().to_string();
+    parts.fold(first, |whole, part| whole + "[]" + part.split_once(']').map_or("", |(_, rest)| rest))
 }
 
 /// A file with valid TOML syntax.

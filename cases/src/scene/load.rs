@@ -2,12 +2,12 @@
 
 use std::path::Path;
 
-use super::document::{self, Origin};
+use super::altered::resolved;
+use super::document;
 use super::error::{ErrorKind, SceneError, unread};
-use super::report::Report;
 use super::scene::{Scene, SceneKeys};
 use super::set::Override;
-use super::{demands, shared, tissue};
+use super::{sample, shared, tissue};
 
 /// Reads the scene in a file. Messages name the file by `path` as given.
 pub fn load(path: &Path) -> Result<Scene, Vec<SceneError>> {
@@ -28,22 +28,9 @@ pub fn parse(text: &str, file: &str) -> Result<Scene, Vec<SceneError>> {
 /// Reads a scene from text, with some keys set from outside of the text.
 pub fn parse_with(text: &str, file: &str, overrides: &[Override]) -> Result<Scene, Vec<SceneError>> {
     let (keys, origin) = shared::read(text, file, overrides)?;
-    resolved(keys, origin)
-}
-
-pub(crate) fn resolved(keys: SceneKeys, origin: Origin) -> Result<Scene, Vec<SceneError>> {
-    let report = Report::new(&origin);
-    let scene = keys.read(&report);
-    // Parts that could not be resolved are left out of the scene, so the demands of the other parts on them
-    // cannot be checked.
-    if let (Some(scene), true) = (&scene, report.is_clean()) {
-        demands::scene(scene, &report);
-    }
-    let errors = report.finish();
-    match scene {
-        Some(scene) if errors.is_empty() => Ok(scene),
-        _ => Err(errors),
-    }
+    let scene = resolved(keys, origin)?;
+    sample::driven(&scene)?;
+    Ok(scene)
 }
 
 /// The JSON schema of scene files.

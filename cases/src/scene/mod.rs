@@ -7,6 +7,7 @@
 //! the schema, so the reader and the schema cannot diverge. A valid file becomes a [`Scene`], which has no
 //! text left to parse. Methods that several scenes share are in a separate file (`shared`).
 
+mod altered;
 mod available;
 mod axis;
 mod body;
@@ -34,6 +35,7 @@ mod purpose;
 mod reference;
 mod region;
 mod report;
+mod sample;
 #[allow(clippy::module_inception)] // the scene itself
 mod scene;
 mod selection;
@@ -47,6 +49,7 @@ mod tissue;
 mod tool;
 mod touch;
 mod units;
+mod vary;
 mod vocabulary;
 mod words;
 
@@ -82,3 +85,4 @@ pub use selection::Place;
 pub use set::Override;
 pub use study::{Run, Study, load_study, load_study_for, parse_study, study_schema};
 pub use tool::{Friction, Tool};
+pub use vary::{Statistic, StatisticCheck, VariedKey, Vary};

@@ -42,6 +42,9 @@ pub(crate) struct OutputKeys {
     /// Whether the errors of each run are estimated, by a prediction with more shape functions on the same body
     #[serde(default)]
     estimate: bool,
+    /// Whether strict bounds of the strain energy are computed with each run, in linear elasticity
+    #[serde(default)]
+    bounds: bool,
     /// Repetition of the loading after the first solution, as in a simulator, with each frame timed
     repeated: Option<RepeatedKeys>,
 }
@@ -176,6 +179,8 @@ pub struct Output {
     pub pictures: bool,
     /// Whether the errors of each run are estimated.
     pub estimate: bool,
+    /// Whether strict bounds of the strain energy are computed with each run.
+    pub bounds: bool,
     /// Repetition of the loading in frames.
     pub repeated: Option<Repeated>,
 }
@@ -256,6 +261,7 @@ impl OutputKeys {
             beside: self.beside,
             pictures: self.pictures,
             estimate: self.estimate,
+            bounds: self.bounds,
             repeated: self.repeated.map(|keys| keys.read(&report.at("repeated"))),
         }
     }
@@ -339,7 +345,7 @@ impl Output {
                 ("transfer", !self.transfers.is_empty()),
                 ("beside", self.beside.is_some()),
                 ("pictures", self.pictures),
-                ("estimate", self.estimate),
+                ("estimate", self.estimate && kind != ProcedureKind::Modes),
                 ("repeated", self.repeated.is_some() && kind == ProcedureKind::Prepare),
             ] {
                 report.require(!given, key, problem, help);
@@ -349,7 +355,9 @@ impl Output {
         let help = "take [procedure] kind = \"linear\" or \"static\", or leave it out";
         let sound = at_rest || self.repeated.is_none();
         report.require(sound, "repeated", "is of solutions at rest, not of motion", help);
-        report.require(at_rest || !self.estimate, "estimate", "is of solutions at rest, not of motion", help);
+        let estimated = at_rest || kind == ProcedureKind::Modes;
+        let problem = "is of solutions at rest and of vibrations, not of motion";
+        report.require(estimated || !self.estimate, "estimate", problem, help);
         let compared = !self.transfers.is_empty() || matches!(reference, Some(Reference::Method { .. }));
         let help = "add output.transfer = { to = { file = \"...\" }, ... }";
         let sound = compared || self.beside.is_none();

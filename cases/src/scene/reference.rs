@@ -9,6 +9,7 @@ use serde::Deserialize;
 use super::method::{Size, SizeKeys};
 use super::procedure::ProcedureKind;
 use super::report::Report;
+use super::units::{Part, Q};
 use super::vocabulary::{Given, Solutions, Word, settings};
 use crate::exact::SolutionEntry;
 
@@ -24,6 +25,9 @@ pub(crate) struct ReferenceKeys {
     /// A method of this scene, run at another size if `size` is given
     method: Option<String>,
     size: Option<SizeKeys>,
+    /// Largest own error of the method's displacement and tool forces, such as "0.5 %": its spacing is halved until
+    /// it is reached
+    accuracy: Option<Q<Part>>,
     #[serde(flatten)]
     settings: Given<Solutions>,
 }
@@ -44,6 +48,8 @@ pub enum Reference {
         id: String,
         /// Size of the reference run, if it differs from the method's own size.
         size: Option<Size>,
+        /// Largest own error, to which the spacing is reduced.
+        accuracy: Option<f64>,
     },
     /// A stored record.
     Record(PathBuf),
@@ -54,8 +60,13 @@ impl ReferenceKeys {
         let given = self.size.is_some();
         let size = self.size.and_then(|size| size.read(&report.at("size")));
         report.require(!given || self.method.is_some(), "size", "applies to method only", "leave it out");
+        let accuracy = self.accuracy.map(|part| part.0);
+        let sensible = accuracy.is_none_or(|part| part > 0.0 && part < 1.0);
+        report.require(sensible, "accuracy", "is not between 0 and 100 %", "such as \"0.5 %\"");
+        let of_method = accuracy.is_none() || self.method.is_some();
+        report.require(of_method, "accuracy", "applies to method only", "leave it out");
         for name in self.settings.names().filter(|_| self.exact.is_none()) {
-            let help = suggest(name, &["exact", "method", "record", "size"]);
+            let help = suggest(name, &["exact", "method", "record", "size", "accuracy"]);
             report.add(name, Problem::new("is not a known key").help(help));
         }
         match (self.exact, self.method, self.record) {
@@ -63,7 +74,9 @@ impl ReferenceKeys {
                 let values = settings(&word, self.settings, report)?;
                 Some(Reference::Exact { entry: word.0, values })
             }
-            (None, Some(id), None) => (size.is_some() || !given).then_some(Reference::Method { id, size }),
+            (None, Some(id), None) => {
+                (size.is_some() || !given).then_some(Reference::Method { id, size, accuracy })
+            }
             (None, None, Some(record)) => Some(Reference::Record(report.path(&record, "record"))),
             _ => {
                 let help = "give one of exact = \"...\", method = \"...\" and record = \"...\"";

@@ -23,6 +23,7 @@ use super::purpose::{Publication, Purpose};
 use super::reference::{Reference, ReferenceKeys};
 use super::report::Report;
 use super::tool::{Tool, ToolKeys};
+use super::vary::{Vary, VaryKeys};
 
 /// A scene: a body, its material, supports and loads, the methods to run, the reference, and the checks.
 #[derive(Deserialize, JsonSchema)]
@@ -62,6 +63,7 @@ pub(crate) struct SceneKeys {
     reference: Option<ReferenceKeys>,
     #[serde(default)]
     check: Vec<CheckKeys>,
+    vary: Option<VaryKeys>,
 }
 
 /// A checked scene.
@@ -101,6 +103,10 @@ pub struct Scene {
     pub reference: Option<Reference>,
     /// Bounds on the results.
     pub checks: Vec<Check>,
+    /// Uncertain inputs.
+    pub vary: Option<Vary>,
+    /// Number of the sample of its uncertain inputs, from 0; `None` for the scene of the file.
+    pub sample: Option<u32>,
     /// Axis of a study along which the scene is varied, with its value; `None` for the scene of the file.
     pub varied: Option<(String, f64)>,
     pub(crate) origin: Origin,
@@ -165,6 +171,11 @@ impl Scene {
         self.origin.has(key)
     }
 
+    /// Whether the file has `key`, in which brackets stand for any entry of a list.
+    pub(crate) fn has_any(&self, key: &str) -> bool {
+        self.origin.has_any(key)
+    }
+
     /// An error at `key`, such as `support[0].where` or `method[1].size.nodes` (tables of a list count from
     /// 0), that is found only while running: an empty region, an inverted element. The error names file, line
     /// and value.
@@ -196,6 +207,7 @@ impl SceneKeys {
         let output = self.output.unwrap_or_default().read(&report.at("output"));
         let reference = self.reference.and_then(|keys| keys.read(&report.at("reference")));
         let checks = report.each("check", self.check, CheckKeys::read);
+        let vary = self.vary.map(|keys| keys.read(&report.at("vary")));
         let (body, material) = (body?, material?);
         (regions.len() == count && curves.len() == given).then(|| Scene {
             title: self.title,
@@ -215,6 +227,8 @@ impl SceneKeys {
             output,
             reference,
             checks,
+            vary,
+            sample: None,
             varied: None,
             origin: report.origin().clone(),
         })

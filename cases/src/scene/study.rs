@@ -79,6 +79,28 @@ pub struct Run {
 }
 
 impl Run {
+    /// A run of a scene with its own methods, without variations.
+    pub fn of(scene: &Path) -> Run {
+        Run {
+            scene: scene.into(),
+            methods: Vec::new(),
+            adapters: Vec::new(),
+            levels: Vec::new(),
+            poisson: Vec::new(),
+            nodes: Vec::new(),
+            kernels: Vec::new(),
+            support_scales: Vec::new(),
+            essentials: Vec::new(),
+            split: None,
+            seeds: 0,
+            axis: None,
+            quick: false,
+            loops: false,
+            tags: Vec::new(),
+            checks: Vec::new(),
+        }
+    }
+
     /// Methods of the scene that this run uses.
     pub fn chosen<'a>(&'a self, scene: &'a Scene) -> impl Iterator<Item = &'a Method> {
         scene.methods.iter().filter(|m| self.methods.is_empty() || self.methods.contains(&m.id))
@@ -275,9 +297,11 @@ const MOST_SCENES: usize = 5000;
 /// Reports the run table at which a study exceeds the limits; returns the numbers of runs and scenes so far.
 fn few_enough(run: &Run, scene: &Scene, (runs, scenes): (f64, usize), report: &Report) -> (f64, usize) {
     let methods = run.chosen(scene).count() + run.twins(scene).len();
+    let samples = scene.vary.as_ref().map_or(0, |vary| vary.samples as usize);
     let values = run.axis.as_ref().map_or(0, |axis| axis.values.len());
+    let scenes_of_each = if run.axis.is_some() { values } else { samples };
     let varied = [run.poisson.len(), run.levels.len().max(run.nodes.len()), run.kernels.len()];
-    let more = [run.support_scales.len(), run.essentials.len(), run.seeds as usize, values];
+    let more = [run.support_scales.len(), run.essentials.len(), run.seeds as usize, scenes_of_each];
     let product = varied.iter().chain(&more).map(|&n| n.max(1) as f64).product::<f64>();
     let now = (runs + methods as f64 * product, scenes + values);
     if now.0 > MOST_RUNS && runs <= MOST_RUNS {

@@ -24,6 +24,14 @@ macro_rules! dims {
 }
 dims!(Length, Pressure, Density, Force, Time, BodyForce, ContactSlope, SurfaceDamping, Rate, Bytes, Angle);
 
+/// A part of a whole, such as "0.5 %".
+#[derive(JsonSchema)]
+pub(crate) struct Part;
+
+impl Dim for Part {
+    const DIMENSION: Dimension = Dimension::None;
+}
+
 /// A quantity of dimension `D`: text in the file, SI value in the program.
 pub(crate) struct Q<D>(pub f64, PhantomData<D>);
 

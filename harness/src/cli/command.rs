@@ -9,11 +9,13 @@ use super::args::{
     BaselineArgs, ClaimsArgs, CompareArgs, ExportArgs, FieldsArgs, ImportArgs, MeshAction, ReferenceArgs,
     RunArgs, SceneArgs, SchemaOf,
 };
+use super::bound::BoundArgs;
 use super::ci::CiArgs;
 use super::history::HistoryAction;
 use super::init::InitArgs;
 use super::pick::PickArgs;
 use super::solve::SolveArgs;
+use super::vary::VaryArgs;
 use crate::process::leash::LeashArgs;
 use crate::study::VerifyArgs;
 use crate::study::isolated::ExperimentArgs;
@@ -66,6 +68,11 @@ pub enum Command {
     /// Each method runs from coarse to fine until it meets the bound, or costs more than another method that
     /// does. Exit code 0: found; 1: no method meets the bound.
     Pick(PickArgs),
+    /// Enclose the strain energy of a linear scene, and the force of its moving support, between strict bounds
+    ///
+    /// The exact values lie between the bounds. All methods run, and those whose values lie outside are wrong.
+    /// Exit code 0: done; 1: the reference of the scene lies outside; 2: the scene has no bounds, with the reason.
+    Bound(BoundArgs),
     /// Run methods of a scene and write every recorded state of the body, as .vtu files and a .pvd series for
     /// ParaView
     Fields(FieldsArgs),
@@ -87,6 +94,12 @@ pub enum Command {
         #[command(flatten)]
         ci: CiArgs,
     },
+    /// Run the samples of a scene's uncertain inputs, and print the mean, the quantiles and the share of each
+    /// input
+    ///
+    /// The scene has [vary] with the number of samples, the metrics and the distributions of its keys. The scene
+    /// as written runs first.
+    Vary(VaryArgs),
     /// Execute one run of a study in its own process
     #[command(hide = true)]
     Experiment(ExperimentArgs),

@@ -4,6 +4,7 @@
 mod adapter;
 mod args;
 mod baseline;
+mod bound;
 mod ci;
 mod claims;
 mod colour;
@@ -29,6 +30,7 @@ mod run;
 mod scenes;
 mod solve;
 mod text;
+mod vary;
 mod verify;
 
 use cases::scene;
@@ -41,6 +43,7 @@ use crate::study::Line;
 use crate::study::isolated::experiment;
 use args::SchemaOf;
 use baseline::baseline;
+use bound::bound;
 use claims::claims;
 use compare::compare;
 use errors::{fail, unreported};
@@ -53,6 +56,7 @@ use reference::reference;
 use results::report;
 use run::run;
 use solve::solve;
+use vary::vary;
 use verify::verify;
 
 pub use command::{Cli, Command};
@@ -100,9 +104,11 @@ fn act(cli: Cli) -> u8 {
         Command::Import(args) => import::import(&args),
         Command::Run(args) => run(&args),
         Command::Pick(args) => pick::pick(&args),
+        Command::Bound(args) => bound(&args),
         Command::Fields(args) => fields::run(&args),
         Command::Plan { scene, force } => plan(&scene, force),
         Command::Verify { runs, ci } => verify(&runs, &ci),
+        Command::Vary(args) => vary(&args),
         Command::Merge(args) => merge(&args),
         Command::Leash(args) => leash(&args),
         Command::Solve(args) => solve(&args),

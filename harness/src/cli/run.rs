@@ -32,6 +32,12 @@ pub(super) fn run(args: &RunArgs) -> u8 {
         Ok(opened) => opened,
         Err(code) => return code,
     };
+    if let Some(vary) = scene.vary.as_ref().filter(|_| !args.quiet) {
+        let (file, keys) = (args.scene.file.display(), vary.keys.len());
+        eprintln!(
+            "{file}: runs as written; tissuebench vary {file} runs the samples of its {keys} uncertain keys"
+        );
+    }
     if let Err(code) = affordable_methods(&scene, &chosen, args.force) {
         return code;
     }

@@ -214,8 +214,10 @@ pub fn places(outcomes: &[Outcome]) -> String {
         });
         section(&mut text, head, rows.collect());
     }
-    let head = ["estimated error", "of", "value", "unit", "error [%]", "predicted"];
+    let head = ["estimated error", "of", "value", "unit", "error [%]", "saturation", "predicted"];
     section(&mut text, &head, outcomes.iter().flat_map(estimates).collect());
+    let head = ["strict bounds", "of", "lower", "upper", "unit", "half-width [%]"];
+    section(&mut text, &head, outcomes.iter().flat_map(bounds).collect());
     let modes = outcomes.iter().flat_map(|outcome| {
         (1..).zip(&outcome.modes).map(|(number, mode): (usize, _)| {
             let of = |metric: &Metric| {
@@ -232,30 +234,69 @@ pub fn places(outcomes: &[Outcome]) -> String {
 /// Rows of the estimated errors of a run.
 fn estimates(outcome: &Outcome) -> Vec<Vec<String>> {
     let known = |of: Address, scale: f64| outcome.value(of).map(|value| digits(scale * value));
-    let row = |of: &str, value: Option<String>, unit: &str, error: Address, predicted: Option<String>| {
-        let texts = [Some(outcome.identity.method.clone()), Some(of.into()), value, Some(unit.into())];
-        let texts = texts.into_iter().chain([Some(known(error, 100.0)?), predicted]);
-        Some(texts.map(|text| text.unwrap_or_else(|| "-".into())).collect())
-    };
+    let row =
+        |of: &str, value: Option<String>, unit: &str, metrics: [Address; 2], predicted: Option<String>| {
+            let [error, saturation] = metrics;
+            let texts = [Some(outcome.identity.method.clone()), Some(of.into()), value, Some(unit.into())];
+            let texts =
+                texts.into_iter().chain([Some(known(error, 100.0)?), known(saturation, 1.0), predicted]);
+            Some(texts.map(|text| text.unwrap_or_else(|| "-".into())).collect())
+        };
     let tools = outcome.tools.iter().enumerate().map(|(k, name)| {
         let predicted = known(metric::TOOL_FORCE_PREDICTED.at(k), 1.0);
-        row(name, known(metric::TOOL_FORCE.at(k), 1.0), "N", metric::TOOL_FORCE_ESTIMATE.at(k), predicted)
+        let of = [metric::TOOL_FORCE_ESTIMATE.at(k), metric::TOOL_FORCE_SATURATION.at(k)];
+        row(name, known(metric::TOOL_FORCE.at(k), 1.0), "N", of, predicted)
     });
     let supports = outcome.supports.iter().enumerate().map(|(k, support)| {
         let force = digits(support.resultant.force.norm());
-        row(&support.name, Some(force), "N", metric::REACTION_ESTIMATE.at(k), None)
+        let of = [metric::REACTION_ESTIMATE.at(k), metric::REACTION_SATURATION.at(k)];
+        row(&support.name, Some(force), "N", of, None)
     });
     let probes = (0..outcome.probes.len()).map(|k| {
-        let of = format!("point {}", k + 1);
-        row(&of, known(metric::PROBE.at(k), 1e3), "mm", metric::PROBE_ESTIMATE.at(k), None)
+        let name = format!("point {}", k + 1);
+        let of = [metric::PROBE_ESTIMATE.at(k), metric::PROBE_SATURATION.at(k)];
+        row(&name, known(metric::PROBE.at(k), 1e3), "mm", of, None)
+    });
+    let modes = outcome.modes.iter().enumerate().map(|(k, mode)| {
+        let hertz = mode.iter().find(|m| *m.of.metric == metric::FREQUENCY).map(|m| digits(m.value));
+        let of = [metric::FREQUENCY_ESTIMATE.at(k), metric::FREQUENCY_SATURATION.at(k)];
+        row(&format!("mode {}", k + 1), hertz, "Hz", of, known(metric::FREQUENCY_PREDICTED.at(k), 1.0))
     });
     let [largest, energy] = [metric::MAX.whole(), metric::STRAIN_ENERGY.whole()].map(|of| known(of, 1e3));
     let predicted = known(metric::STRAIN_ENERGY_PREDICTED.whole(), 1e3);
+    let displacement = [metric::DISPLACEMENT_ESTIMATE.whole(), metric::DISPLACEMENT_SATURATION.whole()];
+    let of_energy = [metric::STRAIN_ENERGY_ESTIMATE.whole(), metric::STRAIN_ENERGY_SATURATION.whole()];
     let whole = [
-        row("displacement", largest, "mm", metric::DISPLACEMENT_ESTIMATE.whole(), None),
-        row("strain energy", energy, "mJ", metric::STRAIN_ENERGY_ESTIMATE.whole(), predicted),
+        row("displacement", largest, "mm", displacement, None),
+        row("strain energy", energy, "mJ", of_energy, predicted),
     ];
-    tools.chain(supports).chain(probes).chain(whole).flatten().collect()
+    tools.chain(supports).chain(probes).chain(modes).chain(whole).flatten().collect()
+}
+
+/// Rows of the strict bounds of a run.
+fn bounds(outcome: &Outcome) -> Vec<Vec<String>> {
+    let known = |of: &'static Metric| outcome.value(of);
+    let all = [
+        ("strain energy", "mJ", 1e3, [&metric::STRAIN_ENERGY_LOWER, &metric::STRAIN_ENERGY_UPPER]),
+        ("force of the support", "N", 1.0, [&metric::SUPPORT_FORCE_LOWER, &metric::SUPPORT_FORCE_UPPER]),
+        ("loaded faces", "mm", 1e3, [&metric::LOAD_DISPLACEMENT_LOWER, &metric::LOAD_DISPLACEMENT_UPPER]),
+    ];
+    let row = |(of, unit, scale, [lower, upper]): (&str, &str, f64, [&'static Metric; 2])| {
+        let (values, half) = (known(lower).zip(known(upper))?, known(&metric::BOUNDS_HALF_WIDTH)?);
+        let [lower, upper] = [values.0, values.1].map(|value| digits(scale * value));
+        let texts = [outcome.identity.method.as_str(), of, &lower, &upper, unit, &digits(100.0 * half)];
+        Some(texts.map(String::from).to_vec())
+    };
+    let means = (0..outcome.means.len()).flat_map(|index| (0..3).map(move |axis| (index, axis)));
+    let means = means.filter_map(|(index, axis)| {
+        let at = |metric: &'static Metric| outcome.value(metric.components()[axis].at(index));
+        let (lower, upper) = at(&metric::MEAN_LOWER).zip(at(&metric::MEAN_UPPER))?;
+        let of = format!("face {}, {}", index + 1, ["x", "y", "z"][axis]);
+        let [lower, upper] = [lower, upper].map(|value| digits(1e3 * value));
+        let texts = [outcome.identity.method.as_str(), &of, &lower, &upper, "mm", "-"];
+        Some(texts.map(String::from).to_vec())
+    });
+    all.into_iter().filter_map(row).chain(means).collect()
 }
 
 /// Appends a small table after an empty line, if it has rows.

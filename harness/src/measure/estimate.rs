@@ -1,74 +1,81 @@
-//! Estimated errors: the distance of a run from the solution that more shape functions on the same body
-//! predict.
+//! Quantities of a run beside those that more shape functions on the same body predict.
+
+use std::f64::consts::TAU;
 
 use catalogue::metric;
 use geometry::Point3;
 use shape::Vector3;
 
 use super::comparison::compared;
-use super::norms::relative;
+use super::modes::RIGID;
 use super::request::Request;
 use super::solved::{Field, Solved};
 use super::strain_energy;
 use crate::error::Failure;
-use crate::outcome::{Metric, push};
+use crate::outcome::{Estimated, Estimates};
+use crate::procedure::Vibration;
 
 /// Part of the forces within a body below which its resultants are rounding.
 const ROUNDING: f64 = 1e-9;
 
-/// Adds the estimated errors of displacements, probes, tools, supports and energy, relative to the predicted
-/// values, and the predicted values of forces and energy.
+/// Displacement, probes, forces of tools and supports, and energy, each beside its prediction.
 pub(crate) fn estimates(
-    metrics: &mut Vec<Metric>,
     run: &Solved,
     predicted: &Solved,
     field: &Field,
     request: &Request,
-) -> Result<(), Failure> {
+) -> Result<Estimates, Failure> {
     let at = |points: &[Point3]| -> Result<Vec<Vector3>, Failure> {
         Ok(predicted.prepared.source.at_points(points)?.0.rows().apply(&predicted.solution.u))
     };
-    let targets = compared(run, request);
-    if let Some(distance) = relative(&field.values, &at(targets)?) {
-        push(metrics, &metric::DISPLACEMENT_ESTIMATE, distance.rms);
-    }
+    let points = compared(run, request).to_vec();
+    let of = [metric::DISPLACEMENT_ESTIMATE.whole(), metric::DISPLACEMENT_SATURATION.whole()];
+    let mut all = vec![Estimated::vectors(of, &field.values, &at(&points)?)];
     let probes = run.prepared.source.at_points(request.probes)?.0.rows().apply(&run.solution.u);
-    for (index, (own, right)) in probes.iter().zip(at(request.probes)?).enumerate() {
-        apart(metrics, metric::PROBE_ESTIMATE.at(index), (own - right).norm(), right.norm());
+    for (k, (own, right)) in probes.into_iter().zip(at(request.probes)?).enumerate() {
+        let of = [metric::PROBE_ESTIMATE.at(k), metric::PROBE_SATURATION.at(k)];
+        all.push(Estimated::vectors(of, &[own], &[right]));
     }
     if let [Some(own), Some(right)] = [run, predicted].map(|run| run.solution.history.as_ref()) {
-        for (index, (own, right)) in own.last.tools.iter().zip(&right.last.tools).enumerate() {
-            apart(metrics, metric::TOOL_FORCE_ESTIMATE.at(index), own.pushed - right.pushed, right.pushed);
-            push(metrics, metric::TOOL_FORCE_PREDICTED.at(index), right.pushed);
+        for (k, (own, right)) in own.last.tools.iter().zip(&right.last.tools).enumerate() {
+            let of = [metric::TOOL_FORCE_ESTIMATE.at(k), metric::TOOL_FORCE_SATURATION.at(k)];
+            all.push(Estimated::value(of, metric::TOOL_FORCE_PREDICTED.at(k), own.pushed, right.pushed));
         }
     }
     if let (Some(own), Some(right)) = (strain_energy(run)?, strain_energy(predicted)?) {
         // A force that does the energy's work along the largest displacement.
         let size = field.values.iter().map(|u| u.norm()).fold(0.0, f64::max);
-        supports(metrics, run, predicted, right / size);
-        apart(metrics, (&metric::STRAIN_ENERGY_ESTIMATE).into(), own - right, right);
-        push(metrics, &metric::STRAIN_ENERGY_PREDICTED, right);
+        all.extend(supports(run, predicted, right / size));
+        let of = [metric::STRAIN_ENERGY_ESTIMATE.whole(), metric::STRAIN_ENERGY_SATURATION.whole()];
+        all.push(Estimated::value(of, metric::STRAIN_ENERGY_PREDICTED.whole(), own, right));
     }
-    Ok(())
+    Ok(Estimates { points, all })
 }
 
-/// Adds the distances of the supports' forces, relative to the largest of these forces: many a support on
-/// rollers has none. Nothing is added if all are rounding beside `scale`, N.
-fn supports(metrics: &mut Vec<Metric>, run: &Solved, predicted: &Solved, scale: f64) {
+/// Forces of the supports, with errors relative to the largest of them: many a support on rollers has none.
+/// None if all are rounding beside `scale`, N.
+fn supports(run: &Solved, predicted: &Solved, scale: f64) -> Vec<Estimated> {
     let [own, right] = [run, predicted].map(|run| run.solution.support_forces());
     let largest = right.iter().map(|support| support.force.norm()).fold(0.0, f64::max);
     if largest < ROUNDING * scale {
-        return;
+        return Vec::new();
     }
-    for (index, (own, right)) in own.iter().zip(right).enumerate() {
-        apart(metrics, metric::REACTION_ESTIMATE.at(index), (own.force - right.force).norm(), largest);
-    }
+    let each = own.iter().zip(right).enumerate().map(|(k, (own, right))| {
+        let of = [metric::REACTION_ESTIMATE.at(k), metric::REACTION_SATURATION.at(k)];
+        Estimated::vectors(of, &[own.force], &[right.force]).relative_to(largest)
+    });
+    each.collect()
 }
 
-/// Adds a distance relative to a value, unless the value is zero.
-fn apart(metrics: &mut Vec<Metric>, of: metric::Address, distance: f64, value: f64) {
-    let relative = (distance / value).abs();
-    if relative.is_finite() {
-        push(metrics, of, relative);
-    }
+/// Frequencies of the reported modes, Hz. Rigid motions have none.
+pub(crate) fn frequencies(run: &Vibration, predicted: Option<&Vibration>) -> Estimates {
+    let right = predicted.iter().flat_map(|vibration| &vibration.modes.squared);
+    let each = run.modes.squared.iter().zip(right).take(run.count).enumerate();
+    let elastic = each.filter(|(_, (_, right))| **right > RIGID * RIGID * run.modes.scale);
+    let all = elastic.map(|(k, (own, right))| {
+        let [own, right] = [own, right].map(|squared| squared.max(0.0).sqrt() / TAU);
+        let of = [metric::FREQUENCY_ESTIMATE.at(k), metric::FREQUENCY_SATURATION.at(k)];
+        Estimated::value(of, metric::FREQUENCY_PREDICTED.at(k), own, right)
+    });
+    Estimates { points: Vec::new(), all: all.collect() }
 }

@@ -46,7 +46,7 @@ use norms::{difference, norms, relative};
 
 pub(crate) use displacement::{displacement, free_norm};
 pub(crate) use energies::energies;
-pub(crate) use estimate::estimates;
+pub(crate) use estimate::{estimates, frequencies};
 pub(crate) use face_results::places;
 pub(crate) use modes::report as report_modes;
 pub(crate) use over_time::over_time;

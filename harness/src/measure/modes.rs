@@ -17,7 +17,7 @@ use crate::procedure::Vibration;
 const SLOW: f64 = 0.9;
 /// Fraction of the frequency of a shear wave across the body below which a mode is rigid. Rounding leaves
 /// 1e-6.
-const RIGID: f64 = 1e-3;
+pub(super) const RIGID: f64 = 1e-3;
 /// Fraction of the shear wave's squared frequency below which a mode's squared frequency is rounding.
 /// Rounding leaves 1e-10; a cantilever 1000 times as long as thick has 1e-8.
 const NO_ENERGY: f64 = 1e-9;

@@ -1,6 +1,7 @@
 //! Results of a run: identity, metrics, times and fields.
 
 mod counters;
+mod estimated;
 mod face_results;
 mod latency;
 mod load_step;
@@ -20,6 +21,7 @@ use records::{Record, Reference, SurfaceField};
 
 use crate::error::Failure;
 pub use counters::Counters;
+pub(crate) use estimated::{Estimated, Estimates, SATURATED};
 pub use face_results::{FaceMean, SupportForce};
 pub(crate) use latency::FOR_P99;
 pub use latency::Latency;
@@ -175,6 +177,8 @@ pub struct Outcome {
     pub warnings: Vec<Warning>,
     /// Reference that the run is compared with.
     pub reference: Option<Reference>,
+    /// Quantities beside their predictions, if requested.
+    pub(crate) estimates: Option<Estimates>,
 }
 
 /// Failed run without results.
@@ -224,6 +228,7 @@ impl Outcome {
             stalled: None,
             warnings: Vec::new(),
             reference: None,
+            estimates: None,
         }
     }
 

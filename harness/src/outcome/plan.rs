@@ -74,6 +74,8 @@ stages! {
     Schemes = "transfer schemes",
     /// Prediction with more shape functions, from which errors are estimated.
     Estimate = "error estimate",
+    /// Strict bounds of the strain energy.
+    Bounds = "strict bounds",
 }
 
 /// Stage of a plan with its decision.

@@ -44,7 +44,7 @@ pub fn check(method: &Discretisation, setup: &Setup) -> Result<(), Failure> {
 }
 
 /// Returns the faces on which a load acts.
-pub(super) fn loaded(load: &Load, mesh: &Mesh) -> Result<Patch, Failure> {
+pub(crate) fn loaded(load: &Load, mesh: &Mesh) -> Result<Patch, Failure> {
     faces(&load.key, &load.place, load.along_normal, mesh)
 }
 

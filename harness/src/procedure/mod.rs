@@ -26,6 +26,12 @@ pub(crate) use refine::refined;
 pub(crate) use solution::{Carried, Solution, StepHistory, Vibration};
 pub(crate) use statics::{solves, static_params, with_static_problem};
 
+/// Predicts the modes of another method.
+pub(crate) fn predict_modes(problem: &Problem, meters: &mut Meters) -> Result<Solution, Failure> {
+    let Procedure::Modes { count } = problem.setup.procedure else { return Ok(Solution::default()) };
+    modes::predicted(problem, count, meters)
+}
+
 /// Predicts the solution near that of another method. The linear procedure gives the solution itself.
 pub(crate) fn predict(
     problem: &Problem,

@@ -27,12 +27,31 @@ pub(super) fn stages(setup: &Setup) -> Stages {
     }
 }
 
-/// Assembles the mass matrix and computes the modes, of which `count` are reported.
+/// Computes the modes, of which `count` are reported.
 pub(super) fn solve(problem: &Problem, count: usize, meters: &mut Meters) -> Result<Solution, Failure> {
+    let Some(kind) = problem.setup.mass else {
+        let help = "give mass = \"consistent\", \"at-points\", \"lumped\" or \"transformed\"";
+        return Err(Failure::input(Key::Method("mass"), "is missing, but vibrations need a mass", help));
+    };
+    solve_with(problem, count, kind, meters)
+}
+
+/// Predicts the modes of other elements by more shape functions. Lumped masses of quadratic elements give
+/// frequencies that are no better than those of linear ones.
+pub(super) fn predicted(problem: &Problem, count: usize, meters: &mut Meters) -> Result<Solution, Failure> {
+    solve_with(problem, count, scene::Mass::Consistent, meters)
+}
+
+fn solve_with(
+    problem: &Problem,
+    count: usize,
+    kind: scene::Mass,
+    meters: &mut Meters,
+) -> Result<Solution, Failure> {
     let Problem { method, setup, prepared, .. } = *problem;
     let Meters { timings, counters, .. } = meters;
     let nodes = method.nodes();
-    let mass = timings.time("assemble", || mass(problem))?;
+    let mass = timings.time("assemble", || mass(problem, kind))?;
     counters.mass_nodes += nodes.len() as u64;
     let weak = prepared.weak();
     let system = prepared.problem(nodes, setup, &[], &weak);
@@ -43,17 +62,13 @@ pub(super) fn solve(problem: &Problem, count: usize, meters: &mut Meters) -> Res
     Ok(Solution { vibration: Some(Vibration { modes, count, mass: total }), ..Solution::default() })
 }
 
-fn mass(problem: &Problem) -> Result<Mass, Failure> {
+fn mass(problem: &Problem, kind: scene::Mass) -> Result<Mass, Failure> {
     let Problem { method, setup, prepared, .. } = *problem;
     let volume = &prepared.volume;
     let density = setup.density()?;
     let lumped = || {
         let rows = &volume.rows;
         lumped_mass(rows, &density, &volume.region, Lumping::for_table(rows))
-    };
-    let Some(kind) = setup.mass else {
-        let help = "give mass = \"consistent\", \"at-points\", \"lumped\" or \"transformed\"";
-        return Err(Failure::input(Key::Method("mass"), "is missing, but vibrations need a mass", help));
     };
     Ok(match (kind, method.interpolates) {
         // The quadrature of the forces may give a singular mass matrix: four points of a tet10 have rank 4.

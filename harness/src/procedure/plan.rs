@@ -56,6 +56,10 @@ pub(crate) fn plan(method: &Discretisation, setup: &Setup, wanted: Wanted) -> Pl
     if setup.output.estimate {
         add(StageName::Estimate, estimate(method));
     }
+    if setup.output.bounds {
+        let why = "a displacement field and a stress field in equilibrium on tetrahedra of the same body";
+        add(StageName::Bounds, (true, why.into()));
+    }
     if let Some(why) = stages.no_transfer {
         plan.skip(StageName::Transfer, why);
         plan.skip(StageName::Schemes, why);

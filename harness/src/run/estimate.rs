@@ -5,21 +5,22 @@
 //! which is of higher order. Points of contact take the friction of the run's next point.
 
 use cases::scene::Dilation;
-use catalogue::{metric, warning};
+use catalogue::warning;
 use geometry::{Point3, Search};
 
 use crate::error::Failure;
 use crate::measure::{self, Field, Request, mean_pressure};
 use crate::outcome::timing::Meters;
-use crate::outcome::{Counters, Outcome, Warning};
+use crate::outcome::{Counters, Estimates, Outcome, Warning};
 use crate::prepare::{Prepared, prepare};
-use crate::procedure::{Carried, Problem, Wanted, plan, predict};
+use crate::procedure::{Carried, Problem, Vibration, Wanted, plan, predict, predict_modes};
+use crate::scenario::setup::Setup;
 
 /// Most nodes of elements with a pressure field, whose systems are always factored: each of 45,000 nodes
 /// takes 15 s.
 const MOST_MIXED: usize = 50_000;
 
-/// Adds the estimated errors to the metrics of a run.
+/// Estimates the errors of a run.
 ///
 /// # Errors
 /// Errors of the richer method's tables or of its linear system.
@@ -29,10 +30,9 @@ pub(super) fn estimate(
     field: &Field,
     request: &Request,
     counters: &mut Counters,
-) -> Result<(), Failure> {
+) -> Result<Estimates, Failure> {
     let measure::Solved { method, setup, prepared, solution } = *run;
-    let poisson = setup.materials.iter().map(|material| material.poisson()).fold(0.0, f64::max);
-    let finer = method.enriched(poisson);
+    let finer = method.enriched(poisson(setup));
     if finer.dilation == Dilation::Mixed && finer.nodes().len() > MOST_MIXED {
         return Err(Failure::Run(format!(
             "it takes a factored system of {} nodes with pressures; at most {MOST_MIXED} are supported",
@@ -58,9 +58,9 @@ pub(super) fn estimate(
     counters.predicted_dofs += predicted.dofs as u64;
     let linearised = predicted.linearised;
     let predicted = measure::Solved { method: &finer, setup, prepared: &tables, solution: &predicted };
-    measure::estimates(&mut outcome.metrics, run, &predicted, field, request)?;
+    let estimates = measure::estimates(run, &predicted, field, request)?;
     if linearised {
-        let error = outcome.value(&metric::DISPLACEMENT_ESTIMATE).unwrap_or(0.0);
+        let error = estimates.of_displacement();
         let message = format!(
             "no equilibrium with more shape functions was found near this one, so that the errors are estimated from the \
              linearised problem ({:.0} % of the displacement): expect too large ones; take a finer mesh or a smaller load",
@@ -68,7 +68,32 @@ pub(super) fn estimate(
         );
         outcome.warnings.push(Warning::new(&warning::ROUGH_ESTIMATE, error, "output.estimate", message));
     }
-    Ok(())
+    Ok(estimates)
+}
+
+/// Estimates the errors of the reported frequencies, by the frequencies of the richer method with the same
+/// numbers.
+///
+/// # Errors
+/// Errors of the richer method's tables or modes, and of a body that needs a pressure field.
+pub(super) fn estimate_modes(run: &measure::Solved, own: &Vibration) -> Result<Estimates, Failure> {
+    let setup = run.setup;
+    let finer = run.method.enriched(poisson(setup));
+    if finer.dilation == Dilation::Mixed {
+        let problem = "its elements would need a pressure field, with which no vibrations are solved";
+        return Err(Failure::Run(problem.into()));
+    }
+    let plan = plan(&finer, setup, Wanted::default());
+    let mut meters = Meters::default();
+    let tables = prepare(&finer, setup, &plan, &mut meters.counters)?;
+    let problem = Problem { method: &finer, setup, prepared: &tables, plan: &plan, watch: None, probes: &[] };
+    let solution = predict_modes(&problem, &mut meters)?;
+    Ok(measure::frequencies(own, solution.vibration.as_ref()))
+}
+
+/// The largest Poisson's ratio of a body.
+fn poisson(setup: &Setup) -> f64 {
+    setup.materials.iter().map(|material| material.poisson()).fold(0.0, f64::max)
 }
 
 /// Index of the point of `from` next to each of the points `to`; empty without points.

@@ -6,14 +6,14 @@ use std::path::Path;
 use std::sync::Arc;
 
 use cases::scene::{self, ErrorKind, Family, Reference, Scene, Size, Target};
-use catalogue::{metric, warning};
 use geometry::Point3;
 use interp::Scheme;
 
+use super::levels::report_estimates;
 use super::memory::return_freed_memory;
 use super::stored_reference::Stored;
 use super::symmetry::Mirror;
-use super::witness::own_error;
+use super::witness::{own_error, reference_coarser};
 use super::{FinishedRun, run};
 use crate::discretise::Discretisation;
 use crate::error::Failure;
@@ -24,7 +24,7 @@ use crate::outcome::{
 };
 use crate::prepare::region_check;
 use crate::procedure::{Schemes, Wanted, plan};
-use crate::scenario::{Scenario, point, rule, tools, warnings};
+use crate::scenario::{Scenario, point, rule, tools, uncut, warnings};
 
 /// Data shared by all runs of a scene at one Poisson's ratio: probes, targets, transfer schemes and
 /// references.
@@ -86,9 +86,12 @@ impl<'a> Group<'a> {
         let mut group = Group::prepared(scene, repeats)?;
         (group.poisson, group.watch) = (poisson, watch);
         match group.scene.reference.clone() {
-            Some(Reference::Method { id, size }) => {
-                let method = group.run_reference(&id, size.as_ref())?;
-                group.know_reference(&method);
+            Some(Reference::Method { id, size, accuracy }) => {
+                let method = group.resized(&id, size.as_ref());
+                let known = group.solve_reference(&method, size.is_some())?;
+                if let Some(accuracy) = accuracy.filter(|_| known) {
+                    group.refine_reference(method, accuracy)?;
+                }
             }
             Some(Reference::Record(path)) => {
                 let stored = Stored::load(&group.scene, &path)?;
@@ -151,21 +154,32 @@ impl<'a> Group<'a> {
     ) -> Result<measure::Reference, Failure> {
         let mut group = Group::unreferenced(scene, Repeats::ONCE)?;
         (group.targets, group.watch) = (targets, Some(Arc::new(watch)));
-        group.run_reference(id, None)?;
+        group.run_reference(&group.resized(id, None), false)?;
         match group.reference_stalled {
             Some(failure) => Err(failure),
             None => Ok(group.reference.expect("it has run")),
         }
     }
 
-    fn run_reference(&mut self, id: &str, size: Option<&Size>) -> Result<scene::Method, Failure> {
+    /// A method of the scene, at another size if given.
+    fn resized(&self, id: &str, size: Option<&Size>) -> scene::Method {
         let mut method = self.scene.method(id).expect("validated").clone();
-        if let Some(size) = size {
-            method.resize(size);
-        }
-        let (reference, stalled) = self.compared(method.clone(), size.is_some())?;
+        size.into_iter().for_each(|size| method.resize(size));
+        method
+    }
+
+    /// Solves the reference, whose size may differ from that of the scene's method.
+    fn run_reference(&mut self, method: &scene::Method, resized: bool) -> Result<(), Failure> {
+        let (reference, stalled) = self.compared(method.clone(), resized)?;
         (self.reference, self.reference_stalled) = (Some(reference), stalled);
-        Ok(method)
+        Ok(())
+    }
+
+    /// Solves the reference and estimates its own error. Returns whether it reached the whole load.
+    pub(super) fn solve_reference(&mut self, method: &scene::Method, resized: bool) -> Result<bool, Failure> {
+        self.run_reference(method, resized)?;
+        self.know_reference(method);
+        Ok(self.reference_stalled.is_none())
     }
 
     /// Estimates the own error of the reference, which was solved with this method.
@@ -268,6 +282,19 @@ impl<'a> Group<'a> {
         Scenario { case: self.case.clone(), scene, method, level, poisson: self.poisson, size_key: None }
     }
 
+    pub(super) fn scene(&self) -> &Scene {
+        &self.scene
+    }
+
+    pub(super) fn own_reference(&self) -> Option<&measure::Reference> {
+        self.reference.as_ref()
+    }
+
+    /// Adds a warning of the reference.
+    pub(super) fn warn_of_reference(&mut self, warning: Warning) {
+        self.reference.iter_mut().for_each(|reference| reference.warnings.push(warning.clone()));
+    }
+
     /// Probe positions, m.
     pub(super) fn probes(&self) -> &[Point3] {
         &self.probes
@@ -297,6 +324,9 @@ impl<'a> Group<'a> {
         return_freed_memory();
         let mut timings = Timings::default();
         let discretisation = timings.time("mesh", || scenario.discretise())?;
+        if self.scene.output.bounds {
+            uncut(&self.scene, discretisation.mesh()).map_err(|failure| scenario.locate(failure))?;
+        }
         let size = size(&discretisation);
         let setup =
             scenario.setup().map_err(|failure| Unfinished { failure, plan: Plan::default(), size })?;
@@ -326,6 +356,11 @@ impl<'a> Group<'a> {
                 solved.outcome.relaxed = solved.outcome.relaxed.map(locate);
                 let nodes = solved.outcome.size.nodes as usize;
                 self.hold_against(&mut solved.outcome);
+                if solved.outcome.estimates.is_some() {
+                    timings.time("estimate-coarser", || {
+                        report_estimates(&mut solved.outcome, scenario, &self.probes);
+                    });
+                }
                 let of_scene = || warnings(&self.scene, &scenario.method, discretisation.mesh(), nodes);
                 solved.outcome.warn(timings.time("mesh", of_scene));
                 timings.join("mesh");
@@ -373,7 +408,9 @@ impl<'a> Group<'a> {
     pub(super) fn hold_against(&self, outcome: &mut Outcome) {
         let poisson = outcome.identity.poisson;
         outcome.reference = self.reference().map(|reference| records::Reference { poisson, ..reference });
-        outcome.warnings.extend(outcome.reference.as_ref().and_then(|reference| coarser(reference, outcome)));
+        outcome
+            .warnings
+            .extend(outcome.reference.as_ref().and_then(|reference| reference_coarser(reference, outcome)));
     }
 
     /// Plan and sizes of one method, without running the method.
@@ -394,30 +431,13 @@ impl<'a> Group<'a> {
         let schemes = match &self.scene.reference {
             _ if !targets || self.schemes.is_empty() => Schemes::NotRequested,
             _ if method.interpolates && self.targets == method.nodes() => Schemes::OwnNodes,
-            Some(Reference::Method { id, size: None }) if *id == scenario.method.id => Schemes::OfReference,
+            Some(Reference::Method { id, size: None, accuracy: None }) if *id == scenario.method.id => {
+                Schemes::OfReference
+            }
             _ => Schemes::Compared,
         };
         Wanted { targets, schemes }
     }
-}
-
-/// Relative errors below this limit are attributed to rounding.
-const ROUNDING: f64 = 1e-9;
-
-/// Warning that the run has more nodes than its reference, whose error may then dominate.
-fn coarser(reference: &records::Reference, outcome: &Outcome) -> Option<Warning> {
-    let error = outcome.value(&metric::RELATIVE_RMS).filter(|error| *error > ROUNDING)?;
-    let own = outcome.size.nodes;
-    let known = reference.nodes;
-    (known > 0 && own > known).then(|| {
-        let message = format!(
-            "with {own} nodes the run is finer than its reference, {}: the difference of {:.1} % may be the error of \
-             the reference; take a finer reference (reference.size)",
-            reference.name(),
-            100.0 * error
-        );
-        Warning::new(&warning::REFERENCE_COARSER, own as f64 / known as f64, "reference", message)
-    })
 }
 
 /// Numbers of nodes and elements, which are known before any table is filled.

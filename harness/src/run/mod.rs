@@ -1,10 +1,13 @@
 //! A run: prepare, assemble, factor and solve (timed separately and repeated), then errors, probes and
 //! transfers.
 
+mod accurate;
+pub(crate) mod bounds;
 mod estimate;
 mod export;
 mod external_problem;
 mod group;
+mod levels;
 mod memory;
 mod repeated;
 pub(crate) mod stored_reference;
@@ -26,12 +29,13 @@ use crate::measure::{
     report_modes, report_steps, states, surface, transfers, warnings,
 };
 use crate::outcome::timing::{Meters, Timed, Timings};
-use crate::outcome::{Counters, Identity, Outcome, Plan, Size, StageName, Warning};
+use crate::outcome::{Counters, Estimates, Identity, Outcome, Plan, Size, StageName, Warning};
 use crate::prepare::{Prepared, check_means, prepare};
 use crate::procedure::{self, Problem, Solution, conclude, refined};
 use crate::process;
 use crate::scenario::setup::Setup;
-use estimate::estimate;
+use bounds::add_bounds;
+use estimate::{estimate, estimate_modes};
 use memory::Baseline;
 use repeated::repeated;
 
@@ -93,7 +97,7 @@ fn on_pool(
             outcome.states = Some(states(&run, usize::MAX)?);
         }
         if solution.u.is_empty() {
-            unloaded(&mut outcome, &run)?;
+            unloaded(&mut outcome, &run, timings)?;
         } else {
             loaded(&mut outcome, &run, request, timings, counters)?;
         }
@@ -189,13 +193,28 @@ fn once(
     Ok(Pass { refined, prepared, solution })
 }
 
+/// Keeps the estimates of a run, or warns that there are none.
+fn estimated(outcome: &mut Outcome, found: Result<Estimates, Failure>) {
+    match found {
+        Ok(estimates) => outcome.estimates = Some(estimates),
+        Err(failure) => {
+            let message = format!("the error can't be estimated: {failure}");
+            outcome.warnings.push(Warning::new(&warning::NO_ESTIMATE, 0.0, "output.estimate", message));
+        }
+    }
+}
+
 /// Completes a run without a displacement: a run that ends before the solution, or a modal analysis. Adds the
 /// modes and the properties of the tables.
-fn unloaded(outcome: &mut Outcome, run: &measure::Solved) -> Result<(), Failure> {
+fn unloaded(outcome: &mut Outcome, run: &measure::Solved, timings: &mut Timings) -> Result<(), Failure> {
     if let Some(vibration) = &run.solution.vibration {
         let found = report_modes(run, vibration)?;
         (outcome.metrics, outcome.modes, outcome.size.dofs) = (found.metrics, found.modes, found.dofs as u64);
         outcome.warnings = found.warnings;
+        if outcome.plan.runs(StageName::Estimate) {
+            let found = timings.time("estimate", || estimate_modes(run, vibration));
+            estimated(outcome, found);
+        }
     }
     of_tables(&mut outcome.metrics, run.prepared);
     Ok(())
@@ -240,14 +259,14 @@ fn loaded(
         warnings(run, recovered.as_ref(), &outcome.metrics, &outcome.probes, outcome.last.as_ref())?;
     outcome.warnings.extend(bridging);
     if outcome.plan.runs(StageName::Estimate) {
-        let estimated = match &solution.forces {
+        let found = match &solution.forces {
             None => timings.time("estimate", || estimate(outcome, run, &displaced, request, counters)),
             Some(_) => Err(Failure::Run("the run ended by relaxation".into())),
         };
-        if let Err(failure) = estimated {
-            let message = format!("the error can't be estimated: {failure}");
-            outcome.warnings.push(Warning::new(&warning::NO_ESTIMATE, 0.0, "output.estimate", message));
-        }
+        estimated(outcome, found);
+    }
+    if outcome.plan.runs(StageName::Bounds) {
+        timings.time("bounds", || add_bounds(outcome, run, counters))?;
     }
     if let Some(ask) = request.repeated.filter(|_| whole && run.method.outside.is_none()) {
         outcome.latencies =

@@ -12,11 +12,12 @@
 use cases::scene::{Cloud, Dilation, Element, Family, Fem, Method, Size};
 use catalogue::Dimension;
 use catalogue::metric::{self, Kind, Needs};
+use catalogue::warning;
 use geometry::CellKind;
 
 use crate::error::Failure;
 use crate::measure::{OwnError, Reference};
-use crate::outcome::Metric;
+use crate::outcome::{Metric, Outcome, Warning};
 
 /// Ratio of the nodes of a mesh to those of a mesh of twice the spacing.
 const COARSER: usize = 8;
@@ -90,19 +91,26 @@ fn witnesses(reference: &Method, nodes: usize) -> Result<Vec<Method>, String> {
             )),
         };
     }
-    let size = coarser(size, nodes)?;
-    let mut same = reference.clone();
-    if let Family::External(external) = &reference.family {
-        same.family = Family::Fem(external.elements.clone());
-    }
-    same.resize(&size);
-    let mut all = vec![same];
+    let mut all = vec![coarser_version(reference, nodes)?];
+    let size = fineness(&all[0]);
     if let Some(element) = second {
         // As many nodes as the reference has.
         let size = if let Size::Nodes(_) = size { Size::Nodes(nodes) } else { size };
         all.push(of_second(element, size));
     }
     Ok(all)
+}
+
+/// A method, which gave this number of nodes, with twice the spacing, or the reason why there is none. An
+/// external solver is replaced by its elements.
+pub(super) fn coarser_version(method: &Method, nodes: usize) -> Result<Method, String> {
+    let size = coarser(fineness(method), nodes)?;
+    let mut same = method.clone();
+    if let Family::External(external) = &method.family {
+        same.family = Family::Fem(external.elements.clone());
+    }
+    same.resize(&size);
+    Ok(same)
 }
 
 /// Whether the size is a file of nodes, which has no cells.
@@ -124,7 +132,7 @@ fn is_first_order(family: &Family) -> bool {
 }
 
 /// Size setting of a method.
-fn fineness(method: &Method) -> Size {
+pub(super) fn fineness(method: &Method) -> Size {
     let of_cloud = |cloud: &Cloud| match cloud {
         Cloud::Mesh { size, .. } => size.clone(),
         Cloud::Uniform { nodes, .. } | Cloud::Graded { nodes, .. } | Cloud::Refined { nodes, .. } => {
@@ -149,6 +157,25 @@ fn coarser(size: Size, nodes: usize) -> Result<Size, String> {
         Size::Cells { cells, grading } => Ok(Size::Cells { cells: cells.map(|n| n.div_ceil(2)), grading }),
         Size::File(_) => Err("its nodes come from a file, and no coarser nodes are known".into()),
     }
+}
+
+/// Relative errors below this limit are attributed to rounding.
+const ROUNDING: f64 = 1e-9;
+
+/// Warning that the run has more nodes than its reference, whose error may then dominate.
+pub(super) fn reference_coarser(reference: &records::Reference, outcome: &Outcome) -> Option<Warning> {
+    let error = outcome.value(&metric::RELATIVE_RMS).filter(|error| *error > ROUNDING)?;
+    let own = outcome.size.nodes;
+    let known = reference.nodes;
+    (known > 0 && own > known).then(|| {
+        let message = format!(
+            "with {own} nodes the run is finer than its reference, {}: the difference of {:.1} % may be the error of \
+             the reference; take a finer reference (reference.size)",
+            reference.name(),
+            100.0 * error
+        );
+        Warning::new(&warning::REFERENCE_COARSER, own as f64 / known as f64, "reference", message)
+    })
 }
 
 #[cfg(test)]

@@ -104,7 +104,7 @@ fn memory() -> f64 {
 
 /// Returns the scene's reference method, if the reference is computed, and the size given for it.
 fn reference(scene: &Scene) -> Option<(Method, Option<&Size>)> {
-    let Some(Reference::Method { id, size }) = &scene.reference else { return None };
+    let Some(Reference::Method { id, size, .. }) = &scene.reference else { return None };
     let mut method = scene.method(id)?.clone();
     if let Some(size) = size {
         method.resize(size);

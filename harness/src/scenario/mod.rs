@@ -26,7 +26,7 @@ pub(crate) use body::point;
 pub(crate) use body_mesh::coarse;
 pub(crate) use estimate::{Estimate, estimate, of_reference, too_large};
 pub(crate) use identity::{method_identity, purpose, rule};
-pub(crate) use notes::warnings;
+pub(crate) use notes::{uncut, warnings};
 pub(crate) use tools::{PlacedTool, tools};
 
 use cases::exact::{Exact, Medium};

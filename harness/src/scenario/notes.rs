@@ -9,6 +9,7 @@ use geometry::{Mesh, pieces, quality};
 
 use super::file_body;
 use crate::discretise::place::{self, tolerance};
+use crate::error::{Failure, Key};
 use crate::outcome::Warning;
 
 /// Relative difference between requested and actual node counts above which a warning is issued.
@@ -34,6 +35,17 @@ pub(crate) fn warnings(scene: &Scene, method: &scene::Method, mesh: &Mesh, nodes
     let of_size = if let Some(Size::File(file)) = method.size() { Some(file) } else { None };
     found.extend(of_size.or(of_body).and_then(|file| left_out(&file.path)));
     found
+}
+
+/// Refuses strict bounds of a body whose regions end within cells of this mesh.
+///
+/// # Errors
+/// The first such region.
+pub(crate) fn uncut(scene: &Scene, mesh: &Mesh) -> Result<(), Failure> {
+    let cut = scene.regions.iter().enumerate().find_map(|(index, region)| cut(index, region, mesh));
+    let Some(warning) = cut else { return Ok(()) };
+    let problem = format!("has no strict bounds on this mesh: {}", warning.message);
+    Err(Failure::input(Key::Scene(warning.place), problem, "end the region at faces of the mesh"))
 }
 
 /// Warns of parts of a mesh file other than its mesh.

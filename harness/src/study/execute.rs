@@ -13,8 +13,9 @@ use std::time::{Duration, Instant};
 use super::args::VerifyArgs;
 use super::files::{files, versions};
 use super::isolated::Apart;
-use super::plan::{QUICK, REPEATS, StudyPlan};
+use super::plan::StudyPlan;
 use super::progress::{Progress, Running};
+use super::samples;
 use super::store::{Accept, Store};
 use super::task::{TaskResult, failed, key};
 use super::tasks::{Task, named};
@@ -186,7 +187,7 @@ impl StudyPlan {
         let task = &self.tasks[index];
         let (_, text, scene) = &self.scenes[task.scene];
         let options = self.options(task, args);
-        let repeats = if args.quick { QUICK } else { REPEATS };
+        let repeats = self.repeats(task, args);
         let Task { method, level, poisson, .. } = task;
         let RunOptions { picture, frames, split, states: _ } = options;
         let versions = versions(scene, method);
@@ -213,7 +214,7 @@ impl StudyPlan {
     ) -> TaskResult {
         let task = &self.tasks[index];
         let (_, _, scene) = &self.scenes[task.scene];
-        let repeats = if args.quick { QUICK } else { REPEATS };
+        let repeats = self.repeats(task, args);
         let mut shared = Counters::default();
         let group = group.get_or_insert_with(|| {
             let group =
@@ -227,6 +228,9 @@ impl StudyPlan {
             Ok(group) => self.compared(task, group, self.options(task, args)),
             Err(failure) => TaskResult::failed(&case_name(scene), &task.method, failure),
         };
+        if let (Some(vary), Some(_)) = (&scene.vary, scene.sample) {
+            result = samples::condensed(vary, result);
+        }
         result.seconds = start.elapsed().as_secs_f64();
         result.counters += shared;
         result

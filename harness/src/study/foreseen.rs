@@ -4,7 +4,7 @@
 use std::collections::BTreeMap;
 
 use super::args::VerifyArgs;
-use super::plan::{QUICK, REPEATS, StudyPlan};
+use super::plan::StudyPlan;
 use super::store::Store;
 use super::tasks::Task;
 use crate::scenario::{estimate, of_reference};
@@ -53,7 +53,7 @@ impl StudyPlan {
 
     /// Estimated time of a task with its repeats, s.
     fn estimated(&self, task: &Task, args: &VerifyArgs) -> f64 {
-        let repeats = if args.quick { QUICK } else { REPEATS };
+        let repeats = self.repeats(task, args);
         let once = estimate(&self.scenes[task.scene].2, &task.method.family).seconds;
         // Short runs are repeated for their times.
         once * (1.0 + repeats.seconds / once).min(repeats.most as f64)

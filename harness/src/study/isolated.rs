@@ -29,6 +29,9 @@ pub struct ExperimentArgs {
     /// Indices of the run tables that request the run
     #[arg(long, value_delimiter = ',')]
     pub tables: Vec<usize>,
+    /// Number of the sample of uncertain inputs, from 0
+    #[arg(long)]
+    pub sample: Option<u32>,
     /// Key of the stored result
     #[arg(long)]
     pub key: String,
@@ -73,7 +76,7 @@ impl<'a> Apart<'a> {
         // A killed process leaves its temporary files behind, so it gets its own folder.
         let work = adapter::Folder::new().map_err(std::io::Error::other);
         let ended = work.and_then(|work| {
-            let mut command = self.command(&task.runs, key, &answer)?;
+            let mut command = self.command(&task.runs, plan.sample(task), key, &answer)?;
             self.watch(command.env("TMPDIR", work.path()))
         });
         // The answer file is either complete or absent.
@@ -89,7 +92,13 @@ impl<'a> Apart<'a> {
         TaskResult::failed(&case_name(&plan.scenes[task.scene].2), &task.method, &failure)
     }
 
-    fn command(&self, tables: &[usize], key: &str, answer: &Path) -> std::io::Result<Command> {
+    fn command(
+        &self,
+        tables: &[usize],
+        sample: Option<u32>,
+        key: &str,
+        answer: &Path,
+    ) -> std::io::Result<Command> {
         let mut command = Command::new(std::env::current_exe()?);
         let tables: Vec<String> = tables.iter().map(usize::to_string).collect();
         command.arg("experiment").arg(&self.study).arg("--tables").arg(tables.join(","));
@@ -98,6 +107,9 @@ impl<'a> Apart<'a> {
         command.args(["--threads", &rayon::current_num_threads().to_string()]);
         command.args(self.args.quick.then_some("--quick"));
         command.args(adapter::leaves_local_out().then_some("--no-local-adapters"));
+        if let Some(sample) = sample {
+            command.args(["--sample", &sample.to_string()]);
+        }
         if let Some(bytes) = self.args.apart.memory_limit {
             command.args(["--memory-limit", &bytes.to_string()]);
         }
@@ -158,7 +170,7 @@ pub(crate) fn experiment(args: &ExperimentArgs) -> Result<(), Failure> {
     };
     let first = args.tables.first().copied().unwrap_or_default();
     let study = cases::scene::load_study_for(&args.study, first).map_err(unreadable)?;
-    let plan = StudyPlan::of_tables(study, &args.tables).map_err(unreadable)?;
+    let plan = StudyPlan::of_tables(study, &args.tables, args.sample).map_err(unreadable)?;
     let verify = VerifyArgs { quick: args.quick, ..VerifyArgs::of(&args.study) };
     let index = (0..plan.len()).find(|&index| plan.key(index, &verify) == args.key);
     let index = index

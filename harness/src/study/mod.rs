@@ -19,6 +19,7 @@ mod progress;
 #[cfg(test)]
 mod project;
 mod results;
+mod samples;
 mod shards;
 mod store;
 mod summary;
@@ -38,6 +39,7 @@ pub use listing::Planned;
 pub use merge::MergeArgs;
 pub use plan::StudyPlan;
 pub use results::{FinishedStudy, compared_with, reference_records};
+pub(crate) use samples::numerical;
 pub use store::has_stored;
 pub(crate) use store::{clean, sweep};
 pub use summary::RunSummary;

@@ -1,10 +1,12 @@
 //! The runs of a study, with their scenes.
 
 use std::collections::BTreeMap;
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use cases::scene::{self, ErrorKind, Scene, Study};
+use rayon::prelude::*;
 use records::Record;
 
 use super::args::VerifyArgs;
@@ -17,9 +19,9 @@ use crate::run::case_name;
 use crate::scenario::too_large;
 
 /// Repeats of the timed part in a study: the median of five short passes, or a single long pass.
-pub(super) const REPEATS: Repeats = Repeats { most: 5, seconds: 0.4 };
+const REPEATS: Repeats = Repeats { most: 5, seconds: 0.4 };
 /// Repeats in the quick tier, whose purpose is the checks: the median of three passes for runs below 20 ms.
-pub(super) const QUICK: Repeats = Repeats { most: 3, seconds: 0.05 };
+const QUICK: Repeats = Repeats { most: 3, seconds: 0.05 };
 
 /// Study with its parsed scenes.
 pub struct StudyPlan {
@@ -39,14 +41,20 @@ pub struct StudyPlan {
 impl StudyPlan {
     /// Reads the scenes of a study and lists its runs. The errors are those of all scenes.
     pub fn new(study: Study) -> Result<StudyPlan, Vec<scene::SceneError>> {
-        StudyPlan::read(study, |_| true)
+        StudyPlan::read(study, |_| true, |count| 0..count)
     }
 
-    /// Reads only the scene of these run tables, and lists the runs that they request.
-    pub(crate) fn of_tables(study: Study, tables: &[usize]) -> Result<StudyPlan, Vec<scene::SceneError>> {
+    /// Reads only the scene of these run tables, or one sample of its uncertain inputs, and lists the runs that
+    /// they request.
+    pub(crate) fn of_tables(
+        study: Study,
+        tables: &[usize],
+        sample: Option<u32>,
+    ) -> Result<StudyPlan, Vec<scene::SceneError>> {
+        let one = |_| sample.map_or(0..0, |sample| sample..sample + 1);
         let first = tables.first().and_then(|&table| study.runs.get(table));
         let scene = first.map(|run| run.scene.clone());
-        let mut plan = StudyPlan::read(study, |run| Some(&run.scene) == scene.as_ref())?;
+        let mut plan = StudyPlan::read(study, |run| Some(&run.scene) == scene.as_ref(), one)?;
         plan.tasks.retain_mut(|task| {
             task.runs.retain(|run| tables.contains(run));
             !task.runs.is_empty()
@@ -54,8 +62,13 @@ impl StudyPlan {
         Ok(plan)
     }
 
-    /// Reads the scenes of the run tables for which `wanted` returns true.
-    fn read(study: Study, wanted: impl Fn(&scene::Run) -> bool) -> Result<StudyPlan, Vec<scene::SceneError>> {
+    /// Reads the scenes of the run tables for which `wanted` returns true, with those of the samples of their
+    /// uncertain inputs that `sampled` returns for the number of samples.
+    fn read(
+        study: Study,
+        wanted: impl Fn(&scene::Run) -> bool,
+        sampled: impl Fn(u32) -> Range<u32>,
+    ) -> Result<StudyPlan, Vec<scene::SceneError>> {
         let mut plan = StudyPlan {
             study,
             scenes: Vec::new(),
@@ -70,7 +83,7 @@ impl StudyPlan {
         let runs = plan.study.runs.clone();
         for (index, run) in runs.iter().enumerate().filter(|(_, run)| wanted(run)) {
             let read = match &run.axis {
-                None => plan.scene(run).map(|at| vec![at]),
+                None => plan.scene(run).and_then(|at| plan.with_samples(run, at, &sampled)),
                 Some(axis) => plan.along(index, run, axis),
             };
             match read {
@@ -116,6 +129,25 @@ impl StudyPlan {
         let text = scene.text().to_string();
         self.scenes.push((path.to_path_buf(), text, scene));
         Ok(self.scenes.len() - 1)
+    }
+
+    /// Index of a scene, and those of the samples of its uncertain inputs if it has any. Along an axis a scene
+    /// is not sampled.
+    fn with_samples(
+        &mut self,
+        run: &scene::Run,
+        at: usize,
+        sampled: impl Fn(u32) -> Range<u32>,
+    ) -> Result<Vec<usize>, Vec<scene::SceneError>> {
+        let base = &self.scenes[at].2;
+        let indices = sampled(base.vary.as_ref().map_or(0, |vary| vary.samples));
+        let samples: Vec<Result<Scene, Vec<scene::SceneError>>> =
+            indices.into_par_iter().map(|index| base.at_sample(&run.methods, index)).collect();
+        let mut found = vec![at];
+        for sample in samples {
+            found.push(self.add(&run.scene, sample?)?);
+        }
+        Ok(found)
     }
 
     /// Adds the scene at each value of an axis. A refused scene is an error only at the base value.
@@ -179,7 +211,21 @@ impl StudyPlan {
         self.tables(task).all(|run| run.seeds > 0)
     }
 
-    /// Whether the task is a run along an axis.
+    /// Number of the task's sample of uncertain inputs, from 0; `None` for any other run.
+    pub(super) fn sample(&self, task: &Task) -> Option<u32> {
+        self.scenes[task.scene].2.sample
+    }
+
+    /// Repeats of the timed part of a task. A sample's time is of no interest.
+    pub(super) fn repeats(&self, task: &Task, args: &VerifyArgs) -> Repeats {
+        match (self.sample(task), args.quick) {
+            (Some(_), _) => Repeats::ONCE,
+            (None, true) => QUICK,
+            (None, false) => REPEATS,
+        }
+    }
+
+    /// Whether the task is a run along an axis, or a sample of uncertain inputs.
     pub(super) fn is_driven(&self, task: &Task) -> bool {
         self.scenes[task.scene].2.varied.is_some()
     }

@@ -73,6 +73,10 @@ impl StudyPlan {
         for (&index, result) in &results {
             let task = &self.tasks[index];
             counters += result.counters;
+            if self.sample(task).is_some() {
+                runs.push(self.summary(task, result, &[]));
+                continue;
+            }
             set.records.extend(result.records.iter().cloned());
             set.plans.extend(result.plans.iter().cloned());
             set.warnings.extend(result.warnings.iter().cloned());
@@ -108,18 +112,23 @@ impl StudyPlan {
             runs.push(run);
             set.checks.extend(verdicts);
         }
-        for (_, _, scene) in &self.scenes {
+        // Samples are in the scene's own text.
+        let scenes = || self.scenes.iter().filter(|(_, _, scene)| scene.sample.is_none());
+        for (_, _, scene) in scenes() {
             set.records.extend(reference_records(scene));
         }
         let families = self.families(&results);
         let mut together = self.family_verdicts(&families);
         failed.extend(self.without_any(&families));
         set.axes = self.axes(&results);
+        set.samples = self.samples(&results);
+        together.extend(self.statistic_verdicts(&set));
+        failed.extend(self.without_samples(&set, &results));
         together.extend(set.axes.iter().flat_map(trials::verdicts));
         runs.extend(together.iter().map(|check| self.together(check)));
         set.checks.extend(together);
         let texts: Vec<(String, String)> =
-            self.scenes.iter().map(|(_, text, scene)| (case_name(scene), text.clone())).collect();
+            scenes().map(|(_, text, scene)| (case_name(scene), text.clone())).collect();
         set.provenance = provenance::provenance(machine, &texts);
         warn_if_busy(&mut set);
         FinishedStudy { set, failed, runs, ran: results.len(), stored: 0, counters }
@@ -156,6 +165,9 @@ impl StudyPlan {
         let same = |a: &Task, b: &Task| a.method.id == b.method.id && a.poisson == b.poisson;
         for (&index, result) in results {
             let task = &self.tasks[index];
+            if self.sample(task).is_some() {
+                continue;
+            }
             for &run in &task.runs {
                 match families.iter_mut().find(|f| f.run == run && same(f.first, task)) {
                     Some(family) => family.members.push(result),

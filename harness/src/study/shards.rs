@@ -56,10 +56,11 @@ impl StudyPlan {
         for (index, task) in self.tasks.iter().enumerate() {
             let seconds = foreseen.of(index);
             let ratio = task.poisson.map(f64::to_bits);
+            let sampled = self.sample(task).is_some();
             let mut unit =
                 Unit { tasks: vec![index], seconds, groups: BTreeSet::from([(task.scene, ratio)]) };
             let known: BTreeSet<usize> =
-                families(task).filter_map(|family| of_family.get(&family).copied()).collect();
+                families(task, sampled).filter_map(|family| of_family.get(&family).copied()).collect();
             let at = known.first().copied().unwrap_or(units.len());
             for other in known.iter().rev().filter_map(|&at| units[at].take()) {
                 unit = other.with(unit);
@@ -69,12 +70,12 @@ impl StudyPlan {
                 1 => units[at] = Some(unit),
                 _ => {
                     // All families of the merged units now refer to this unit.
-                    let all = unit.tasks.iter().flat_map(|&task| families(&self.tasks[task]));
+                    let all = unit.tasks.iter().flat_map(|&task| families(&self.tasks[task], false));
                     of_family.extend(all.map(|family| (family, at)));
                     units[at] = Some(unit);
                 }
             }
-            of_family.extend(families(task).map(|family| (family, at)));
+            of_family.extend(families(task, sampled).map(|family| (family, at)));
         }
         units.into_iter().flatten().collect()
     }
@@ -83,7 +84,9 @@ impl StudyPlan {
 /// Run table, method and Poisson's ratio.
 type Family<'a> = (usize, &'a str, Option<u64>);
 
-fn families(task: &Task) -> impl Iterator<Item = Family<'_>> {
+/// Families of a task. A sample of uncertain inputs has none: its statistics are made when all shares are merged.
+fn families(task: &Task, sampled: bool) -> impl Iterator<Item = Family<'_>> {
     let ratio = task.poisson.map(f64::to_bits);
-    task.runs.iter().map(move |&run| (run, task.method.id.as_str(), ratio))
+    let runs = if sampled { &[][..] } else { &task.runs[..] };
+    runs.iter().map(move |&run| (run, task.method.id.as_str(), ratio))
 }

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use cases::scene;
 use catalogue::metric;
-use records::{Failure as FailedRun, PlanEntry, Record, Reference, SurfaceField, Warning};
+use records::{Failure as FailedRun, PlanEntry, Record, Reference, SampleResults, SurfaceField, Warning};
 use serde::{Deserialize, Serialize};
 
 use crate::adapter;
@@ -24,6 +24,9 @@ pub struct TaskResult {
     /// Reference that the run is compared with.
     #[serde(default)]
     pub reference: Option<Reference>,
+    /// Results of a sample of uncertain inputs, which replace all other records.
+    #[serde(default)]
+    pub sample: Option<SampleResults>,
     /// Surface displacement, if requested.
     pub fields: Vec<SurfaceField>,
     /// Failure of the run, with its exit code.
@@ -44,6 +47,7 @@ impl TaskResult {
             plans: outcome.plan_entries(),
             warnings: outcome.warning_rows(),
             reference: outcome.reference.clone(),
+            sample: None,
             fields: outcome.field.iter().cloned().collect(),
             failure: outcome.stalled.as_ref().map(|f| (stalled(outcome, f), f.exit_code())),
             seconds: 0.0,

@@ -50,6 +50,8 @@ const SCENE: House<'_> = House {
         "coverage",
         "axis",
         "load",
+        "sample",
+        "altered",
         "shared",
         "tissue",
         "set",
@@ -57,6 +59,7 @@ const SCENE: House<'_> = House {
         "demands",
         "timing",
         "scene",
+        "vary",
         "output",
         "reference",
         "check",
@@ -196,10 +199,10 @@ fn an_arrow_back_would_be_seen() {
         BTreeSet::from([0, 2])
     );
     let used = |text: &str| SCENE.used("crate::scene::method::fem", text);
-    assert_eq!(used("use super::{Method, common::{Size, Mass}};"), [14, 23].into());
+    assert_eq!(used("use super::{Method, common::{Size, Mass}};"), [17, 26].into());
     assert_eq!(
         used("use crate::exact::Exact; use crate::scene::{tool::Tool, words::words};"),
-        [24, 49].into()
+        [27, 52].into()
     );
 }
 
@@ -289,7 +292,7 @@ fn no_meaning_is_read_out_of_names() {
 
 /// Literals of the reports and the harness that are a heading, a statistic, a key or a word of a sentence,
 /// and have the name of a metric.
-const WORDS: [(&str, &[&str]); 26] = [
+const WORDS: [(&str, &[&str]); 28] = [
     ("harness/src/cli/ci/listing.rs", &["memory"]),
     ("harness/src/cli/init/args.rs", &["load"]),
     ("harness/src/cli/init/mod.rs", &["closure", "load"]),
@@ -316,6 +319,8 @@ const WORDS: [(&str, &[&str]); 26] = [
     ("reports/src/tables/face_results.rs", &["mode"]),
     ("reports/src/tables/modes.rs", &["mass", "massless"]),
     ("reports/src/tables/outcome.rs", &["warnings"]),
+    ("reports/src/tables/uncertainty.rs", &["mean"]),
+    ("reports/src/uncertain.rs", &["mean"]),
 ];
 
 #[test]

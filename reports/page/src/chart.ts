@@ -12,6 +12,8 @@ export interface Point {
   exact?: number;
   /** Half-width of the uncertainty bar along x, in the unit of x. */
   spread?: number | null;
+  /** Error that the run estimated for itself, at the end of a dotted line. */
+  estimate?: number | null;
   /** Upper end of a thin vertical line from the marker: the effective error of the run. */
   counts?: number;
   /** Description shown in place of the run and its numbers. */
@@ -80,8 +82,9 @@ function said(point: Point, chart: Chart): string {
   const run = point.run;
   const nodes = run === null ? "" : `\n${whole(page.runs.nodes[run])} nodes`;
   const around = point.spread ? ` ± ${duration(point.spread, 2)}` : "";
+  const estimated = point.estimate ? `, estimated ${value(chart.y, point.estimate)}` : "";
   const short = (axis: Axis) => axis.name.split(",")[0];
-  return `${name(point.label)}${nodes}\n${short(chart.x)} ${value(chart.x, point.x)}${around}\n${short(chart.y)} ${value(chart.y, point.exact ?? point.y)}`;
+  return `${name(point.label)}${nodes}\n${short(chart.x)} ${value(chart.x, point.x)}${around}\n${short(chart.y)} ${value(chart.y, point.exact ?? point.y)}${estimated}`;
 }
 
 /** Description of a point's run, shown below the plot: its numbers and the place of its records. */
@@ -120,6 +123,9 @@ function marks(chart: Chart, x: [number, number], y: [number, number]): Plot.Mar
       out.push(Plot.line(own, { x: "x", y: "y", stroke, strokeWidth: 1.5, strokeDasharray: dash.join(" ") }));
     out.push(Plot.ruleX(own.filter((p) => p.counts! > p.y), {
       x: "x", y1: "y", y2: (p: Point) => Math.min(p.counts!, y[1]), stroke, strokeWidth: 0.8 }));
+    const estimated = own.filter((p) => p.estimate && p.estimate >= y[0] && p.estimate <= y[1]);
+    out.push(Plot.ruleX(estimated, { x: "x", y1: "y", y2: "estimate", stroke, strokeWidth: 1.2, strokeDasharray: "1 2" }));
+    out.push(Plot.dot(estimated, { x: "x", y: "estimate", r: 2.5, stroke, strokeWidth: 1.2, fill: "var(--paper)" }));
     out.push(Plot.ruleY(own.filter((p) => p.spread), {
       y: "y", x1: (p: Point) => Math.max(p.x - p.spread!, x[0]), x2: (p: Point) => p.x + p.spread!, stroke, strokeWidth: 2.5, strokeOpacity: 0.45 }));
     const few = own.length > 24 ? own.filter((_, i) => i % Math.ceil(own.length / 12) === 0) : own;
@@ -133,7 +139,7 @@ function drawn(chart: Chart, width: number): SVGSVGElement | HTMLElement {
   const points = chart.lines.flat();
   const ends = (chart.bands ?? []).flatMap((b) => b.points);
   const x = range([...points.map((p) => p.x), ...(chart.see?.x ?? [])], chart.x);
-  const y = range([...points.map((p) => p.y), ...ends.flatMap((b) => [b[1], b[2]]), ...(chart.see?.y ?? [])], chart.y);
+  const y = range([...points.flatMap((p) => [p.y, p.estimate ?? p.y]), ...ends.flatMap((b) => [b[1], b[2]]), ...(chart.see?.y ?? [])], chart.y);
   const height = chart.height ?? 340;
   const axis = (a: Axis, ends: [number, number]) => ({ type: (a.log ? "log" : "linear") as "log" | "linear", domain: ends, axis: null });
   const named = chart.named;

@@ -3,11 +3,11 @@
 export interface Look { colour: string; marker: string; dash: number[]; open: boolean; family: string }
 
 export interface Line {
-  label: number; run: (number | null)[]; seconds: number[]; spread: (number | null)[]; error: number[]; counts: number[];
+  label: number; run: (number | null)[]; seconds: number[]; spread: (number | null)[]; estimate: (number | null)[]; error: number[]; counts: number[];
 }
 
 export interface Ask {
-  case: string; title: string; what: string; repeated: boolean; cpu: boolean; time: Axis; error: Axis; scalar: boolean; kernels: boolean;
+  case: string; title: string; what: string; repeated: boolean; cpu: boolean; time: Axis; error: Axis; scalar: boolean; estimated: boolean; kernels: boolean;
   reference: string | null; band: number | null; rank: (boolean | number)[]; lines: Line[];
 }
 

@@ -16,7 +16,7 @@ export const asked = (): Ask | undefined =>
 /** Points of a question: one line for each method that is not switched off. */
 export function lines(ask: Ask, off: (label: string) => boolean = isOff): Point[][] {
   const points = (line: Ask["lines"][number]) => line.seconds.map((x, i) =>
-    ({ label: line.label, x, y: Math.max(line.error[i], page.floor), exact: line.error[i], run: line.run[i], spread: line.spread[i], counts: Math.max(line.counts[i], page.floor) }));
+    ({ label: line.label, x, y: Math.max(line.error[i], page.floor), exact: line.error[i], run: line.run[i], spread: line.spread[i], estimate: line.estimate[i], counts: Math.max(line.counts[i], page.floor) }));
   return ask.lines.filter((line) => !off(name(line.label))).map(points);
 }
 
@@ -133,6 +133,8 @@ export function question(place: HTMLElement) {
       "Each line joins the sizes of a method. "
         + (all.flat().length < FRONT ? "Fewer than three runs have no front." : "The grey staircase is the front: no run is both faster and more accurate."),
       ask.lines.some((l) => l.spread.some((s) => s)) && "Bars span the middle half of the repeats.",
+      ask.estimated && "The scene has no reference: errors are those that the runs estimated for themselves.",
+      ask.lines.some((l) => l.estimate.some((e) => e)) && "Dotted lines end at the error that the run estimated for itself.",
       ask.scalar && "A single number can be right by chance: a run counts with at least a third of its displacement's error, at the top of the thin line.",
       chance.length && `Right by chance, not counted at ${percent(error, 1)}: ${[...new Set(chance.map((p) => name(p.label)))].join(", ")}.`,
       ask.reference && `The reference is ${ask.reference}.`,

@@ -275,8 +275,14 @@ mod tests {
     #[test]
     fn a_line_far_from_all_runs_is_not_drawn_but_said() {
         let panel = |title: &str, times: &[f64]| {
-            let timed =
-                |&t: &f64| Timed { run: String::new(), seconds: t, spread: None, error: 0.1, counts: 0.1 };
+            let timed = |&t: &f64| Timed {
+                run: String::new(),
+                seconds: t,
+                spread: None,
+                estimate: None,
+                error: 0.1,
+                counts: 0.1,
+            };
             let runs = times.iter().map(timed).collect();
             Ask {
                 case: title.into(),

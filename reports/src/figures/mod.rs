@@ -22,6 +22,7 @@ mod stability;
 mod style;
 mod surface;
 mod transfer;
+mod uncertainty;
 
 pub(crate) use drawing::png_and_pdf;
 pub(crate) use figure::{Data, Figure};
@@ -32,13 +33,16 @@ use records::RunSet;
 
 use crate::commits::Trend;
 use crate::select::{Run, solved};
+use crate::uncertain::Uncertain;
 
 /// Every figure with content, in the order of the report.
-pub(crate) fn all(set: &RunSet, runs: &[Run], trends: &[Trend]) -> Vec<Figure> {
+pub(crate) fn all(set: &RunSet, runs: &[Run], uncertain: &[Uncertain], trends: &[Trend]) -> Vec<Figure> {
     let solved = solved(runs);
     let mut figures = efficiency::figures(&solved);
     figures.extend(profile::figure(&solved));
     figures.extend(stability::maps(&set.axes));
+    figures.extend(uncertainty::bands(uncertain));
+    figures.extend(uncertainty::shares(uncertain));
     figures.extend(convergence::figures(&solved));
     figures.extend(locking::figures(&solved));
     figures.extend(history::forces(&solved));

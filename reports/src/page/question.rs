@@ -22,6 +22,8 @@ pub(super) struct AskView {
     time: Scale,
     error: Scale,
     scalar: bool,
+    /// Whether the errors are estimates, as there is no reference.
+    estimated: bool,
     kernels: bool,
     /// Description of the reference of the runs and its own error.
     reference: Option<String>,
@@ -37,6 +39,7 @@ struct LineView {
     run: Vec<Option<usize>>,
     seconds: Vec<f32>,
     spread: Vec<Option<f32>>,
+    estimate: Vec<Option<f32>>,
     error: Vec<f32>,
     counts: Vec<f32>,
 }
@@ -57,6 +60,7 @@ impl AskView {
                 run: line.runs.iter().map(|r| methods.run(&r.run)).collect(),
                 seconds: each(|r| r.seconds),
                 spread: line.runs.iter().map(|r| r.spread.map(|s| s as f32)).collect(),
+                estimate: line.runs.iter().map(|r| r.estimate.map(|e| e as f32)).collect(),
                 error: each(|r| r.error),
                 counts: each(|r| r.counts),
             }
@@ -70,6 +74,7 @@ impl AskView {
             time: ask.time(),
             error: Scale::errors(ask.error),
             scalar: ask.question.scalar,
+            estimated: ask.question.estimate == Some(ask.error),
             kernels: ask.kernels,
             reference: references.iter().find(of_case).map(described).or_else(|| ask.reference.clone()),
             band: ask.band,

@@ -19,6 +19,7 @@ mod solvers;
 mod stability;
 mod timing;
 mod transfer;
+mod uncertainty;
 
 pub(crate) use error_split::{Parts as ErrorParts, parts as error_parts};
 
@@ -28,12 +29,20 @@ use crate::clouds::Clouds;
 use crate::commits::Trend;
 use crate::select::Run;
 use crate::table::Table;
+use crate::uncertain::Uncertain;
 
 /// Every table with at least one row, in the order of the report.
-pub(crate) fn all(set: &RunSet, runs: &[Run], clouds: &[Clouds], trends: &[Trend]) -> Vec<Table> {
+pub(crate) fn all(
+    set: &RunSet,
+    (runs, clouds): (&[Run], &[Clouds]),
+    uncertain: &[Uncertain],
+    trends: &[Trend],
+) -> Vec<Table> {
     let tables = [
         cheapest::within(runs),
         stability::stability(set),
+        uncertainty::uncertainty(uncertain),
+        uncertainty::shares(uncertain),
         errors::relative(runs),
         errors::rms(runs),
         errors::maxima(runs),

@@ -42,6 +42,14 @@ warnings! {
     ROUGH_ESTIMATE: "rough-estimate", None,
         "no equilibrium with more shape functions was found near that of a run, so that its error is estimated from \
          the linearised problem; value: the estimated error of the displacement";
+    SINGLE_ESTIMATE: "single-estimate", None,
+        "no coarser mesh confirms the estimated errors of a run; no value";
+    LEVELS_DISAGREE: "levels-disagree", None,
+        "the prediction of a run's error still changes from mesh to mesh; value: the change divided by that of the \
+         run";
+    OUTSIDE_BOUNDS: "outside-bounds", None,
+        "the strain energy of a run lies outside the strict bounds of the exact energy; value: the distance from \
+         the nearer bound divided by this bound";
     EXACT_MISFIT: "exact-misfit", None,
         "the exact solution has other displacements or tractions on the surface than the scene prescribes; \
          value: the largest root mean square difference on a surface divided by the largest value on any \
@@ -121,6 +129,8 @@ warnings! {
     REFERENCE_COARSER: "reference-coarser", None,
         "a run has more nodes than its reference, so the reported error may be that of the reference; value: \
          the ratio of the run's nodes to the reference's nodes";
+    REFERENCE_ROUGH: "reference-rough", None,
+        "the reference has not the accuracy that the scene asks for; value: its own error, 0 if unknown";
     MACHINE_BUSY: "machine-busy", None,
         "other programs used the processors while runs were timed; value: the largest ratio of wall-clock time to CPU time of a run";
     ADAPTER_UNCHECKED: "adapter-unchecked", None,

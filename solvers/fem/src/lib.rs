@@ -24,6 +24,7 @@ mod bounds;
 mod closest;
 #[cfg(test)]
 mod element_tests;
+mod equilibrium;
 mod error;
 mod face;
 mod linear;
@@ -36,6 +37,7 @@ mod surface;
 mod uniform;
 mod volume;
 
+pub use equilibrium::{EquilibriumTet, FaceNumbers, Response, face_moments};
 pub use error::FemError;
 pub use linear::linear_nodes;
 pub use points::{Outside, grad_rows, nearest_cells, nearest_grad_rows, nearest_point_rows, point_rows};

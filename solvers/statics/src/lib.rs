@@ -59,6 +59,7 @@
 
 mod assembly;
 mod body;
+mod cells;
 mod coercivity;
 mod condense;
 mod constraint;
@@ -84,6 +85,7 @@ mod support;
 mod weak;
 
 pub use body::LinearBody;
+pub use cells::{Cells, FactoredCells, factor_cells};
 pub use condense::Condensed;
 pub use constraint::{ConstraintRow, multiplier_rows};
 pub use error::SolveError;

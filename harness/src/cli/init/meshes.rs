@@ -21,7 +21,7 @@ impl Meshes {
     pub fn new(scene: &Scene, fits: impl Fn(&str, &Mesh) -> Result<(), Failure>) -> Result<Meshes, Failure> {
         let own = scene.methods.iter().map(|method| (method.id.clone(), method.clone()));
         let mut all: Vec<_> = own.collect();
-        if let Some(Reference::Method { id, size: Some(size) }) = &scene.reference
+        if let Some(Reference::Method { id, size: Some(size), .. }) = &scene.reference
             && let Some(method) = scene.method(id)
         {
             let mut method = method.clone();

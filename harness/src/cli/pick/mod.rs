@@ -14,7 +14,7 @@ use records::Reference;
 use reports::Seconds;
 use serde::Serialize;
 
-use crate::cli::args::Format;
+use crate::cli::args::{Format, SceneArgs};
 use crate::cli::results::{take, write_results};
 use crate::cli::scenes::{choose, refuse_scene};
 use crate::cli::{interrupt, text};
@@ -36,28 +36,23 @@ const BESIDE: f64 = 3.0;
 /// Searches and prints. Returns 0 if a method is within the bound, 1 if none is, 2 for invalid input, 3 if
 /// nothing could run.
 pub(super) fn pick(args: &PickArgs) -> u8 {
-    let demand = match demand(args) {
-        Ok(demand) => demand,
-        Err(bad) => return wrong(&bad),
-    };
     let (scene, chosen) = match opened(args) {
         Ok(opened) => opened,
         Err(code) => return code,
     };
-    if scene.reference.is_none() {
-        let file = args.scene.file.display();
-        return wrong(&format!(
-            "{file}: key 'reference': is missing, so the errors are unknown: add [reference] method = \"...\" with a \
-             finer size, exact = \"...\" or record = \"...\""
-        ));
-    }
+    let demand = match demand(args, scene.reference.is_none()) {
+        Ok(demand) => demand,
+        Err(bad) => return wrong(&bad),
+    };
     let machine = provenance::machine();
     let folder = match args.out.as_ref().map(|out| take(&args.scene.file, out)).transpose() {
         Ok(folder) => folder,
         Err(code) => return code,
     };
     interrupt::at_last(interrupt::incomplete(args.out.clone()));
-    if std::io::stderr().is_terminal() {
+    if scene.reference.is_none() {
+        eprintln!("the scene has no [reference]: errors are estimated (output.estimate)");
+    } else if std::io::stderr().is_terminal() {
         eprintln!("reference ...");
     }
     let group = match Group::new(&scene, None, REPEATS) {
@@ -108,22 +103,30 @@ fn wrong(what: &str) -> u8 {
 }
 
 /// Returns the accuracy requirements. For a single number they include the displacement, unless the user
-/// requires another field.
-fn demand(args: &PickArgs) -> Result<Demand, String> {
-    let quantity = Quantity::named(&args.quantity).map_err(|bad| format!("--quantity {bad}"))?;
-    let of_field = |(name, most): &(String, f64)| Ok((Quantity::named(name)?, *most));
+/// requires another field. Without a reference, errors are estimates.
+fn demand(args: &PickArgs, estimated: bool) -> Result<Demand, String> {
+    let named = |name: &str| if estimated { Quantity::estimated(name) } else { Quantity::named(name) };
+    let quantity = named(&args.quantity).map_err(|bad| format!("--quantity {bad}"))?;
+    let of_field = |(name, most): &(String, f64)| Ok((named(name)?, *most));
     let also: Result<Vec<_>, String> = args.also.iter().map(of_field).collect();
     let mut also = also.map_err(|bad| format!("--also {bad}"))?;
     if quantity.scalar && also.iter().all(|(other, _)| other.scalar) {
-        also.push((Quantity::named("displacement").expect("a word"), BESIDE * args.error));
+        also.push((named("displacement").expect("a word"), BESIDE * args.error));
     }
     Ok(Demand { quantity, error: args.error, also, at_most: args.at_most })
 }
 
-/// Loads the scene and selects the methods to try.
+/// Loads the scene and selects the methods to try. Errors are estimated in a scene without a reference.
 fn opened(args: &PickArgs) -> Result<(Scene, Vec<usize>), u8> {
-    let (scene, own) = default_methods::with_usual(&args.scene, args.usual)
-        .map_err(|errors| refuse_scene(&args.scene.file, &errors))?;
+    let load = |from: &SceneArgs| {
+        default_methods::with_usual(from, args.usual).map_err(|errors| refuse_scene(&from.file, &errors))
+    };
+    let (mut scene, mut own) = load(&args.scene)?;
+    if scene.reference.is_none() {
+        let mut estimated = args.scene.clone();
+        estimated.set.push("output.estimate=true".parse().expect("a key and a value"));
+        (scene, own) = load(&estimated)?;
+    }
     if own == 0 || args.usual {
         let ids: Vec<&str> = scene.methods[own..].iter().map(|m| m.id.as_str()).collect();
         eprintln!("usual methods that suit the scene: {}", ids.join(", "));
@@ -254,9 +257,10 @@ fn sentence(demand: &Demand, found: &Found) -> String {
     if let Some(best) = found.cheapest() {
         let error = best.error.unwrap_or_default();
         return format!(
-            "Cheapest within {bound}: {} with {} nodes, error {}, in {} s.",
+            "Cheapest within {bound}: {} with {} nodes, {} {}, in {} s.",
             best.method,
             best.nodes,
+            demand.quantity.word(),
             percent(error),
             text::digits(best.seconds)
         );

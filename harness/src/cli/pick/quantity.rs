@@ -19,6 +19,14 @@ const WORDS: [(&str, &[&Metric], bool); 8] = [
     ("frequency", &[&metric::FREQUENCY_ERROR], true),
 ];
 
+/// Words of quantities whose errors can be estimated, with the metric and the flag for a single number.
+const ESTIMATED: [(&str, &Metric, bool); 4] = [
+    ("displacement", &metric::DISPLACEMENT_ESTIMATE, false),
+    ("force", &metric::TOOL_FORCE_ESTIMATE, true),
+    ("energy", &metric::STRAIN_ENERGY_ESTIMATE, true),
+    ("probes", &metric::PROBE_ESTIMATE, false),
+];
+
 /// A quantity and the metrics of its error.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Quantity {
@@ -47,6 +55,25 @@ impl Quantity {
             nearest(name, words.iter().copied().chain(METRICS.iter().filter(relative).map(|m| m.name)));
         let near = near.map_or(String::new(), |near| format!(" did you mean '{near}'?"));
         Err(format!("'{name}' is not a quantity with a relative error:{near} give {}", words.join(", ")))
+    }
+
+    /// Returns the quantity of a word, whose errors are estimates.
+    pub fn estimated(name: &str) -> Result<Quantity, String> {
+        let found = ESTIMATED.iter().find(|(word, ..)| *word == name);
+        let (word, metric, scalar) = found.ok_or_else(|| {
+            let words = ESTIMATED.map(|(word, ..)| word).join(", ");
+            format!(
+                "'{name}' can't be estimated, and the scene has no reference: add [reference] method = \"...\" with a \
+                 finer size, exact = \"...\" or record = \"...\", or give {words}"
+            )
+        })?;
+        Ok(Quantity { name: (*word).into(), metrics: vec![metric], scalar: *scalar })
+    }
+
+    /// Name of the error in a sentence.
+    pub fn word(&self) -> &'static str {
+        let estimated = ESTIMATED.iter().any(|(_, metric, _)| self.metrics == [*metric]);
+        if estimated { "estimated error" } else { "error" }
     }
 
     /// Returns the relative error of a run, the largest over several tools; `None` if the run has none.

@@ -39,7 +39,7 @@ pub enum Kind {
     Count,
     /// One value per tool, numbered from 1.
     Tool,
-    /// One value per support, face, point or volume of a list in the scene, numbered like the tools.
+    /// One value per support, face, point or volume of a list in the scene, or per mode, numbered like the tools.
     Place,
 }
 
@@ -119,12 +119,18 @@ pub enum Needs {
     Exact,
     /// A requested estimate of errors.
     Estimate,
+    /// Requested strict bounds.
+    Bounds,
+    /// Requested strict bounds, and a face with a requested mean.
+    MeanBounds,
     /// A requested estimate of errors, and a tool.
     ToolEstimate,
     /// A requested estimate of errors, and probes.
     PointEstimate,
     /// A requested estimate of errors, and a support.
     SupportEstimate,
+    /// A requested estimate of errors, and vibrations.
+    ModeEstimate,
 }
 
 impl Metric {

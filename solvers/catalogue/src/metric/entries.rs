@@ -60,18 +60,56 @@ metrics! {
     DISPLACEMENT_ESTIMATE: "displacement-error-estimate", "estimated displacement error", None, Value, Estimate,
         "estimated root mean square error of the displacement, divided by the root mean square of the predicted \
          displacement";
+    DISPLACEMENT_SATURATION: "displacement-error-saturation", "saturation of the displacement", None, Value, Estimate,
+        "change of the predicted displacement from a coarser mesh, divided by the change of the run's";
     PROBE_ESTIMATE: "probe-error-estimate", "estimated error of a point", None, Place, PointEstimate,
         "estimated error of the displacement of a point of output.probes, relative to the predicted displacement";
+    PROBE_SATURATION: "probe-error-saturation", "saturation of a point", None, Place, PointEstimate,
+        "change of the predicted displacement of a point from a coarser mesh, divided by the change of the run's";
     TOOL_FORCE_ESTIMATE: "tool-force-error-estimate", "estimated force error", None, Tool, ToolEstimate,
         "estimated error of the tool's force, relative to the predicted force";
+    TOOL_FORCE_SATURATION: "tool-force-error-saturation", "saturation of the force", None, Tool, ToolEstimate,
+        "change of the predicted tool force from a coarser mesh, divided by the change of the run's";
     TOOL_FORCE_PREDICTED: "tool-force-predicted", "predicted tool force", Force, Tool, ToolEstimate,
-        "force of the tool that more shape functions predict";
+        "force of the tool that more shape functions predict, on two meshes if there is a coarser one";
     REACTION_ESTIMATE: "reaction-error-estimate", "estimated error of a support force", None, Place, SupportEstimate,
         "estimated error of a support's force, relative to the largest predicted force of a support";
+    REACTION_SATURATION: "reaction-error-saturation", "saturation of a support force", None, Place, SupportEstimate,
+        "change of the predicted force of a support from a coarser mesh, divided by the change of the run's";
     STRAIN_ENERGY_ESTIMATE: "strain-energy-error-estimate", "estimated energy error", None, Value, Estimate,
         "estimated error of the strain energy, relative to the predicted energy";
+    STRAIN_ENERGY_SATURATION: "strain-energy-error-saturation", "saturation of the energy", None, Value, Estimate,
+        "change of the predicted strain energy from a coarser mesh, divided by the change of the run's";
     STRAIN_ENERGY_PREDICTED: "strain-energy-predicted", "predicted strain energy", Energy, Value, Estimate,
-        "strain energy that more shape functions predict";
+        "strain energy that more shape functions predict, on two meshes if there is a coarser one";
+    FREQUENCY_ESTIMATE: "frequency-error-estimate", "estimated error of a frequency", None, Place, ModeEstimate,
+        "estimated error of the frequency of a mode, relative to the predicted frequency; none of a rigid motion";
+    FREQUENCY_SATURATION: "frequency-error-saturation", "saturation of a frequency", None, Place, ModeEstimate,
+        "change of the predicted frequency of a mode from a coarser mesh, divided by the change of the run's";
+    FREQUENCY_PREDICTED: "frequency-predicted", "predicted frequency", Frequency, Place, ModeEstimate,
+        "frequency of a mode that more shape functions predict, on two meshes if there is a coarser one";
+    // Strict bounds.
+    STRAIN_ENERGY_LOWER: "strain-energy-lower", "lower bound of the strain energy", Energy, Value, Bounds,
+        "number that the strain energy of the exact solution is never below";
+    STRAIN_ENERGY_UPPER: "strain-energy-upper", "upper bound of the strain energy", Energy, Value, Bounds,
+        "number that the strain energy of the exact solution is never above";
+    SUPPORT_FORCE_LOWER: "support-force-lower", "lower bound of a support force", Force, Value, Bounds,
+        "number that the exact force of the only moving support along its motion is never below";
+    SUPPORT_FORCE_UPPER: "support-force-upper", "upper bound of a support force", Force, Value, Bounds,
+        "number that the exact force of the only moving support along its motion is never above";
+    LOAD_DISPLACEMENT_LOWER: "load-displacement-lower", "lower bound of a mean displacement", Length, Value, Bounds,
+        "number that the exact mean displacement of the loaded faces along the only load, a uniform one, is never below";
+    LOAD_DISPLACEMENT_UPPER: "load-displacement-upper", "upper bound of a mean displacement", Length, Value, Bounds,
+        "number that the exact mean displacement of the loaded faces along the only load, a uniform one, is never above";
+    MEAN_LOWER: "mean-lower", "lower bound of a mean displacement", Length, Place, MeanBounds, Components,
+        "number that the exact mean displacement of a face listed in output.means is never below";
+    MEAN_UPPER: "mean-upper", "upper bound of a mean displacement", Length, Place, MeanBounds, Components,
+        "number that the exact mean displacement of a face listed in output.means is never above";
+    BOUNDS_HALF_WIDTH: "bounds-half-width", "half-width of the bounds", None, Value, Bounds,
+        "half the distance between the bounds of the strain energy, divided by their mean";
+    BOUNDS_EXCESS: "bounds-excess", "strain energy outside its bounds", None, Value, Bounds,
+        "distance of the run's strain energy from the nearer of its bounds, divided by this bound, positive above and \
+         negative below; 0 between them";
     // Parts of an error, and distances from a secondary reference.
     INTEGRATION_RMS: "integration-rms", "integration error", Length, Error, Reference, Vector,
         "root mean square difference from the same method with the study's integration rule";
