@@ -97,7 +97,7 @@ pub enum Command {
     /// Run the samples of a scene's uncertain inputs, and print the mean, the quantiles and the share of each
     /// input
     ///
-    /// The scene has [vary] with the number of samples, the metrics and the distributions of its keys. The scene
+    /// The scene has `[vary]` with the number of samples, the metrics and the distributions of its keys. The scene
     /// as written runs first.
     Vary(VaryArgs),
     /// Execute one run of a study in its own process

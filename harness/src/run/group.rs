@@ -175,8 +175,10 @@ impl<'a> Group<'a> {
         Ok(())
     }
 
-    /// Solves the reference and estimates its own error. Returns whether it reached the whole load.
+    /// Solves the reference, at the scene's targets or its own nodes, and estimates its own error. Returns
+    /// whether it reached the whole load.
     pub(super) fn solve_reference(&mut self, method: &scene::Method, resized: bool) -> Result<bool, Failure> {
+        self.targets = targets(&self.scene, &self.probes)?;
         self.run_reference(method, resized)?;
         self.know_reference(method);
         Ok(self.reference_stalled.is_none())

@@ -19,8 +19,13 @@ fn verification() -> StudyPlan {
     StudyPlan::new(study).unwrap_or_else(|errors| panic!("{errors:?}"))
 }
 
-/// Whether any check applies to a task, either a check of one run or of several runs together.
+/// Whether any check applies to a task, either a check of one run or of several runs together. Statistics are
+/// of the samples together.
 fn is_checked(plan: &StudyPlan, task: &Task) -> bool {
+    if plan.sample(task).is_some() {
+        let vary = plan.scenes[task.scene].2.vary.as_ref();
+        return vary.is_some_and(|vary| !vary.checks.is_empty());
+    }
     let of_tables = plan.tables(task).flat_map(|run| &run.checks).filter(|check| check::is_of_many(check));
     let mut of_tables = of_tables.filter(|c| c.methods.is_empty() || c.methods.contains(&task.method.id));
     plan.checks(task).next().is_some() || of_tables.next().is_some()
