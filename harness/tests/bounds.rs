@@ -97,8 +97,8 @@ fn parts_of_motion_and_load_add_up() {
     assert_eq!(found["bounds"].as_array().unwrap().len(), 1, "a force has no bounds of its own: {found}");
 }
 
-/// The mean of the loaded end by polarised pairs is that of the energy, and the side of the bar moves by what the
-/// exact solution says.
+/// The mean of the loaded end by polarised pairs is that of the energy, and the side of the bar moves by what
+/// the exact solution says.
 #[test]
 fn means_have_bounds() {
     let dir = tempfile::tempdir().unwrap();

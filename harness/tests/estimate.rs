@@ -60,8 +60,8 @@ fn a_nearly_incompressible_body_is_estimated_from_its_pressure() {
     assert!((predicted / energy - 1.0).abs() < 1e-5, "{predicted} {energy}");
 }
 
-/// The bonded edges of a block are singular: half of the error of its energy is also that of quadratic elements
-/// on the same cells. Extrapolation of tet10 on 4, 8 and 12 cells gives 5.680e-3 J.
+/// The bonded edges of a block are singular: half of the error of its energy is also that of quadratic
+/// elements on the same cells. Extrapolation of tet10 on 4, 8 and 12 cells gives 5.680e-3 J.
 #[test]
 fn a_coarser_mesh_tells_what_quadratic_elements_do_not_see() {
     let dir = tempfile::tempdir().unwrap();

@@ -92,7 +92,8 @@ essential = "coupling"
     }
 }
 
-/// A bar of 40 x 10 x 10 mm under a force of 0.1 N along z at its end: supports of every kind carry its moment.
+/// A bar of 40 x 10 x 10 mm under a force of 0.1 N along z at its end: supports of every kind carry its
+/// moment.
 #[test]
 fn the_moment_of_a_support_balances_the_load() {
     let cloud = |essential: &str| {
@@ -192,7 +193,8 @@ fn what_has_no_such_number_is_refused() {
     refused(dead, "key 'load[0].dead': 'true' belongs to a pressure");
 }
 
-/// A block pulled by a traction per deformed area is that pulled by the dead traction times the change of the area.
+/// A block pulled by a traction per deformed area is that pulled by the dead traction times the change of the
+/// area.
 #[test]
 fn a_traction_acts_on_the_deformed_area() {
     let scene = |traction: f64, dead: bool| {

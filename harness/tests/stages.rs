@@ -100,8 +100,9 @@ during = [0.7, 0.9]
 "#,
             method,
         ));
-        // The first support moves 1 mm over the whole loading, and lets go from 0.35 to 0.4. The second catches the
-        // face at 0.75 mm, where the load alone holds it, and takes it back by a third of a millimetre a step.
+        // The first support moves 1 mm over the whole loading, and lets go from 0.35 to 0.4. The second
+        // catches the face at 0.75 mm, where the load alone holds it, and takes it back by a third of a
+        // millimetre a step.
         let third = 1e-3 / 3.0;
         let heights =
             [0.1e-3, 0.2e-3, 0.3e-3, 0.0, 0.5e-3, 1e-3, 0.75e-3, 0.75e-3 - third, 0.75e-3 - 2.0 * third, 0.0];
@@ -133,7 +134,8 @@ during = ["0 s", "1 s"]
     assert_course(&course(&object, 3), &[[0.1, 0.25e-3], [0.2, 0.5e-3], [0.0, 0.0], [0.0, 0.0]], 1e-8);
 }
 
-/// Theory of bars: a bar that is stretched and let go at one end is a triangular wave of the period `4 L / c`.
+/// Theory of bars: a bar that is stretched and let go at one end is a triangular wave of the period
+/// `4 L / c`.
 #[test]
 fn a_body_with_mass_that_is_let_go_vibrates() {
     let (length, density, young) = (0.02, 1000.0, 20e3f64);

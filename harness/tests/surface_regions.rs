@@ -11,7 +11,8 @@ type Triangles = Vec<[[f64; 3]; 3]>;
 fn cuboid(min: [f64; 3], max: [f64; 3]) -> Triangles {
     let corner = |i: usize| [0, 1, 2].map(|axis| if i >> axis & 1 == 1 { max[axis] } else { min[axis] });
     let sides = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
-    // The last two faces have the same diagonal, so that boxes in a row have the same triangles at their wall.
+    // The last two faces have the same diagonal, so that boxes in a row have the same triangles at their
+    // wall.
     sides.iter().flat_map(|&[a, b, c, d]| [[b, c, d], [b, d, a]].map(|t| t.map(corner))).collect()
 }
 

@@ -69,6 +69,7 @@ pub struct Sample {
 pub struct SampleResults {
     /// Values of the metrics, SI; `None` for missing ones.
     pub results: Vec<Option<f64>>,
-    /// For each metric with a history, its values at the recorded steps: `(closure in m or time in s, value)`.
+    /// For each metric with a history, its values at the recorded steps: `(closure in m or time in s,
+    /// value)`.
     pub curves: Vec<Vec<(f64, f64)>>,
 }

@@ -127,7 +127,8 @@ pub struct Volume {
     pub rows: VolumeRows,
     /// Region of each point; empty if the body has one region.
     pub region: Vec<u16>,
-    /// Axes of the material at each point, as columns: fibre, sheet and normal. Empty if no law depends on them.
+    /// Axes of the material at each point, as columns: fibre, sheet and normal. Empty if no law depends on
+    /// them.
     pub axes: Vec<Matrix3>,
     /// Groups of points that share a dilation.
     pub groups: Option<DilationGroups>,

@@ -63,8 +63,8 @@ pub struct Counters {
     pub transfer_tables: u64,
     /// Degrees of freedom of the prediction from which errors are estimated.
     pub predicted_dofs: u64,
-    /// Degrees of freedom of the displacement field and of the stress field between which the exact strain energy
-    /// lies.
+    /// Degrees of freedom of the displacement field and of the stress field between which the exact strain
+    /// energy lies.
     pub bounding_dofs: u64,
 }
 

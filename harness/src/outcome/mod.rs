@@ -154,7 +154,8 @@ pub struct Outcome {
     pub tools: Vec<String>,
     /// Forces of the supports at the end.
     pub supports: Vec<SupportForce>,
-    /// 2-norm of the displacements of all unconstrained unknowns at the end, m; `None` without a displacement.
+    /// 2-norm of the displacements of all unconstrained unknowns at the end, m; `None` without a
+    /// displacement.
     pub free_norm: Option<f64>,
     /// Mean displacement of faces at the end.
     pub means: Vec<FaceMean>,

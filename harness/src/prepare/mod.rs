@@ -198,8 +198,8 @@ impl Prepared {
         self.fixed.iter().enumerate().filter(move |(index, _)| always(*index)).map(|(_, dof)| dof)
     }
 
-    /// Returns the surfaces constrained by penalty in a static procedure, then those on springs and dampers, for the
-    /// solver.
+    /// Returns the surfaces constrained by penalty in a static procedure, then those on springs and dampers,
+    /// for the solver.
     pub fn penalties(&self) -> Vec<PenaltySurface<'_>> {
         self.penalties
             .iter()
@@ -382,8 +382,8 @@ impl Prepared {
         Ok(())
     }
 
-    /// Constrains a cloud by a weak condition on the facets of the place, and by a penalty with the same factor in
-    /// its volume if the place has one (a clamped end instead of a clamped face).
+    /// Constrains a cloud by a weak condition on the facets of the place, and by a penalty with the same
+    /// factor in its volume if the place has one (a clamped end instead of a clamped face).
     fn constrain_weakly(
         &mut self,
         method: &Discretisation,

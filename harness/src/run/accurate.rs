@@ -16,8 +16,8 @@ const LONGEST: f64 = 3600.0;
 const FINER: usize = 8;
 
 impl Group<'_> {
-    /// Halves the spacing of the reference, which `method` has solved, until its own errors of displacement and
-    /// tool forces are at most `accuracy`. If they can't be, the finest reference stays, with a warning.
+    /// Halves the spacing of the reference, which `method` has solved, until its own errors of displacement
+    /// and tool forces are at most `accuracy`. If they can't be, the finest reference stays, with a warning.
     ///
     /// # Errors
     /// Errors of a finer reference.

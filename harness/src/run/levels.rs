@@ -1,4 +1,4 @@
-//! The second level of an estimate: the same method on a coarser mesh, with its own prediction, tells which
+//! The second level of an estimate: the same method on a coarser mesh, with its own prediction, shows which
 //! part of the error the prediction shares with the run.
 
 use catalogue::warning;

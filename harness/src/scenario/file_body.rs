@@ -37,8 +37,8 @@ pub enum Fill {
     Spacing { bits: u64, quadratic: bool },
 }
 
-/// Identity of a body when it was read: paths, unit, joining and treatment of the files, their lengths and times of
-/// modification.
+/// Identity of a body when it was read: paths, unit, joining and treatment of the files, their lengths and
+/// times of modification.
 type Known = (Vec<PathBuf>, u64, (bool, String), Vec<(u64, Option<SystemTime>)>);
 
 /// Files already read. Every method requests the body, and searching a surface for intersections takes as

@@ -195,8 +195,8 @@ impl Scenario<'_> {
             .collect()
     }
 
-    /// Whether a load acts on the deformed surface: a pressure or a traction that the scene does not make dead, if
-    /// the procedure is one of large displacements and a law one of large strain.
+    /// Whether a load acts on the deformed surface: a pressure or a traction that the scene does not make
+    /// dead, if the procedure is one of large displacements and a law one of large strain.
     fn follows(&self, load: &scene::Load, laws: &[Law]) -> bool {
         let linear = matches!(
             self.scene.procedure,

@@ -31,8 +31,8 @@ pub struct Support {
     pub value: VectorField,
     /// Factor of the displacement over time; `None` for the common growth.
     pub curve: Option<Arc<Curve>>,
-    /// Start and end of the part of the loading in which it acts, a fraction in statics and s in dynamics; `None`
-    /// for all of it.
+    /// Start and end of the part of the loading in which it acts, a fraction in statics and s in dynamics;
+    /// `None` for all of it.
     pub during: Option<[f64; 2]>,
 }
 
@@ -183,8 +183,8 @@ impl Setup {
         matches!(self.procedure, Procedure::Static(_) | Procedure::ImplicitDynamic(_))
     }
 
-    /// Describes in the plan which pressures follow the deformed surface and which do not, and which tractions
-    /// follow its area; empty without any.
+    /// Describes in the plan which pressures follow the deformed surface and which do not, and which
+    /// tractions follow its area; empty without any.
     pub fn pressures(&self) -> String {
         let of = |pressure: bool, follows: bool| -> Vec<&str> {
             let is = |load: &&Load| match load.applied {
@@ -233,7 +233,8 @@ impl Setup {
         staged.map(|support| support.key.as_str()).collect()
     }
 
-    /// Describes in the plan what follows curves, and what acts during a part of the loading; empty without any.
+    /// Describes in the plan what follows curves, and what acts during a part of the loading; empty without
+    /// any.
     pub fn curves(&self) -> String {
         let (curved, staged) = (self.curved(), self.staged());
         let mut words = String::new();

@@ -44,8 +44,8 @@ impl StudyPlan {
         StudyPlan::read(study, |_| true, |count| 0..count)
     }
 
-    /// Reads only the scene of these run tables, or one sample of its uncertain inputs, and lists the runs that
-    /// they request.
+    /// Reads only the scene of these run tables, or one sample of its uncertain inputs, and lists the runs
+    /// that they request.
     pub(crate) fn of_tables(
         study: Study,
         tables: &[usize],
@@ -131,8 +131,8 @@ impl StudyPlan {
         Ok(self.scenes.len() - 1)
     }
 
-    /// Index of a scene, and those of the samples of its uncertain inputs if it has any. Along an axis a scene
-    /// is not sampled.
+    /// Index of a scene, and those of the samples of its uncertain inputs if it has any. Along an axis a
+    /// scene is not sampled.
     fn with_samples(
         &mut self,
         run: &scene::Run,

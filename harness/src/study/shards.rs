@@ -84,7 +84,8 @@ impl StudyPlan {
 /// Run table, method and Poisson's ratio.
 type Family<'a> = (usize, &'a str, Option<u64>);
 
-/// Families of a task. A sample of uncertain inputs has none: its statistics are made when all shares are merged.
+/// Families of a task. A sample of uncertain inputs has none: its statistics are made when all shares are
+/// merged.
 fn families(task: &Task, sampled: bool) -> impl Iterator<Item = Family<'_>> {
     let ratio = task.poisson.map(f64::to_bits);
     let runs = if sampled { &[][..] } else { &task.runs[..] };

@@ -131,8 +131,8 @@ impl<'a, 'b> Dynamics<'a, 'b> {
         Ok(self)
     }
 
-    /// Adds springs and dampers to the ground, whose forces are among the external ones, to the estimates of the
-    /// critical step.
+    /// Adds springs and dampers to the ground, whose forces are among the external ones, to the estimates of
+    /// the critical step.
     pub fn on_ground(mut self, springs: Vec<Springs<'b>>) -> Dynamics<'a, 'b> {
         self.ground = springs;
         self

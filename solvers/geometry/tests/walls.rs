@@ -76,8 +76,8 @@ fn volumes(mesh: &Mesh) -> BTreeMap<&str, f64> {
     found
 }
 
-/// Checks that every face belongs to at most two cells, and that the boundary of each region is closed: each of its
-/// edges has an even number of faces. Returns the Euler characteristics of the regions' boundaries.
+/// Checks that every face belongs to at most two cells, and that the boundary of each region is closed: each
+/// of its edges has an even number of faces. Returns the Euler characteristics of the regions' boundaries.
 fn conforming(mesh: &Mesh) -> Vec<i64> {
     let mut cells: BTreeMap<[u32; 3], Vec<usize>> = BTreeMap::new();
     for cell in 0..mesh.cell_count() {

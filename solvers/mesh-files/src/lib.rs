@@ -1,5 +1,5 @@
-//! Mesh files in and out: Gmsh (.msh 1, 2.2, 4.0, 4.1), Abaqus and CalculiX (.inp), VTK (.vtu, .vtk). FEBio models
-//! (.feb) are read only. Closed surfaces: STL, OBJ, PLY, OFF, VTK (.vtp), Medit (.mesh).
+//! Mesh files in and out: Gmsh (.msh 1, 2.2, 4.0, 4.1), Abaqus and CalculiX (.inp), VTK (.vtu, .vtk). FEBio
+//! models (.feb) are read only. Closed surfaces: STL, OBJ, PLY, OFF, VTK (.vtp), Medit (.mesh).
 //!
 //! Groups and sets are kept: those of cells become regions, those of faces facet groups. Every reader fills a
 //! `Content`, which alone builds the mesh. All formats are therefore checked for the same errors, which are

@@ -107,8 +107,8 @@ pub fn left_out(file: &Path) -> Vec<LeftOut> {
     content.map(Content::into_left_out).unwrap_or_default()
 }
 
-/// Parses a file by its first characters: `$` for Gmsh, `*KEYWORD` for Abaqus, `<` for XML (FEBio or VTK), `# vtk` for
-/// legacy VTK. The values of the array `wanted` are kept.
+/// Parses a file by its first characters: `$` for Gmsh, `*KEYWORD` for Abaqus, `<` for XML (FEBio or VTK), `#
+/// vtk` for legacy VTK. The values of the array `wanted` are kept.
 pub(crate) fn parse(bytes: &[u8], file: &Path, wanted: Option<&str>) -> Parsed<Content> {
     let whole = bytes;
     let bytes = unmarked(bytes);

@@ -22,8 +22,8 @@ pub struct Vectors {
     pub vectors: Vec<Option<Vector3>>,
 }
 
-/// Reads a mesh as [`read`](crate::read()) does, with the vectors of one array: cell or point data of VTK files,
-/// `$ElementData` or `$NodeData` of Gmsh files, `<ElementData type="fiber">` of FEBio models.
+/// Reads a mesh as [`read`](crate::read()) does, with the vectors of one array: cell or point data of VTK
+/// files, `$ElementData` or `$NodeData` of Gmsh files, `<ElementData type="fiber">` of FEBio models.
 ///
 /// The vectors are not checked, because a body may need only some of them.
 ///

@@ -1,6 +1,6 @@
-//! Polynomials of one input that are orthonormal under its distribution: Legendre's for a range, Hermite's for
-//! a normal distribution and for the logarithm of a lognormal one, and those of a truncated distribution or of
-//! a list.
+//! Polynomials of one input that are orthonormal under its distribution: Legendre's for a range, Hermite's
+//! for a normal distribution and for the logarithm of a lognormal one, and those of a truncated distribution
+//! or of a list.
 
 use nalgebra::Matrix4;
 

@@ -27,8 +27,8 @@ pub struct Chaos {
 
 impl Chaos {
     /// The polynomial that predicts left-out samples best, among those of total degree 1 to 3 for which the
-    /// samples suffice; `None` if they do not suffice for degree 1, if the results do not vary, or without inputs.
-    /// Source: Blatman and Sudret (2010) for the error by leave-one-out.
+    /// samples suffice; `None` if they do not suffice for degree 1, if the results do not vary, or without
+    /// inputs. Source: Blatman and Sudret (2010) for the error by leave-one-out.
     pub fn fit(inputs: &[Distribution], samples: &[Vec<f64>], results: &[f64]) -> Option<Chaos> {
         let bases: Vec<Basis> = inputs.iter().map(Basis::new).collect();
         let degrees = if inputs.is_empty() { 0..0 } else { 1..DEGREE + 1 };

@@ -99,7 +99,8 @@ pub fn statistics(inputs: &[Distribution], samples: &[Vec<f64>], results: &[f64]
     }
 }
 
-/// Quantiles at [`LEVELS`] as [`statistics`] takes them, without intervals; `None` for fewer than two results.
+/// Quantiles at [`LEVELS`] as [`statistics`] takes them, without intervals; `None` for fewer than two
+/// results.
 pub fn quantiles(inputs: &[Distribution], samples: &[Vec<f64>], results: &[f64]) -> Option<[f64; 3]> {
     if results.len() < 2 {
         return None;

@@ -75,7 +75,8 @@ fn interactions_are_in_total_shares_only() {
     }
 }
 
-/// Ishigami's function, `sin x + 7 sin^2 y + 0.1 z^4 sin x` on [-pi, pi]: no cubic fits, and the statistics say so.
+/// Ishigami's function, `sin x + 7 sin^2 y + 0.1 z^4 sin x` on [-pi, pi]: no cubic fits, and the statistics
+/// say so.
 #[test]
 fn what_no_polynomial_fits_has_the_statistics_of_the_samples() {
     let inputs = vec![Distribution::Uniform { low: -PI, high: PI }; 3];

@@ -15,7 +15,8 @@ pub(super) struct Control {
     pub steps: usize,
     /// Whether mass acts.
     pub dynamic: bool,
-    /// Spectral radius of the time integration at infinite frequency; negative for Newmark's trapezoidal rule.
+    /// Spectral radius of the time integration at infinite frequency; negative for Newmark's trapezoidal
+    /// rule.
     radius: f64,
 }
 

@@ -166,8 +166,8 @@ fn arruda_boyce(mu: f64, chain: f64) -> [f64; 5] {
     constants
 }
 
-/// A matrix with fibres that see the whole stretch. `c1 (I1 - 3) - 2 c1 ln J + k/2 (ln J)^2` is the neo-Hookean
-/// law with `mu = 2 c1` and `lambda = k`.
+/// A matrix with fibres that see the whole stretch. `c1 (I1 - 3) - 2 c1 ln J + k/2 (ln J)^2` is the
+/// neo-Hookean law with `mu = 2 c1` and `lambda = k`.
 fn coupled_trans_iso(fields: &Fields, axes: &Axes) -> Option<Keys> {
     let (mu, lambda) = (2.0 * fields.needed("c1")?, fields.needed("k")?);
     if fields.number("c2").is_some_and(|c2| c2 != 0.0) {

@@ -10,8 +10,8 @@ use crate::discretise::place;
 /// Part of a unit rigid motion below which a degree of freedom does not stop the motion.
 const STOPS: f64 = 1e-6;
 
-/// Returns degrees of freedom that stop the rigid motions of the body which `fixed` leaves free; none if there is
-/// no such motion. The stress of a load in equilibrium exerts no force on them.
+/// Returns degrees of freedom that stop the rigid motions of the body which `fixed` leaves free; none if
+/// there is no such motion. The stress of a load in equilibrium exerts no force on them.
 pub(super) fn anchors(fixed: &[FixedDof], faces: &FaceNumbers, mesh: &Mesh) -> Vec<FixedDof> {
     let (low, high) = place::bounds(mesh);
     let (centre, size) = (nalgebra::center(&low, &high), place::size(mesh));

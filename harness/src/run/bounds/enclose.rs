@@ -75,8 +75,8 @@ pub(crate) fn bounds(method: &Discretisation, setup: &Setup) -> Result<Bounds, F
     Ok(Bounds { results, vertices: vertex_count(mesh), cells: mesh.cell_count(), dofs })
 }
 
-/// Factor of the given causes, the inverse of that of a unit load, with which the bounds of the load's work are
-/// narrowest: both then have gaps of the same size.
+/// Factor of the given causes, the inverse of that of a unit load, with which the bounds of the load's work
+/// are narrowest: both then have gaps of the same size.
 fn scale(given: &Bracket, unit: &Bracket) -> f64 {
     let ratio = (unit.upper - unit.lower) / (given.upper - given.lower);
     if ratio > 0.0 && ratio.is_finite() { ratio.powf(0.25) } else { 1.0 }

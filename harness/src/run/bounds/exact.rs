@@ -7,8 +7,8 @@ use crate::discretise::Discretisation;
 use crate::error::Failure;
 use crate::scenario::setup::Setup;
 
-/// Strain energy of the scene's exact solution, J, by a finer quadrature than that of the bounds; `None` without
-/// such a solution.
+/// Strain energy of the scene's exact solution, J, by a finer quadrature than that of the bounds; `None`
+/// without such a solution.
 ///
 /// # Errors
 /// A mesh with curved faces.

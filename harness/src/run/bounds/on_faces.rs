@@ -25,8 +25,8 @@ pub(super) struct OnFaces {
     pub fixed: Vec<FixedDof>,
     /// Degrees of freedom that stop the rigid motions which supports on faces leave free.
     pub anchors: Vec<FixedDof>,
-    /// Moments of the tractions of each cause, N: none for the motion of the supports, then the loads, then the
-    /// unit load of each component of each mean.
+    /// Moments of the tractions of each cause, N: none for the motion of the supports, then the loads, then
+    /// the unit load of each component of each mean.
     pub loads: Vec<Vec<Vector3>>,
     /// Numbers and displacements (m) of the supports that move; `None` for a displacement that varies.
     moved: Vec<(usize, Option<Vector3>)>,

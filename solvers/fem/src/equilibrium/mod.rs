@@ -1,5 +1,5 @@
-//! Equilibrium elements: stress fields of degree 1 in the four parts of a tetrahedron, in equilibrium with each
-//! other and without body force.
+//! Equilibrium elements: stress fields of degree 1 in the four parts of a tetrahedron, in equilibrium with
+//! each other and without body force.
 //!
 //! Every set of linear tractions on the four faces that is itself in equilibrium belongs to exactly one such
 //! field. The unknowns are displacements of degree 1 of the faces, three vectors each. A cell has no

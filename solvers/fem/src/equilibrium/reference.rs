@@ -21,8 +21,8 @@ pub(super) struct Reference {
     /// Stress components by row `6 (4 part + k) + component` and field. The sum over `k` of products of two
     /// fields is the integral over the part divided by its volume.
     pub stress: DMatrix<f64>,
-    /// Moments of the tractions by row `3 (3 face + vertex) + axis` and field: integrals of the traction times
-    /// the linear function of the vertex.
+    /// Moments of the tractions by row `3 (3 face + vertex) + axis` and field: integrals of the traction
+    /// times the linear function of the vertex.
     pub moments: DMatrix<f64>,
 }
 
@@ -69,7 +69,8 @@ fn gradients(part: usize) -> [Vector3; 4] {
 impl Reference {
     fn new() -> Reference {
         let values = balanced();
-        // The fields by lower triangle L of the mass (1 + delta) / 20 of linear functions: values^T L L^T values.
+        // The fields by lower triangle L of the mass (1 + delta) / 20 of linear functions: values^T L L^T
+        // values.
         let mass = nalgebra::Matrix4::from_fn(|i, j| if i == j { 0.1 } else { 0.05 });
         let lower = mass.cholesky().expect("a mass is definite").l();
         let stress = DMatrix::from_fn(96, FIELDS, |row, field| {

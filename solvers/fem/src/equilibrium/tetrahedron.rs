@@ -11,8 +11,8 @@ use crate::error::FemError;
 pub struct EquilibriumTet {
     /// Field to square root of the energy: `energy = |root s|^2 / 2`.
     root: DMatrix<f64>,
-    /// Upper factor of the flexibility: `upper^T upper = root^T root`, by QR of `root`, which keeps the digits
-    /// that the product would lose at a Poisson's ratio near 1/2.
+    /// Upper factor of the flexibility: `upper^T upper = root^T root`, by QR of `root`, which keeps the
+    /// digits that the product would lose at a Poisson's ratio near 1/2.
     upper: DMatrix<f64>,
     /// Field to moments of the tractions, N, (36, 30).
     moments: DMatrix<f64>,
@@ -26,14 +26,15 @@ pub struct Response {
     pub moments: [Vector3; 12],
 }
 
-/// Integrals of a linear traction times the linear functions of a triangle's corners, N, from its values at the
-/// corners (Pa) and the area (m^2).
+/// Integrals of a linear traction times the linear functions of a triangle's corners, N, from its values at
+/// the corners (Pa) and the area (m^2).
 pub fn face_moments(tractions: &[Vector3; 3], area: f64) -> [Vector3; 3] {
     linear_moments(tractions).map(|moment| moment * area)
 }
 
 impl EquilibriumTet {
-    /// Creates the element from the corners (m), and the bulk and shear modulus (Pa) of an isotropic material.
+    /// Creates the element from the corners (m), and the bulk and shear modulus (Pa) of an isotropic
+    /// material.
     ///
     /// # Errors
     /// A cell without volume; `element` is its number, for the message.

@@ -23,7 +23,8 @@ use crate::{Point3, Vector3, quality};
 const PASSES: usize = 5;
 /// Largest move of a corner in a pass, over the length of the shortest edge of its faces.
 const FARTHEST: f64 = 0.25;
-/// Number of halvings of the moves at a cell that would become worse than is allowed, before they are given up.
+/// Number of halvings of the moves at a cell that would become worse than is allowed, before they are given
+/// up.
 const HALVINGS: u32 = 4;
 /// Angles (degrees) between faces of tetrahedra that moves may not exceed: those proven for the stuffing.
 const ANGLES: [f64; 2] = [10.7, 164.8];
@@ -45,8 +46,8 @@ pub(super) fn has_angles(_: CellKind, points: &[Point3]) -> bool {
     low >= ANGLES[0] && high <= ANGLES[1] && a.cross(&b).dot(&c) > 0.0
 }
 
-/// Moves the boundary of straight quadratic tetrahedra whose corners there lie on the surface: first the middle nodes
-/// onto the surface.
+/// Moves the boundary of straight quadratic tetrahedra whose corners there lie on the surface: first the
+/// middle nodes onto the surface.
 pub(super) fn quadratic(mesh: Mesh, surface: &Surface) -> Mesh {
     let sound = |kind: CellKind, points: &[Point3]| {
         let dets = kind.entry().nodes.iter().map(|xi| element::map(kind, points, *xi).1.determinant());
@@ -183,7 +184,8 @@ struct Triangle {
     nodes: [u32; 3],
     /// Twice the area times the normal, m^2.
     area: Vector3,
-    /// Integral of the distance from the surface with the linear shape function of each node, over twice the area, m.
+    /// Integral of the distance from the surface with the linear shape function of each node, over twice the
+    /// area, m.
     lacking: [f64; 3],
     /// Length of the shortest edge, m.
     shortest: f64,
@@ -276,8 +278,8 @@ impl<D: Fn(&Point3) -> f64 + Sync, C: Fn(&[Vector3]) -> bool + Sync> Sheet<'_, D
     }
 }
 
-/// Moves the nodes. Moves at cells that would not be `sound` are halved, and given up at last: every cell that is
-/// sound stays so.
+/// Moves the nodes. Moves at cells that would not be `sound` are halved, and given up at last: every cell
+/// that is sound stays so.
 pub(super) fn moved(
     mesh: &Mesh,
     mut moves: Vec<Vector3>,

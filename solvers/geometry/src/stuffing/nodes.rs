@@ -52,7 +52,8 @@ pub fn stuff_with_nodes(
     found.map(|(stuffed, spacing)| (stuffed.linear(surface), spacing))
 }
 
-/// Fills a surface with quadratic tetrahedra of one size that have about `nodes` nodes, as [`stuff_quadratic`] does.
+/// Fills a surface with quadratic tetrahedra of one size that have about `nodes` nodes, as
+/// [`stuff_quadratic`] does.
 ///
 /// # Errors
 /// As for [`stuff`].

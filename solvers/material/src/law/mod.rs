@@ -221,9 +221,9 @@ impl Law {
         Some(Law::WithVolumetric(WithVolumetric::new(rest, Volumetric { form, bulk })))
     }
 
-    /// Returns the isotropic laws, without those of foams, with the same moduli at small strain, in the order of tables, for tests of common
-    /// properties. Parameters other than Young's modulus (Pa) and Poisson's ratio have their defaults, or
-    /// values of a rubber.
+    /// Returns the isotropic laws, without those of foams, with the same moduli at small strain, in the order
+    /// of tables, for tests of common properties. Parameters other than Young's modulus (Pa) and Poisson's
+    /// ratio have their defaults, or values of a rubber.
     pub fn all(young: f64, poisson: f64) -> Result<Vec<Law>, Problem> {
         let hooke = LinearElastic::new(young, poisson)?;
         let sample = |entry: &LawEntry| {

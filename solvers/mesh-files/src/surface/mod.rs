@@ -64,8 +64,8 @@ pub fn read_treated_bytes(
     treated(triangles(bytes, file)?, file, unit, treatment)
 }
 
-/// Reads the closed surfaces of several files as [`read_treated`] does, as one surface. Each of them names its
-/// triangles, and faces are numbered on from file to file.
+/// Reads the closed surfaces of several files as [`read_treated`] does, as one surface. Each of them names
+/// its triangles, and faces are numbered on from file to file.
 ///
 /// # Errors
 /// As for [`read_treated`].

@@ -38,8 +38,9 @@ fn stiffness(solid: &Solid) -> Vec<f64> {
     sums
 }
 
-/// Returns the number of the prescribed parameter that each of the degrees of freedom of `nodes` nodes follows;
-/// nothing if none has a curve of its own. A parameter in several supports follows the first of them.
+/// Returns the number of the prescribed parameter that each of the degrees of freedom of `nodes` nodes
+/// follows; nothing if none has a curve of its own. A parameter in several supports follows the first of
+/// them.
 fn prescribed_by(problem: &StaticProblem, nodes: usize) -> Vec<usize> {
     if problem.curves.fixed.own.is_empty() {
         return Vec::new();
@@ -145,7 +146,8 @@ impl<'a> Equations<'a> {
         Solid { active: Active { full, at: Some((&self.problem.curves.active, time)) }, ..self.problem.solid }
     }
 
-    /// Returns the prescribed value at `time` of each degree of freedom, with its first and second derivative.
+    /// Returns the prescribed value at `time` of each degree of freedom, with its first and second
+    /// derivative.
     pub fn prescribed_at(&self, time: f64) -> impl Fn(usize) -> Option<[f64; 3]> {
         let fixed = &self.problem.curves.fixed;
         let usual = fixed.usual.derivatives(time);

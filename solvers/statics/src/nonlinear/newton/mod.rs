@@ -152,7 +152,8 @@ impl<'a> Newton<'a> {
         &self.equations.prescribed
     }
 
-    /// Returns the prescribed value at `time` of each degree of freedom, with its first and second derivative.
+    /// Returns the prescribed value at `time` of each degree of freedom, with its first and second
+    /// derivative.
     pub fn prescribed_at(&self, time: f64) -> impl Fn(usize) -> Option<[f64; 3]> {
         self.equations.prescribed_at(time)
     }
