@@ -8,7 +8,7 @@ use super::body::Body;
 use super::check::{Bound, Check};
 use super::condition::LoadKind;
 use super::material::medium;
-use super::method::{Method, Size};
+use super::method::{Family, Fem, Method, Size};
 use super::output::Output;
 use super::procedure::{Procedure, ProcedureKind};
 use super::purpose::Purpose;
@@ -41,6 +41,7 @@ pub(crate) fn scene(scene: &Scene, report: &Report) {
     if scene.output.bounds {
         bounds(scene, report);
     }
+    goals(scene, report);
     if let Some(reference) = reference {
         self::reference(reference, scene, report);
     }
@@ -56,6 +57,29 @@ pub(crate) fn scene(scene: &Scene, report: &Report) {
             _ => continue,
         };
         report.add("metric", Problem::new(problem).help(help));
+    }
+}
+
+/// Reports numbers that the scene does not have, and bodies whose meshes can't be refined.
+fn goals(scene: &Scene, report: &Report) {
+    let output = &scene.output;
+    let count = [scene.supports.len(), output.means.len(), output.probes.len()];
+    if let Some(goal) = &output.error_of {
+        goal.demands(&scene.tools, count, "error_of", &report.at("output"));
+    }
+    let kind = scene.procedure.kind();
+    for (i, method) in scene.methods.iter().enumerate() {
+        let Family::Fem(Fem { adapt: Some(adapt), .. }) = &method.family else { continue };
+        let report = report.at(&format!("method[{i}].refine"));
+        adapt.by.demands(&scene.tools, count, "by", &report);
+        let at_rest = [ProcedureKind::Linear, ProcedureKind::Static].contains(&kind);
+        let help = "take [procedure] kind = \"linear\" or \"static\", or leave refine out";
+        report.require(at_rest, "", "is for solutions at rest", help);
+        let sound = matches!(scene.body, Body::Box { .. } | Body::File(_))
+            || matches!(method.size(), Some(Size::File(_)));
+        let problem =
+            format!("refines boxes, bodies of files and meshes of files, not a {}", scene.body.name());
+        report.require(sound, "", &problem, "leave refine out");
     }
 }
 

@@ -24,6 +24,7 @@ mod error;
 mod expression;
 mod field;
 mod foundation;
+mod goal;
 mod limits;
 mod load;
 mod material;
@@ -65,12 +66,13 @@ pub use error::{ErrorKind, SceneError};
 pub use expression::{Expression, NotFinite};
 pub use field::{ScalarField, VectorField};
 pub use foundation::Foundation;
+pub use goal::Goal;
 pub use load::{load, load_with, parse, parse_with, schema};
 pub use material::{Directions, Material, MaterialRegion, Relaxation, medium};
 pub use mesh_file::MeshFile;
 pub use method::{
-    Basis, Cloud, ConstraintRows, Dilation, Efg, Element, Essential, EssentialKind, External, Family, Fem,
-    Functions, Hourglass, HourglassModulus, Integration, Jitter, Mass, Method, Refine, Regions, Setting,
+    Adapt, Basis, Cloud, ConstraintRows, Dilation, Efg, Element, Essential, EssentialKind, External, Family,
+    Fem, Functions, Hourglass, HourglassModulus, Integration, Jitter, Mass, Method, Refine, Regions, Setting,
     Size, SupportRule, SupportShape,
 };
 pub use output::{Enclosed, Output, Repeated, Stretch, Target, Transfer};

@@ -4,6 +4,7 @@ use catalogue::{Problem, Values, suggest};
 use schemars::JsonSchema;
 use serde::Deserialize;
 
+use super::goal::Goal;
 use super::mesh_file::MeshFile;
 use super::procedure::ProcedureKind;
 use super::reference::Reference;
@@ -42,6 +43,9 @@ pub(crate) struct OutputKeys {
     /// Whether the errors of each run are estimated, by a prediction with more shape functions on the same body
     #[serde(default)]
     estimate: bool,
+    /// Number whose error is traced to the cells of each method that cause it, such as "tool-force", "probe-2"
+    /// or "reaction-z"
+    error_of: Option<String>,
     /// Whether strict bounds of the strain energy are computed with each run, in linear elasticity
     #[serde(default)]
     bounds: bool,
@@ -179,6 +183,8 @@ pub struct Output {
     pub pictures: bool,
     /// Whether the errors of each run are estimated.
     pub estimate: bool,
+    /// Number whose error is traced to the cells that cause it.
+    pub error_of: Option<Goal>,
     /// Whether strict bounds of the strain energy are computed with each run.
     pub bounds: bool,
     /// Repetition of the loading in frames.
@@ -261,6 +267,7 @@ impl OutputKeys {
             beside: self.beside,
             pictures: self.pictures,
             estimate: self.estimate,
+            error_of: self.error_of.and_then(|name| Goal::read(&name, "error_of", report)),
             bounds: self.bounds,
             repeated: self.repeated.map(|keys| keys.read(&report.at("repeated"))),
         }
@@ -346,6 +353,7 @@ impl Output {
                 ("beside", self.beside.is_some()),
                 ("pictures", self.pictures),
                 ("estimate", self.estimate && kind != ProcedureKind::Modes),
+                ("error_of", self.error_of.is_some()),
                 ("repeated", self.repeated.is_some() && kind == ProcedureKind::Prepare),
             ] {
                 report.require(!given, key, problem, help);
@@ -358,6 +366,8 @@ impl Output {
         let estimated = at_rest || kind == ProcedureKind::Modes;
         let problem = "is of solutions at rest and of vibrations, not of motion";
         report.require(estimated || !self.estimate, "estimate", problem, help);
+        let problem = "is traced in solutions at rest, not in motion";
+        report.require(at_rest || self.error_of.is_none(), "error_of", problem, help);
         let compared = !self.transfers.is_empty() || matches!(reference, Some(Reference::Method { .. }));
         let help = "add output.transfer = { to = { file = \"...\" }, ... }";
         let sound = compared || self.beside.is_none();

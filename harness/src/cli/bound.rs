@@ -141,8 +141,15 @@ fn meshed(
     let size = args.size.map(Size::Spacing).or(args.nodes.map(|nodes| Size::Nodes(nodes as usize)));
     if let Some(size) = size {
         let (element, dilation) = (Element::from(CellKind::Tet4), Dilation::Standard);
-        let family =
-            Family::Fem(Fem { element, dilation, reduced: false, hourglass: None, size, jitter: None });
+        let family = Family::Fem(Fem {
+            element,
+            dilation,
+            reduced: false,
+            hourglass: None,
+            size,
+            jitter: None,
+            adapt: None,
+        });
         return Ok(scene::Method { id: "bounds".into(), series: "bounds".into(), family, mass: None });
     }
     let mut best: Option<(bool, usize, &scene::Method)> = None;

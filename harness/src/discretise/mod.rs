@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use cases::scene::{ConstraintRows, Dilation};
+use cases::scene::{ConstraintRows, Dilation, Goal};
 use catalogue::metric::Metric;
 use fem::{Elements, VolumeRule};
 use geometry::shapes::Shape;
@@ -71,6 +71,19 @@ pub struct Refine {
     pub on: Arc<dyn Fn(Cloud) -> Result<Discretisation, Failure> + Send + Sync>,
 }
 
+/// Refinement of a mesh until a number is accurate.
+#[derive(Clone)]
+pub struct Adapt {
+    /// The number.
+    pub by: Goal,
+    /// Relative error at which the refinement ends.
+    pub error: f64,
+    /// Largest number of meshes.
+    pub rounds: usize,
+    /// Builds the method on linear tetrahedra, of which its own cells are parts.
+    pub on: Arc<dyn Fn(Mesh) -> Result<Discretisation, Failure> + Send + Sync>,
+}
+
 /// Integration points inside the body, as far as they are known before the tables are filled.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct InnerPoints {
@@ -111,6 +124,8 @@ pub struct Discretisation {
     pub inner: InnerPoints,
     /// Adaptive refinement of the cloud, if any.
     pub refine: Option<Refine>,
+    /// Refinement of the mesh until a number is accurate, if wanted.
+    pub adapt: Option<Adapt>,
     /// Description of the support search; `None` if the cells give the neighbours.
     pub supports: Option<String>,
     /// Description of the shape functions and their evaluation points.
@@ -176,6 +191,7 @@ impl Discretisation {
             dilation,
             inner: InnerPoints { per_cell: 0, vertices: true, grid: false },
             refine: None,
+            adapt: None,
             supports: None,
             shape_functions: "one row per Gauss point of each element".into(),
             outside: None,

@@ -108,7 +108,8 @@ pub(crate) fn states(run: &Solved, most: usize) -> Result<States, Failure> {
     let recorded = solution.history.as_ref().map_or(0, |history| history.steps.len());
     let left_out = recorded.saturating_sub(states.len());
     let reaction = if to_mesh.is_none() { solution.reaction.clone() } else { Vec::new() };
-    Ok(States { mesh: mesh.clone(), states, tools, reaction, numbers: Default::default(), left_out })
+    let (numbers, error_source) = Default::default();
+    Ok(States { mesh: mesh.clone(), states, tools, reaction, numbers, error_source, left_out })
 }
 
 /// Whether the `k`-th of `count` states is among the `most` states that end equal parts of the history.

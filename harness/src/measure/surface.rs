@@ -23,8 +23,14 @@ const CELLS: usize = 30_000;
 /// Number of points from which the difference to the reference is interpolated.
 const NEAREST: usize = 4;
 
-/// Surface, tools and states of a run; `field` is the displacement at the points where runs are compared.
-pub(crate) fn surface(run: &Solved, field: &Field, request: &Request) -> Result<RecordedBody, Failure> {
+/// Surface, tools and states of a run; `field` is the displacement at the points where runs are compared,
+/// `source` the part of an error that each cell causes per volume.
+pub(crate) fn surface(
+    run: &Solved,
+    field: &Field,
+    request: &Request,
+    source: &[f64],
+) -> Result<RecordedBody, Failure> {
     let all = states(run, KEPT)?;
     let mesh = &all.mesh;
     let mut facets = mesh.boundary();
@@ -46,6 +52,7 @@ pub(crate) fn surface(run: &Solved, field: &Field, request: &Request) -> Result<
         points: vectors(points.skin().map(|n| mesh.points()[n].coords)),
         faces: faces.collect(),
         off: off(run, field, request, points.skin().map(|n| &mesh.points()[n]))?,
+        source: if source.is_empty() { String::new() } else { pack(at_points(mesh, &points, source)) },
         inside: keeps_inside(mesh).then(|| inside(mesh, &points, &states)),
         cloud: cloud(run)?,
         tools: all.tools.iter().map(skin).collect(),
@@ -121,25 +128,29 @@ fn values(
 ) -> Option<Values> {
     let mesh = run.method.mesh();
     let recovered = Recovered::new(run, at.u, at.parameters?)?;
-    // The determinant is averaged over the adjacent cells of the material.
-    let mut j = vec![(0.0, 0.0); points.all.len()];
-    let det_f = &state.tensors.as_ref()?.det_f;
-    for (cell, det_f) in det_f.iter().enumerate() {
-        for &node in mesh.cell(cell) {
-            if let Some(k) = points.index(mesh, node, cell) {
-                j[k] = (j[k].0 + det_f, j[k].1 + 1.0);
-            }
-        }
-    }
-    let value = |(&(node, region), (sum, count)): (&(u32, u16), (f64, f64))| {
+    let j = at_points(mesh, points, &state.tensors.as_ref()?.det_f);
+    let value = |(&(node, region), j): (&(u32, u16), f32)| {
         let x = &mesh.points()[node as usize];
         let stress = match rows {
             Some(rows) => recovered.at(x, region, rows.rows().row(node as usize)),
             None => recovered.at(x, region, (&[node], &[1.0])),
         };
-        [-stress.trace() / 3.0, von_mises(&stress), sum / count].map(|v| v as f32)
+        [(-stress.trace() / 3.0) as f32, von_mises(&stress) as f32, j]
     };
     Some(points.all.iter().zip(j).map(value).collect())
+}
+
+/// Means of the values of the cells of its material around each point.
+fn at_points(mesh: &Mesh, points: &Points, of_cell: &[f64]) -> impl Iterator<Item = f32> {
+    let mut sums = vec![(0.0, 0.0); points.all.len()];
+    for (cell, value) in of_cell.iter().enumerate() {
+        for &node in mesh.cell(cell) {
+            if let Some(k) = points.index(mesh, node, cell) {
+                sums[k] = (sums[k].0 + value, sums[k].1 + 1.0);
+            }
+        }
+    }
+    sums.into_iter().map(|(sum, count)| (sum / count) as f32)
 }
 
 /// Difference (m) of surface points from the reference or the exact solution at the end. It is interpolated

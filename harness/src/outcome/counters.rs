@@ -63,6 +63,8 @@ pub struct Counters {
     pub transfer_tables: u64,
     /// Degrees of freedom of the prediction from which errors are estimated.
     pub predicted_dofs: u64,
+    /// Degrees of freedom of the richer method in which the error of a number is traced.
+    pub traced_dofs: u64,
     /// Degrees of freedom of the displacement field and of the stress field between which the exact strain
     /// energy lies.
     pub bounding_dofs: u64,
@@ -90,6 +92,7 @@ impl Counters {
             StageName::Transfer => self.transfer_rows,
             StageName::Schemes => self.transfer_tables,
             StageName::Estimate => self.predicted_dofs,
+            StageName::Trace => self.traced_dofs,
             StageName::Bounds => self.bounding_dofs,
         }
     }
@@ -123,6 +126,7 @@ impl AddAssign for Counters {
         self.transfer_rows += other.transfer_rows;
         self.transfer_tables += other.transfer_tables;
         self.predicted_dofs += other.predicted_dofs;
+        self.traced_dofs += other.traced_dofs;
         self.bounding_dofs += other.bounding_dofs;
     }
 }

@@ -101,8 +101,7 @@ impl Estimated {
             return None;
         }
         let saturation = distance(&self.predicted, &coarser.predicted) / moved;
-        let counted = saturation.min(SATURATED * SATURATED / saturation);
-        let beyond = 1.0 / (1.0 - counted) - 1.0;
+        let beyond = beyond(saturation);
         for (predicted, own) in self.predicted.iter_mut().zip(&self.own) {
             *predicted += beyond * (*predicted - own);
         }
@@ -127,6 +126,22 @@ impl Estimated {
             push(metrics, address, value);
         }
     }
+}
+
+/// Error of a prediction with this saturation, divided by its distance from the run.
+fn beyond(saturation: f64) -> f64 {
+    let counted = saturation.min(SATURATED * SATURATED / saturation);
+    1.0 / (1.0 - counted) - 1.0
+}
+
+/// Corrects the prediction of a number by that on a coarser mesh. Both are a number in the run and its
+/// prediction.
+pub(crate) fn corrected([own, predicted]: [f64; 2], coarser: [f64; 2]) -> f64 {
+    let moved = (own - coarser[0]).abs();
+    if moved <= ROUNDING * predicted.abs() {
+        return predicted;
+    }
+    predicted + beyond((predicted - coarser[1]).abs() / moved) * (predicted - own)
 }
 
 fn distance(a: &[f64], b: &[f64]) -> f64 {

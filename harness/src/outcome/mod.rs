@@ -21,7 +21,7 @@ use records::{Record, Reference, SurfaceField};
 
 use crate::error::Failure;
 pub use counters::Counters;
-pub(crate) use estimated::{Estimated, Estimates, SATURATED};
+pub(crate) use estimated::{Estimated, Estimates, SATURATED, corrected};
 pub use face_results::{FaceMean, SupportForce};
 pub(crate) use latency::FOR_P99;
 pub use latency::Latency;
@@ -180,6 +180,9 @@ pub struct Outcome {
     pub reference: Option<Reference>,
     /// Quantities beside their predictions, if requested.
     pub(crate) estimates: Option<Estimates>,
+    /// Part of the error of output.error_of that each cell causes per volume, over the mean of the body; empty
+    /// unless traced.
+    pub(crate) error_source: Vec<f64>,
 }
 
 /// Failed run without results.

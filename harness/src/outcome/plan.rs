@@ -74,6 +74,8 @@ stages! {
     Schemes = "transfer schemes",
     /// Prediction with more shape functions, from which errors are estimated.
     Estimate = "error estimate",
+    /// Error of a number, traced to the cells that cause it.
+    Trace = "error trace",
     /// Strict bounds of the strain energy.
     Bounds = "strict bounds",
 }

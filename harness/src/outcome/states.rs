@@ -18,6 +18,8 @@ pub struct States {
     /// Numbers of the mesh points and of the cells in a file, written beside their values; empty unless
     /// given.
     pub(crate) numbers: [Vec<u64>; 2],
+    /// Part of an error that each cell causes per volume, over the mean of the body; empty unless traced.
+    pub(crate) error_source: Vec<f64>,
     /// Number of recorded states that were left out.
     pub(crate) left_out: usize,
 }
@@ -134,6 +136,10 @@ impl States {
     fn body(&self, state: &State) -> Vec<u8> {
         let mut at_points = vec![vectors("displacement", &state.displacement)];
         let mut in_cells = state.tensors.as_ref().map_or(Vec::new(), Tensors::values);
+        if !self.error_source.is_empty() {
+            let numbers = self.error_source.clone();
+            in_cells.push(Values { name: "error_source", components: 1, numbers });
+        }
         let [nodes, elements] = &self.numbers;
         let number = |name, of: &[u64]| Values {
             name,

@@ -96,7 +96,11 @@ impl Timings {
         let rest = &mut outer.phases[0];
         rest.wall.iter_mut().for_each(|t| *t = (*t - wall).max(0.0));
         rest.cpu.iter_mut().for_each(|t| *t = (*t - cpu).max(0.0));
-        self.phases.extend(inner.phases.into_iter().chain(outer.phases));
+        for Timed { phase, wall, cpu } in inner.phases.into_iter().chain(outer.phases) {
+            let timed = self.of(phase);
+            timed.wall.extend(wall);
+            timed.cpu.extend(cpu);
+        }
         result
     }
 

@@ -1,5 +1,6 @@
 //! The force of each support on the body.
 
+use std::collections::HashSet;
 use std::ops::Range;
 
 use super::Prepared;
@@ -43,6 +44,18 @@ impl Prepared {
     /// Iterates over the constrained axes of each support.
     pub fn support_axes(&self) -> impl Iterator<Item = [bool; 3]> {
         self.held.iter().map(|held| held.axes)
+    }
+
+    /// Iterates over the nodes whose parameter along an axis a support prescribes, unless an earlier one does;
+    /// `None` if it is a weak support or has constraint rows.
+    pub fn nodes_of_support(&self, support: usize, axis: usize) -> Option<impl Iterator<Item = u32>> {
+        let Held { from, to, .. } = &self.held[support];
+        let along = move |dof: &&FixedDof| usize::from(dof.axis) == axis;
+        let earlier: HashSet<u32> =
+            self.fixed[..from.fixed].iter().filter(along).map(|dof| dof.node).collect();
+        let nodal = from.rows == to.rows && from.weak == to.weak;
+        let own = self.fixed[from.fixed..to.fixed].iter().filter(along).map(|dof| dof.node);
+        nodal.then(|| own.filter(move |node| !earlier.contains(node)))
     }
 
     /// Returns the resultant of each support's forces on the body. A degree of freedom in several supports

@@ -3,7 +3,7 @@
 use cases::scene::LinearSolver;
 use statics::assemble;
 
-use super::linear_solver::{serves, solved};
+use super::linear_solver::{serves, solved, tangents};
 use super::problem::Problem;
 use super::solution::Solution;
 use super::stages::Stages;
@@ -18,7 +18,9 @@ pub(super) fn stages(method: &Discretisation, setup: &Setup, asked: LinearSolver
     let (serves, why) = serves(method, setup, asked);
     let stiffness = (true, format!("linear static{}", setup.springs()));
     let factorisation = (true, format!("{} ({why})", serves.meaning()));
-    Stages { stiffness, factorisation, ..Stages::linear() }
+    // The error of a number is traced by a tangent.
+    let (iterates, _) = tangents(method, setup, None);
+    Stages { stiffness, factorisation, iterates, ..Stages::linear() }
 }
 
 /// Assembles, factors and solves, each timed separately.

@@ -148,14 +148,14 @@ pub(super) fn serves(method: &Discretisation, setup: &Setup, asked: LinearSolver
     }
 }
 
-/// Whether the tangents of nonlinear statics are iterated, and the description of the factorisation stage in
-/// the plan.
-pub(super) fn tangents(method: &Discretisation, setup: &Setup, asked: &Static) -> (bool, String) {
+/// Whether the tangents of Newton's method are iterated, and the description of the factorisation stage in the
+/// plan.
+pub(super) fn tangents(method: &Discretisation, setup: &Setup, asked: Option<&Static>) -> (bool, String) {
     let forced = |tool: &PlacedTool| matches!(tool.drive, Drive::Force(_));
     let direct = !method.interpolates
         || method.dilation == Dilation::Mixed
         || !matches!(method.essential, Essential::Nodal)
-        || asked.limit_within.is_some()
+        || asked.is_some_and(|asked| asked.limit_within.is_some())
         || setup.tools.iter().any(forced);
     let (unknowns, of_cube) = unknowns(method);
     let least = TANGENTS * unknowns as f64 / of_cube;

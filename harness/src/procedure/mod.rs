@@ -14,6 +14,7 @@ mod relaxation;
 mod solution;
 mod stages;
 mod statics;
+mod traced;
 
 use cases::scene::Procedure;
 
@@ -25,6 +26,7 @@ pub(crate) use problem::Problem;
 pub(crate) use refine::refined;
 pub(crate) use solution::{Carried, Solution, StepHistory, Vibration};
 pub(crate) use statics::{solves, static_params, with_static_problem};
+pub(crate) use traced::{traced, unbalanced};
 
 /// Predicts the modes of another method.
 pub(crate) fn predict_modes(problem: &Problem, meters: &mut Meters) -> Result<Solution, Failure> {

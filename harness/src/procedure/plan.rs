@@ -1,12 +1,12 @@
 //! The plan of a run: the stages that it needs, the stages that it skips, and why.
 
-use cases::scene::{ConstraintRows, Dilation, Procedure};
+use cases::scene::{ConstraintRows, Dilation, Goal, Procedure};
 
 use super::solution::Solution;
 use super::stages::Stages;
 use super::{explicit, external, implicit_dynamic, linear, modes, statics};
 use crate::discretise::enriched::NEARLY_INCOMPRESSIBLE;
-use crate::discretise::{Discretisation, Essential};
+use crate::discretise::{Adapt, Discretisation, Essential};
 use crate::outcome::{Counters, Plan, StageName};
 use crate::scenario::setup::Setup;
 
@@ -55,6 +55,9 @@ pub(crate) fn plan(method: &Discretisation, setup: &Setup, wanted: Wanted) -> Pl
     add(StageName::Schemes, schemes(wanted));
     if setup.output.estimate {
         add(StageName::Estimate, estimate(method));
+    }
+    if let Some(goal) = &setup.output.error_of {
+        add(StageName::Trace, trace(method, goal));
     }
     if setup.output.bounds {
         let why = "a displacement field and a stress field in equilibrium on tetrahedra of the same body";
@@ -112,6 +115,12 @@ fn stages_of(method: &Discretisation, setup: &Setup) -> Stages {
 }
 
 fn refinement(method: &Discretisation) -> (bool, String) {
+    if let Some(Adapt { by, error, rounds, .. }) = &method.adapt {
+        let percent = 100.0 * error;
+        let why =
+            format!("where the error of {by} comes from, until it is {percent} %, {rounds} meshes at most");
+        return (true, why);
+    }
     match &method.refine {
         Some(refine) => {
             let times = if refine.steps == 1 { "once".into() } else { format!("{} times", refine.steps) };
@@ -198,6 +207,13 @@ fn friction(setup: &Setup) -> (bool, String) {
 fn estimate(method: &Discretisation) -> (bool, String) {
     match &method.outside {
         None => (true, "a linear system of quadratic elements on the same body".into()),
+        Some(_) => (false, "the equilibrium is that of another program".into()),
+    }
+}
+
+fn trace(method: &Discretisation, goal: &Goal) -> (bool, String) {
+    match &method.outside {
+        None => (true, format!("unbalanced forces in quadratic elements and their influence on {goal}")),
         Some(_) => (false, "the equilibrium is that of another program".into()),
     }
 }

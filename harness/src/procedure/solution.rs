@@ -66,6 +66,13 @@ pub(crate) struct Carried<'a> {
     pub(crate) nearest: &'a [u32],
 }
 
+impl Carried<'_> {
+    /// Fraction of the loading that was reached.
+    pub(crate) fn load(&self) -> f64 {
+        self.from.history.as_ref().map_or(1.0, |history| history.last.load)
+    }
+}
+
 /// Load steps of a static path or recorded states of a motion, up to the end that was reached.
 pub(crate) struct StepHistory {
     /// Ends of the scene's load steps, or its recorded states.

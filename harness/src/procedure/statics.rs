@@ -52,7 +52,7 @@ pub(super) fn stages(method: &Discretisation, setup: &Setup, asked: &Static) -> 
         OnStall::Stop => (false, "the load path ends if the solver stalls (on_stall = \"stop\")"),
         OnStall::Relax => relaxation::possible(method, setup),
     };
-    let (iterates, tangents) = tangents(method, setup, asked);
+    let (iterates, tangents) = tangents(method, setup, Some(asked));
     Stages {
         stiffness: (true, "the tangent of every iteration".into()),
         factorisation: (true, tangents),
@@ -163,13 +163,18 @@ fn path(problem: &Problem, asked: &Static, counters: &mut Counters) -> Result<(S
     Ok((solution, limit))
 }
 
-/// Predicts the equilibrium near the end of another method's solution.
-pub(super) fn predicted(problem: &Problem, carried: &Carried) -> Result<Solution, Failure> {
+/// Calls `work` with the static problem of a richer method, parameters of Newton's method with this tolerance,
+/// and the state near its equilibrium that another method's solution gives.
+pub(super) fn near<T>(
+    problem: &Problem,
+    carried: &Carried,
+    tolerance: f64,
+    work: impl FnOnce(&StaticProblem, &NewtonParams, Nearby) -> T,
+) -> Result<T, Failure> {
     let Problem { method, setup, prepared, .. } = *problem;
     let Carried { from, u, pressure, nearest } = *carried;
     let last = from.history.as_ref().map(|history| &history.last);
     let closures: Vec<f64> = last.iter().flat_map(|last| &last.tools).map(|tool| tool.closure).collect();
-    let load = last.map_or(1.0, |last| last.load);
     let (contact, tangents) = (prepared.contact(), Tangents::new(problem)?);
     let each = from.contact.iter().zip(&setup.tools).zip(&closures);
     let history: Vec<ContactHistory> = (contact.iter().flat_map(|surface| {
@@ -177,14 +182,21 @@ pub(super) fn predicted(problem: &Problem, carried: &Carried) -> Result<Solution
             .map(move |((history, set), &closure)| history.carried(nearest, surface, &set.tool, closure, u))
     }))
     .collect();
-    let near = Nearby { time: load, u, pressure, closures: &closures, history: &history };
-    let mut params = newton_params(&Newton { tolerance: PREDICTED, iterations: 10, augmentations: 0 });
+    let time = carried.load();
+    let near = Nearby { time, u, pressure, closures: &closures, history: &history };
+    let mut params = newton_params(&Newton { tolerance, iterations: 10, augmentations: 0 });
     params.keeps = NewtonParams::KEEPS;
     let usual = Curves::proportional();
-    let found = with_static_problem(method, setup, prepared, contact.as_ref(), usual, |problem| {
-        let problem = StaticProblem { systems: tangents.systems(), ..problem.clone() };
-        predict(&problem, &params, near)
-    })?;
+    Ok(with_static_problem(method, setup, prepared, contact.as_ref(), usual, |problem| {
+        work(&StaticProblem { systems: tangents.systems(), ..problem.clone() }, &params, near)
+    }))
+}
+
+/// Predicts the equilibrium near the end of another method's solution.
+pub(super) fn predicted(problem: &Problem, carried: &Carried) -> Result<Solution, Failure> {
+    let Problem { method, setup, prepared, .. } = *problem;
+    let load = carried.load();
+    let found = near(problem, carried, PREDICTED, predict)??;
     let Predicted { u, reaction, penalties, tools, energy, linear } = found;
     let rest = Rest { u: &u, pressure: &[], reaction: &reaction, penalties: &penalties };
     let tools = tools.iter().zip(&setup.tools).map(|(state, set)| ToolStep::of(state, &set.tool));

@@ -2,7 +2,9 @@
 //! transfers.
 
 mod accurate;
+mod adaptive;
 pub(crate) mod bounds;
+mod contributions;
 mod estimate;
 mod export;
 mod external_problem;
@@ -10,6 +12,7 @@ mod group;
 mod levels;
 mod memory;
 mod repeated;
+mod richer;
 pub(crate) mod stored_reference;
 pub(crate) mod symmetry;
 mod witness;
@@ -34,7 +37,9 @@ use crate::prepare::{Prepared, check_means, prepare};
 use crate::procedure::{self, Problem, Solution, conclude, refined};
 use crate::process;
 use crate::scenario::setup::Setup;
+use adaptive::{Adapted, adapted};
 use bounds::add_bounds;
+use contributions::add_trace;
 use estimate::{estimate, estimate_modes};
 use memory::Baseline;
 use repeated::repeated;
@@ -82,7 +87,7 @@ fn on_pool(
     let baseline = Baseline::new();
     process::forget_most_memory();
     let mut meters = Meters::default();
-    let Pass { refined, prepared, solution } = passes(method, setup, &plan, request, &mut meters)?;
+    let Pass { refined, adapted, prepared, solution } = passes(method, setup, &plan, request, &mut meters)?;
     let memory = baseline.peak();
     let method = refined.as_ref().unwrap_or(method);
     let run = measure::Solved { method, setup, prepared: &prepared, solution: &solution };
@@ -100,6 +105,12 @@ fn on_pool(
             unloaded(&mut outcome, &run, timings)?;
         } else {
             loaded(&mut outcome, &run, request, timings, counters)?;
+        }
+        if let Some(states) = &mut outcome.states {
+            states.error_source.clone_from(&outcome.error_source);
+        }
+        if let Some(adapted) = &adapted {
+            adapted.report(&mut outcome);
         }
         readable(&outcome)
     })?;
@@ -119,6 +130,8 @@ fn readable(outcome: &Outcome) -> Result<(), Failure> {
 /// Results of one timed pass.
 struct Pass {
     refined: Option<Discretisation>,
+    /// How the mesh was refined, if its number has to be accurate.
+    adapted: Option<Adapted>,
     prepared: Prepared,
     solution: Solution,
 }
@@ -177,20 +190,35 @@ fn once(
     meters: &mut Meters,
 ) -> Result<Pass, Failure> {
     meters.counters = Counters::default();
+    if let Some(adapt) = &method.adapt {
+        return adapted(method, adapt, setup, plan, request, meters);
+    }
     let Meters { timings, counters, .. } = meters;
     let refined = if plan.runs(StageName::Refinement) {
         timings.time("refine", || refined(method, setup, plan, counters))?
     } else {
         None
     };
-    let current = refined.as_ref().unwrap_or(method);
+    let solved = pass(refined.as_ref().unwrap_or(method), setup, plan, request, meters)?;
+    Ok(Pass { refined, ..solved })
+}
+
+/// Prepares and solves a problem once.
+fn pass(
+    current: &Discretisation,
+    setup: &Setup,
+    plan: &Plan,
+    request: &Request,
+    meters: &mut Meters,
+) -> Result<Pass, Failure> {
+    let Meters { timings, counters, .. } = meters;
     // The tables that an external solver is compared with do not count as its preparation time.
     let phase = if current.outside.is_some() { "tables" } else { "prepare" };
     let prepared = timings.time(phase, || prepare(current, setup, plan, counters))?;
     let Request { watch, probes, .. } = *request;
     let problem = Problem { method: current, setup, prepared: &prepared, plan, watch, probes };
     let solution = procedure::solve(&problem, meters)?;
-    Ok(Pass { refined, prepared, solution })
+    Ok(Pass { refined: None, adapted: None, prepared, solution })
 }
 
 /// Keeps the estimates of a run, or warns that there are none.
@@ -265,6 +293,11 @@ fn loaded(
         };
         estimated(outcome, found);
     }
+    if let Some(goal) = &setup.output.error_of
+        && outcome.plan.runs(StageName::Trace)
+    {
+        timings.time("trace", || add_trace(outcome, run, goal, request.probes, counters));
+    }
     if outcome.plan.runs(StageName::Bounds) {
         timings.time("bounds", || add_bounds(outcome, run, counters))?;
     }
@@ -274,7 +307,7 @@ fn loaded(
     }
     if request.picture {
         let mut field = picture(&outcome.identity, run, outcome.last.as_ref())?;
-        field.body = Some(surface(run, &displaced, &request.at_end(whole))?);
+        field.body = Some(surface(run, &displaced, &request.at_end(whole), &outcome.error_source)?);
         outcome.field = Some(field);
     }
     Ok(())

@@ -73,6 +73,7 @@ fn witnesses(reference: &Method, nodes: usize) -> Result<Vec<Method>, String> {
             hourglass: None,
             size,
             jitter: None,
+            adapt: None,
         };
         let id = element.name().to_string();
         let family = Family::Fem(fem);
@@ -101,11 +102,16 @@ fn witnesses(reference: &Method, nodes: usize) -> Result<Vec<Method>, String> {
     Ok(all)
 }
 
-/// A method, which gave this number of nodes, with twice the spacing, or the reason why there is none. An
-/// external solver is replaced by its elements.
+/// A method, which gave this number of nodes, with twice the spacing, or the reason why there is none; with
+/// twice the error, if its mesh is refined until an error is reached. An external solver is replaced by its elements.
 pub(super) fn coarser_version(method: &Method, nodes: usize) -> Result<Method, String> {
-    let size = coarser(fineness(method), nodes)?;
     let mut same = method.clone();
+    if let Family::Fem(Fem { adapt: Some(adapt), .. }) = &mut same.family {
+        // The mesh at which the refinement starts says nothing of the last one.
+        adapt.error *= 2.0;
+        return Ok(same);
+    }
+    let size = coarser(fineness(method), nodes)?;
     if let Family::External(external) = &method.family {
         same.family = Family::Fem(external.elements.clone());
     }

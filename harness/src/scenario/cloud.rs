@@ -229,6 +229,7 @@ impl CloudMethod {
             dilation: self.dilation,
             inner: inner(&self.integration),
             refine,
+            adapt: None,
             supports,
             shape_functions,
             outside: None,

@@ -3,12 +3,14 @@
 use std::sync::Arc;
 
 use cases::scene::{self, Family};
-use geometry::{Mesh, Point3, Vector3};
+use geometry::generate::raise_order;
+use geometry::stuffing::fitted;
+use geometry::{Mesh, Point3, Vector3, quality};
 use shape::HourglassModulus;
 
-use super::{Scenario, body_mesh};
-use crate::discretise::Discretisation;
+use super::{Scenario, body_mesh, file_body};
 use crate::discretise::place::{self, tolerance};
+use crate::discretise::{Adapt, Discretisation};
 use crate::error::{Failure, Key};
 
 impl Scenario<'_> {
@@ -30,6 +32,8 @@ impl Scenario<'_> {
         let mesh = body_mesh::mesh_of(&self.scene.body, fem.element, &fem.size, fem.jitter)?;
         let mesh = Arc::new(self.with_regions(mesh)?);
         let elements = Discretisation::of_elements(mesh, fem.element.order(), fem.reduced, fem.dilation);
+        let adapt = fem.adapt.map(|adapt| self.adapt(fem, adapt)).transpose()?;
+        let elements = Discretisation { adapt, ..elements };
         Ok(match fem.hourglass {
             Some(scene::Hourglass { coefficient, modulus }) => {
                 let modulus = match modulus {
@@ -40,6 +44,28 @@ impl Scenario<'_> {
             }
             None => elements,
         })
+    }
+
+    /// Refinement of the mesh, whose new nodes on the boundary move onto the surface that it fills.
+    fn adapt(&self, fem: &scene::Fem, adapt: scene::Adapt) -> Result<Adapt, Failure> {
+        let scene::Adapt { by, error, rounds } = adapt;
+        let surface = match (&self.scene.body, &fem.size) {
+            (_, scene::Size::File(_)) => None,
+            (scene::Body::File(file), _) => Some(file_body::load(file)?.surface.clone()),
+            _ => None,
+        };
+        let (order, dilation) = (fem.element.order(), fem.dilation);
+        let on = move |mesh: Mesh| {
+            let mesh = match &surface {
+                Some(surface) => fitted(mesh, surface, order == 2),
+                None if order == 2 => raise_order(&mesh),
+                None => mesh,
+            };
+            let bad = |bad| Failure::Run(format!("the refined mesh has an inverted cell: {bad}"));
+            quality::check_inversion(&mesh).map_err(bad)?;
+            Ok(Discretisation::of_elements(Arc::new(mesh), order, false, dilation))
+        };
+        Ok(Adapt { by, error, rounds, on: Arc::new(on) })
     }
 
     /// Numbers the cells by material: 0 for the scene's material, k + 1 for its k-th region.

@@ -54,6 +54,7 @@ fn of_elements(fem: &scene::Fem, identity: Identity) -> Identity {
         variant: fem.element.name().into(),
         dilation: Some(fem.dilation.name().into()),
         integration: integration(fem),
+        refine: adapt(fem),
         seed: fem.jitter.map_or(0, |j| j.seed),
         ..identity
     }
@@ -66,6 +67,11 @@ fn integration(fem: &scene::Fem) -> Option<String> {
         Some(control) => format!("{points}-hourglass-{}-{}", control.coefficient, control.modulus.name()),
         None => points.into(),
     })
+}
+
+/// Names the refinement of a mesh in records.
+fn adapt(fem: &scene::Fem) -> Option<String> {
+    fem.adapt.map(|scene::Adapt { by, error, rounds }| format!("{by}-{error}-rounds-{rounds}"))
 }
 
 fn of_cloud(efg: &scene::Efg, identity: Identity) -> Identity {

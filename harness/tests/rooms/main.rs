@@ -73,6 +73,7 @@ const SCENE: House<'_> = House {
         "method::integration",
         "method::essential",
         "method::common",
+        "goal",
         "tool",
         "touch",
         "drive",

@@ -25,6 +25,7 @@ export interface Body {
   /** Distance of each point from its position in the reference or exact solution at the end; empty if neither
    * is known. */
   off: string;
+  source?: string;
   /** Cells, and points on no face, at the same states; shown by a cut. */
   inside: { points: string; cells: { nodes: number; indices: string }[]; states: { u: string; values: [string, string, string] | null }[] } | null;
   /** Positions of a cloud's nodes at the end. */
@@ -88,7 +89,7 @@ function pattern(nodes: number): Pattern {
 }
 
 const FIELDS: [string, string, string, number][] = [
-  ["u", "displacement", "mm", 1e3], ["e", "difference to the reference", "mm", 1e3], ["d", "depth of contact points", "mm", 1e3], ["p", "pressure", "kPa", 1e-3], ["m", "von Mises stress", "kPa", 1e-3], ["j", "volume ratio J", "", 1],
+  ["u", "displacement", "mm", 1e3], ["e", "difference to the reference", "mm", 1e3], ["s", "source of the error", "times the mean", 1], ["d", "depth of contact points", "mm", 1e3], ["p", "pressure", "kPa", 1e-3], ["m", "von Mises stress", "kPa", 1e-3], ["j", "volume ratio J", "", 1],
 ];
 
 // The rising scale goes from pale to dark, so that most of a body is bright; it follows ColorBrewer's yellow,
@@ -196,6 +197,8 @@ class Solid {
     const { body } = this;
     if (field === OF_POINTS) return null;
     if (field === "e") return body.off && this.isEnd(state) ? floats(body.off) : null;
+    // Without an inside, only the values of the points on faces are drawn.
+    if (field === "s") return body.source && this.isEnd(state) ? floats(body.source).slice(0, this.reference.length / 3) : null;
     if (field === "u") {
       const u = this.moved(state);
       return Float32Array.from({ length: u.length / 3 }, (_, k) => Math.hypot(u[3 * k], u[3 * k + 1], u[3 * k + 2]));
@@ -461,7 +464,7 @@ export function show(place: HTMLElement, packed: Body[]) {
     return h("label", { class: "small" }, box, ` ${name}`);
   };
   const has = (field: string) =>
-    field === "u" || (field === OF_POINTS ? touched : bodies.some((b) => (field === "e" ? b.off : b.states.some((s) => s.values))));
+    field === "u" || (field === OF_POINTS ? touched : bodies.some((b) => (field === "e" ? b.off : field === "s" ? b.source : b.states.some((s) => s.values))));
   const touched = bodies.some((b) => b.states.some((s) => s.touching));
   place.replaceChildren(
     h("div", { class: "toolbar" },

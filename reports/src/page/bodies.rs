@@ -38,8 +38,8 @@ struct BodyView<'a> {
 
 impl BodyView<'_> {
     fn size(&self) -> usize {
-        let RecordedBody { points, faces, off, cloud, tools, states, .. } = &self.body;
-        let fixed = points.len() + off.len() + cloud.len() + of_faces(faces);
+        let RecordedBody { points, faces, off, source, cloud, tools, states, .. } = &self.body;
+        let fixed = points.len() + off.len() + source.len() + cloud.len() + of_faces(faces);
         let tools: usize = tools.iter().map(|t| t.points.len() + t.quads.len()).sum();
         fixed + tools + states.iter().map(of_state).sum::<usize>() + self.inside()
     }

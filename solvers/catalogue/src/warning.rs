@@ -47,6 +47,11 @@ warnings! {
     LEVELS_DISAGREE: "levels-disagree", None,
         "the prediction of a run's error still changes from mesh to mesh; value: the change divided by that of the \
          run";
+    NOT_ACCURATE: "not-accurate", None,
+        "the refinement of a mesh ended before its number was accurate; value: the remaining error, relative to the \
+         predicted number";
+    UNTRACED: "untraced", None,
+        "the error of the number of output.error_of cannot be traced to cells; no value";
     OUTSIDE_BOUNDS: "outside-bounds", None,
         "the strain energy of a run lies outside the strict bounds of the exact energy; value: the distance from \
          the nearer bound divided by this bound";

@@ -6,6 +6,7 @@
 //! curved boundaries.
 
 mod ball;
+mod bisect;
 mod boxes;
 mod convert;
 mod cylinder;
@@ -18,6 +19,7 @@ mod ventricle;
 mod wedges;
 
 pub use ball::{Drawn, ball_mesh, half_kidney_mesh, kidney_mesh};
+pub use bisect::bisect;
 pub use boxes::{Jitter, box_mesh};
 pub use convert::{converted, is_convertible, raise_order, tets_on_nodes, to_tets, turned};
 pub use cylinder::cylinder_mesh;

@@ -69,7 +69,8 @@ impl ExternalKeys {
             self.memory_limit.map_or(MEMORY_LIMIT, |q| report.positive("memory_limit", q.0) as u64);
         let element = self.element;
         let dilation = Dilation::Standard;
-        let elements = Fem { element, dilation, reduced: false, hourglass: None, size: size?, jitter };
+        let elements =
+            Fem { element, dilation, reduced: false, hourglass: None, size: size?, jitter, adapt: None };
         Some(External { adapter: self.adapter, elements, settings: self.settings, time_limit, memory_limit })
     }
 }

@@ -7,8 +7,14 @@ use serde::Deserialize;
 
 use super::common::{Dilation, Jitter, JitterKeys, Mass, Size, SizeKeys};
 use super::element::Element;
+use crate::scene::goal::Goal;
 use crate::scene::report::Report;
+use crate::scene::units::{Part, Q};
 use crate::scene::words::words;
+
+/// Number of meshes of a refinement unless given, and the largest.
+const ROUNDS: u32 = 6;
+const MOST_ROUNDS: u32 = 10;
 
 words! {
     /// Modulus that the stiffness of hourglass control is proportional to.
@@ -74,6 +80,8 @@ pub(crate) struct FemKeys {
     hourglass: Option<HourglassKeys>,
     size: SizeKeys,
     jitter: Option<JitterKeys>,
+    /// Refinement until an error is reached: tet4 and tet10 in boxes and in surfaces that tetrahedra fill
+    refine: Option<AdaptKeys>,
     /// Mass matrix for vibrations; kind = "modes" only
     pub mass: Option<Mass>,
 }
@@ -94,6 +102,43 @@ pub struct Fem {
     pub size: Size,
     /// Random displacement of inner nodes.
     pub jitter: Option<Jitter>,
+    /// Refinement of the mesh until an error is reached.
+    pub adapt: Option<Adapt>,
+}
+
+/// Refinement where the error of a number comes from, until the number is accurate
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+struct AdaptKeys {
+    /// Number whose error refines the mesh, such as "tool-force", "probe-2" or "reaction-z"
+    by: String,
+    /// Relative error of the number at which the refinement ends, such as "1 %"
+    error: Q<Part>,
+    /// Largest number of meshes, 2 to 10; 6 unless given
+    rounds: Option<u32>,
+}
+
+/// Refinement of a mesh until a number is accurate.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Adapt {
+    /// The number.
+    pub by: Goal,
+    /// Relative error at which the refinement ends.
+    pub error: f64,
+    /// Largest number of meshes.
+    pub rounds: usize,
+}
+
+impl AdaptKeys {
+    fn read(self, report: &Report) -> Option<Adapt> {
+        let rounds = self.rounds.unwrap_or(ROUNDS);
+        let sound = (2..=MOST_ROUNDS).contains(&rounds);
+        report.require(sound, "rounds", "is not a valid number of meshes", "give 2 to 10; 6 is usual");
+        let error = self.error.0;
+        let sensible = error > 0.0 && error < 1.0;
+        report.require(sensible, "error", "is not between 0 and 100 %", "such as \"1 %\"");
+        Some(Adapt { by: Goal::read(&self.by, "by", report)?, error, rounds: rounds as usize })
+    }
 }
 
 impl FemKeys {
@@ -116,7 +161,11 @@ impl FemKeys {
         let hourglass = controlled.then_some(hourglass);
         let jitter = self.jitter.map(|jitter| jitter.read(report));
         let dilation = self.dilation.unwrap_or(Dilation::Standard);
-        Some(Fem { element, dilation, reduced, hourglass, size: size?, jitter })
+        let tets = element.kind().is_some_and(|kind| kind.of_order(1) == Some(CellKind::Tet4));
+        let problem = format!("applies to tet4 and tet10 only, not to {}", element.name());
+        report.require(self.refine.is_none() || tets, "refine", &problem, "leave it out, or take tet10");
+        let adapt = self.refine.and_then(|keys| keys.read(&report.at("refine")));
+        Some(Fem { element, dilation, reduced, hourglass, size: size?, jitter, adapt })
     }
 }
 

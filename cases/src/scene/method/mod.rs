@@ -25,7 +25,7 @@ pub(crate) use essential::EssentialKeys;
 pub use essential::{ConstraintRows, Essential, EssentialKind};
 pub(crate) use external::{ADAPTERS, NO_ADAPTER, is_adapter};
 pub use external::{External, Setting};
-pub use fem::{Fem, Hourglass, HourglassModulus};
+pub use fem::{Adapt, Fem, Hourglass, HourglassModulus};
 pub use functions::{Basis, Functions, SupportRule, SupportShape};
 pub use integration::Integration;
 pub(crate) use integration::IntegrationKeys;

@@ -80,6 +80,13 @@ metrics! {
         "estimated error of the strain energy, relative to the predicted energy";
     STRAIN_ENERGY_SATURATION: "strain-energy-error-saturation", "saturation of the energy", None, Value, Estimate,
         "change of the predicted strain energy from a coarser mesh, divided by the change of the run's";
+    ERROR_VOLUME: "error-volume", "volume that causes the error", None, Value, Estimate,
+        "volume of the cells that cause half of the error of the number of output.error_of, divided by the volume of the \
+         body";
+    MESHES: "meshes", "solved meshes", None, Count, Run,
+        "meshes that a refinement has solved, until its number was accurate";
+    REMAINING_ERROR: "remaining-error", "remaining error", None, Value, Run,
+        "estimated error of the number that a mesh is refined for, on the last mesh, relative to the predicted number";
     STRAIN_ENERGY_PREDICTED: "strain-energy-predicted", "predicted strain energy", Energy, Value, Estimate,
         "strain energy that more shape functions predict, on two meshes if there is a coarser one";
     FREQUENCY_ESTIMATE: "frequency-error-estimate", "estimated error of a frequency", None, Place, ModeEstimate,

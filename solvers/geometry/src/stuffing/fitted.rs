@@ -15,6 +15,7 @@ use rayon::prelude::*;
 use super::edges::Edges;
 use super::walls::Walls;
 use crate::element::{self, CellKind};
+use crate::generate::raise_order;
 use crate::mesh::{Facet, Mesh};
 use crate::surface::Surface;
 use crate::{Point3, Vector3, quality};
@@ -41,9 +42,40 @@ pub(super) fn linear(mesh: Mesh, surface: &Surface) -> Mesh {
 /// Whether the angles of a linear tetrahedron are those proven. A mirrored tetrahedron has the same angles,
 /// but no volume.
 pub(super) fn has_angles(_: CellKind, points: &[Point3]) -> bool {
+    has_angles_beyond(ANGLES, points)
+}
+
+fn has_angles_beyond([least, most]: [f64; 2], points: &[Point3]) -> bool {
     let (low, high) = quality::dihedrals(CellKind::Tet4, points);
     let [a, b, c] = [1, 2, 3].map(|k| points[k] - points[0]);
-    low >= ANGLES[0] && high <= ANGLES[1] && a.cross(&b).dot(&c) > 0.0
+    low >= least && high <= most && a.cross(&b).dot(&c) > 0.0
+}
+
+/// Part of the proven angles that is left to tetrahedra whose edges are bisected.
+const BISECTED: f64 = 0.4;
+
+/// Moves the boundary of linear tetrahedra that fill a surface and were bisected: first its nodes onto the
+/// surface. The cells of the returned mesh are quadratic if asked for.
+pub fn fitted(mesh: Mesh, surface: &Surface, quadratic: bool) -> Mesh {
+    let sound = |_: CellKind, points: &[Point3]| {
+        has_angles_beyond([BISECTED * ANGLES[0], 180.0 - BISECTED * (180.0 - ANGLES[1])], points)
+    };
+    let mesh = moved(&mesh, onto_surface(&mesh, surface), sound);
+    if quadratic { self::quadratic(raise_order(&mesh), surface) } else { balanced(mesh, surface, sound) }
+}
+
+/// Moves that bring the nodes of the boundary onto the surface, and those of the walls onto these.
+fn onto_surface(mesh: &Mesh, surface: &Surface) -> Vec<Vector3> {
+    let mut moves = vec![Vector3::zeros(); mesh.points().len()];
+    let nodes = mesh.facet_group_nodes(&mesh.boundary());
+    let to_surface = |&node: &u32| {
+        let point = mesh.points()[node as usize];
+        (node, surface.closest(&point).0 - point)
+    };
+    let found: Vec<(u32, Vector3)> = nodes.par_iter().with_min_len(CHUNK).map(to_surface).collect();
+    found.into_iter().for_each(|(node, by)| moves[node as usize] = by);
+    to_walls(mesh, surface, &mut moves);
+    moves
 }
 
 /// Moves the boundary of straight quadratic tetrahedra whose corners there lie on the surface: first the
@@ -54,16 +86,7 @@ pub(super) fn quadratic(mesh: Mesh, surface: &Surface) -> Mesh {
         let (low, high) = dets.fold((f64::INFINITY, 0.0f64), |(low, high), d| (low.min(d), high.max(d)));
         low >= LEAST_RATIO * high
     };
-    let mut moves = vec![Vector3::zeros(); mesh.points().len()];
-    let nodes = mesh.facet_group_nodes(&mesh.boundary());
-    let to_surface = |&node: &u32| {
-        let point = mesh.points()[node as usize];
-        (node, surface.closest(&point).0 - point)
-    };
-    let found: Vec<(u32, Vector3)> = nodes.par_iter().with_min_len(CHUNK).map(to_surface).collect();
-    found.into_iter().for_each(|(node, by)| moves[node as usize] = by);
-    to_walls(&mesh, surface, &mut moves);
-    balanced(moved(&mesh, moves, sound), surface, sound)
+    balanced(moved(&mesh, onto_surface(&mesh, surface), sound), surface, sound)
 }
 
 /// Extends the moves of straight quadratic tetrahedra by those of middle nodes to the walls. On the

@@ -23,6 +23,7 @@ mod walls;
 use crate::mesh::Mesh;
 
 pub use fill::{stuff, stuff_quadratic};
+pub use fitted::fitted;
 pub use measure::{Fit, fit};
 pub use nodes::{stuff_quadratic_with_nodes, stuff_with_nodes};
 

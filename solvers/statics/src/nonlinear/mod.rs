@@ -38,7 +38,7 @@ pub use curves::{Curves, Timing};
 pub use error::{Inverted, StaticError, Worst};
 pub use following::FollowingLoad;
 pub use frames::Frames;
-pub use newton::{Iteration, Nearby, NewtonParams, Predicted, predict};
+pub use newton::{Goal, Iteration, Nearby, NewtonParams, Predicted, Traced, predict, trace, unbalanced};
 pub use penalty::PenaltySurface;
 pub use problem::{LinearSystems, StaticProblem};
 pub use solid::{Active, Solid, SolidDilation};

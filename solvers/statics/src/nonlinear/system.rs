@@ -144,6 +144,8 @@ pub(crate) struct System<'a> {
     /// Scale of the pressure unknowns, Pa. Unscaled pressure entries of the matrix are 1e-15 of a stiffness,
     /// and the static regularisation would swamp them.
     pub pressure_scale: f64,
+    /// Whether the tangent is assembled transposed.
+    pub transposed: bool,
 }
 
 impl<'a> System<'a> {
@@ -204,6 +206,7 @@ impl<'a> System<'a> {
             place,
             free,
             pressure_scale: 1.0,
+            transposed: false,
         }
     }
 
@@ -333,8 +336,9 @@ impl<'a> System<'a> {
 
     /// Returns the skew part of the stiffness of the surfaces.
     pub fn skew(&self, surface: &SurfaceStiffness) -> Skew {
+        let half = if self.transposed { -0.5 } else { 0.5 };
         let of_table = |(s, blocks): (usize, &Vec<Matrix3>)| {
-            let skew = move |(q, block): (usize, &Matrix3)| (s, q, (block - block.transpose()) * 0.5);
+            let skew = move |(q, block): (usize, &Matrix3)| (s, q, (block - block.transpose()) * half);
             blocks
                 .iter()
                 .enumerate()
@@ -343,9 +347,11 @@ impl<'a> System<'a> {
                 .collect::<Vec<_>>()
         };
         let pressed = self.following.iter().zip(&surface.pressed);
+        let pairs = pressed.flat_map(|(pressure, pressed)| pressure.skew_part(pressed));
+        let turned = |(nodes, block): (_, Matrix3)| (nodes, if self.transposed { -block } else { block });
         Skew {
             points: surface.blocks.iter().enumerate().flat_map(of_table).collect(),
-            pairs: pressed.flat_map(|(pressure, pressed)| pressure.skew_part(pressed)).collect(),
+            pairs: pairs.map(turned).collect(),
         }
     }
 

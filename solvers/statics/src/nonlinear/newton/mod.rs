@@ -16,6 +16,7 @@ mod tangent;
 mod tests;
 mod tool_checks;
 mod tools;
+mod trace;
 
 use algebra::SolverPath;
 use contact::{ContactCounts, Drive, ToolState};
@@ -37,6 +38,7 @@ pub(crate) use self::tool_checks::shortest_travel;
 
 pub use self::policy::{Iteration, NewtonParams};
 pub use self::predict::{Nearby, Predicted, predict};
+pub use self::trace::{Goal, Traced, trace, unbalanced};
 
 /// Newton's method for a problem: its equations, the memory of the last tangents, and the rules of a step.
 pub(crate) struct Newton<'a> {

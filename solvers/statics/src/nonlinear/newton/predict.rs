@@ -57,15 +57,20 @@ pub fn predict(
     params: &NewtonParams,
     from: Nearby,
 ) -> Result<Predicted, StaticError> {
-    let Nearby { time, u, pressure, closures, history } = from;
-    let start = State {
-        time,
-        u: u.to_vec(),
-        closures: closures.to_vec(),
-        history: history.to_vec(),
-        pressure: pressure.to_vec(),
-    };
-    Newton::new(problem, params)?.predict(start)
+    Newton::new(problem, params)?.predict(State::near(&from))
+}
+
+impl State {
+    pub(super) fn near(from: &Nearby) -> State {
+        let Nearby { time, u, pressure, closures, history } = *from;
+        State {
+            time,
+            u: u.to_vec(),
+            closures: closures.to_vec(),
+            history: history.to_vec(),
+            pressure: pressure.to_vec(),
+        }
+    }
 }
 
 impl Newton<'_> {

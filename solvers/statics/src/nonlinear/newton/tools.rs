@@ -83,6 +83,21 @@ impl Equations<'_> {
         borders
     }
 
+    /// Returns the derivative of a tool's force along its travel with respect to the nodal parameters, N/m.
+    pub fn by_displacement(&self, balance: &Balance, tool: usize) -> Vec<Vector3> {
+        let mut by = vec![Vector3::zeros(); self.problem.nodes.len()];
+        let (Some(surface), Some(contacts)) = (self.problem.contact, &balance.contacts[tool]) else {
+            return by;
+        };
+        let (rows, along) = (surface.rows(), self.problem.tools[tool].tool.along());
+        for (&q, dt) in contacts.points().iter().zip(contacts.stiffness()) {
+            let left = dt.tr_mul(&along) * rows.weights()[q as usize];
+            let (at, values) = rows.rows().row(q as usize);
+            at.iter().zip(values).for_each(|(&node, value)| by[node as usize] += left * *value);
+        }
+        by
+    }
+
     /// Returns the displacement, m, that brings a tool into contact, with the penetration at which a
     /// hundredth of the surface carries `force`.
     pub fn approach(&self, tool: usize, state: &State, force: f64) -> f64 {
