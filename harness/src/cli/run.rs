@@ -38,6 +38,13 @@ pub(super) fn run(args: &RunArgs) -> u8 {
             "{file}: runs as written; tissuebench vary {file} runs the samples of its {keys} uncertain keys"
         );
     }
+    if let Some(fit) = scene.fit.as_ref().filter(|_| !args.quiet) {
+        let (file, keys) = (args.scene.file.display(), fit.keys.len());
+        eprintln!(
+            "{file}: runs as written; tissuebench fit {file} fits its {keys} constants to {}",
+            fit.data.path.display()
+        );
+    }
     if let Err(code) = affordable_methods(&scene, &chosen, args.force) {
         return code;
     }

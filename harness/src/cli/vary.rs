@@ -113,7 +113,7 @@ pub(super) fn vary(args: &VaryArgs) -> u8 {
 }
 
 /// A study of one scene.
-fn of_scene(scene: &Scene, args: &SceneArgs, methods: Vec<String>) -> Study {
+pub(super) fn of_scene(scene: &Scene, args: &SceneArgs, methods: Vec<String>) -> Study {
     Study {
         title: scene.title.clone(),
         runs: vec![Run { methods, ..Run::of(&args.file) }],

@@ -50,6 +50,16 @@ impl StudyPlan {
     /// Same as [`execute`](StudyPlan::execute), and reports events as they happen.
     pub(crate) fn execute_watched(&self, args: &VerifyArgs, events: Option<&Events>) -> FinishedStudy {
         let machine = Machine { at_once: args.jobs.into(), ..provenance::machine() };
+        let (done, stored) = self.worked(args, events);
+        FinishedStudy { stored, ..self.collect(done, machine) }
+    }
+
+    /// Runs everything. Returns the results by task, and the number of those that were stored.
+    pub(super) fn worked(
+        &self,
+        args: &VerifyArgs,
+        events: Option<&Events>,
+    ) -> (BTreeMap<usize, TaskResult>, usize) {
         let store = Store::of(args);
         let work = Work {
             plan: self,
@@ -61,8 +71,7 @@ impl StudyPlan {
             stored: AtomicUsize::new(0),
         };
         work.all();
-        let finished = self.collect(work.done.into_inner().expect("no worker panicked"), machine);
-        FinishedStudy { stored: work.stored.into_inner(), ..finished }
+        (work.done.into_inner().expect("no worker panicked"), work.stored.into_inner())
     }
 
     pub(super) fn collect(&self, results: BTreeMap<usize, TaskResult>, machine: Machine) -> FinishedStudy {
@@ -75,6 +84,19 @@ impl StudyPlan {
             counters += result.counters;
             if self.sample(task).is_some() {
                 runs.push(self.summary(task, result, &[]));
+                continue;
+            }
+            if self.is_fit(task) {
+                let verdicts = self.fit_verdicts(task, result);
+                let mut run = self.summary(task, result, &verdicts);
+                if let Some((failure, code)) = &result.failure {
+                    run.failure = Some(failure.reason.clone());
+                    set.failures.push(failure.clone());
+                    failed.push(*code);
+                }
+                runs.push(run);
+                set.fits.extend(result.fit.clone());
+                set.checks.extend(verdicts);
                 continue;
             }
             set.records.extend(result.records.iter().cloned());
@@ -112,8 +134,8 @@ impl StudyPlan {
             runs.push(run);
             set.checks.extend(verdicts);
         }
-        // Samples are in the scene's own text.
-        let scenes = || self.scenes.iter().filter(|(_, _, scene)| scene.sample.is_none());
+        // Samples and fits are in the scene's own text.
+        let scenes = || self.scenes.iter().filter(|(_, _, scene)| scene.sample.is_none() && !scene.is_fit);
         for (_, _, scene) in scenes() {
             set.records.extend(reference_records(scene));
         }
@@ -165,7 +187,7 @@ impl StudyPlan {
         let same = |a: &Task, b: &Task| a.method.id == b.method.id && a.poisson == b.poisson;
         for (&index, result) in results {
             let task = &self.tasks[index];
-            if self.sample(task).is_some() {
+            if self.is_apart(task) {
                 continue;
             }
             for &run in &task.runs {
