@@ -363,7 +363,7 @@ pub(super) fn number(value: &Value, unit: &mut Option<String>) -> Result<f64, Pr
     let named = |unit: &str| if unit.is_empty() { "no unit".to_string() } else { format!("the unit {unit}") };
     let problem = Problem::new(format!("has {}, where a value before it has {}", named(&own), named(unit)));
     let found = value.as_str().map_or_else(|| value.to_string(), String::from);
-    Err(problem.found(found).help("give all values of a distribution in the same unit"))
+    Err(problem.found(found).help("give all of them in the same unit"))
 }
 
 impl StatisticKeys {

@@ -62,8 +62,17 @@ impl StudyPlan {
                 return TaskResult { fit: Some(fit), counters: runs.counters, ..TaskResult::default() };
             }
             Ok(fitted) => Failure::Run(format!(
-                "the fit did not converge in {} iterations and {} runs; start nearer, or give within = [low, high]",
-                fitted.iterations, fitted.runs
+                "the fit did not converge in {} iterations and {} runs, at {}, where the RMS residual is {}; start at other \
+                 values, give within = [low, high], or fit fewer constants",
+                fitted.iterations,
+                fitted.runs,
+                fit.keys
+                    .iter()
+                    .zip(&fitted.values)
+                    .map(|(key, value)| format!("{} = {}", key.key, key.written(*value)))
+                    .collect::<Vec<_>>()
+                    .join(", "),
+                records::text::significant(fitted.confidence.rms, 3)
             )),
             Err(FitError::Start) => match runs.first.take() {
                 Some(failure) => failure,

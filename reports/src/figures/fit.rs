@@ -68,8 +68,13 @@ fn figure(fit: &Fit) -> Figure {
         y: Axis::linear(&format!("measured minus fitted [{}]", quantity::unit(y)), ends(apart), true),
         series,
     };
-    let note = "Dots: measured, with bars of the stated standard deviations. Line: the scene with the fitted constants.";
-    let drawing = multiples(vec![measured, residual], &styles, note);
+    let bars = if fit.points.iter().any(|point| point.sd.is_some()) {
+        ", with bars of the stated standard deviations"
+    } else {
+        ""
+    };
+    let note = format!("Dots: measured{bars}. Line: the scene with the fitted constants.");
+    let drawing = multiples(vec![measured, residual], &styles, &note);
     Figure {
         name: format!("fit-{}-{}", slug(&fit.case), slug(&fit.method)),
         title: format!("Fit of the {} of {}", y.label(), fit.data),

@@ -12,16 +12,23 @@ use crate::constant::{Constant, Measured, felt, scaled};
 /// Most Jacobians of a fit.
 const MOST_ITERATIONS: usize = 30;
 /// Most attempts to lower the squares by one Jacobian.
-const MOST_ATTEMPTS: usize = 12;
+const MOST_ATTEMPTS: usize = 8;
+/// Least part of the predicted fall of the squares for which a step is taken.
+const LEAST_GAIN: f64 = 0.1;
+/// Step of the differences once those of the requested step have led nowhere: contact that comes and goes makes a model
+/// rough, and a longer step smooths it.
+const LONGEST_STEP: f64 = 0.02;
 /// Largest change of the logarithm of a constant in one iteration: a factor of four.
 const LONGEST: f64 = 1.386_294_361_119_890_6;
 /// Damping of the first step, relative to the squares of the columns of the Jacobian.
 const DAMPING: f64 = 1e-3;
 /// Least damping after steps that lowered the squares.
 const LEAST_DAMPING: f64 = 1e-9;
-/// Change of the model, over the standard deviation of a measurement, below which a fit has converged: it moves
-/// no constant by more than a hundredth of its own standard error.
+/// Part of the residual that the Jacobian can still take away, over the standard deviation of a measurement, below which
+/// a fit has converged: no constant would move by more than a hundredth of its own standard error.
 const CONVERGED: f64 = 0.01;
+/// The same where no step lowers the squares any more.
+const CLOSE: f64 = 0.2;
 /// The same over the root of the sum of the squares of the data, for data without scatter.
 const EXACT: f64 = 1e-7;
 
@@ -36,7 +43,7 @@ pub struct Fitted {
     pub iterations: usize,
     /// Number of runs of the model, those that failed included.
     pub runs: usize,
-    /// Whether the last step was short enough.
+    /// Whether nothing is left that the Jacobian could take away from the residuals.
     pub converged: bool,
     /// Confidence in the constants.
     pub confidence: Confidence,
@@ -75,16 +82,21 @@ pub fn fit(
     let mut iterations = 0;
     loop {
         iterations += 1;
-        let residual = of.data.residual(&model);
         let jacobian = of.jacobian(&theta, &model)?;
-        let slope = jacobian.tr_mul(&residual);
-        let free = of.free(&theta, &slope);
-        let found = of.descend(&theta, &model, (&jacobian, &residual, &free), &mut damping);
+        let residual = data.residual(&model);
+        let free = of.free(&theta, &jacobian.tr_mul(&residual));
+        let linear = Linear::new(jacobian, residual, free, data.length(), step);
+        let found = of.descend(&theta, &model, &linear, &mut damping);
         (theta, model) = (found.theta, found.model);
+        if found.stuck && of.step < LONGEST_STEP {
+            (of.step, damping) = (LONGEST_STEP, DAMPING);
+            continue;
+        }
         if found.converged || found.stuck || iterations == MOST_ITERATIONS {
-            let residual = of.data.residual(&model);
+            let residual = data.residual(&model);
             let values: Vec<f64> = constants.iter().zip(theta.iter()).map(|(c, t)| c.back(*t)).collect();
-            let confidence = confidence(constants, &theta, (&jacobian, &residual, &free), data, step);
+            let jacobian = (&linear.jacobian, &residual, &linear.free[..]);
+            let confidence = confidence(constants, &theta, jacobian, data, step);
             let Search { runs, .. } = of;
             let converged = found.converged;
             return Ok(Fitted { values, model, iterations, runs, converged, confidence });
@@ -157,78 +169,100 @@ impl Search<'_> {
     }
 
     /// Lowers the squares along damped steps, `(J^T J + damping D^2) step = -J^T r` with the lengths `D` of the
-    /// columns of `J` (Marquardt 1963).
-    fn descend(
-        &mut self,
-        theta: &DVector<f64>,
-        model: &[f64],
-        (jacobian, residual, free): (&DMatrix<f64>, &DVector<f64>, &[usize]),
-        damping: &mut f64,
-    ) -> Descent {
-        let before = residual.norm_squared();
-        let freedom = (residual.len() - free.len()) as f64;
-        let scatter = if self.data.sd.is_some() { 1.0 } else { (before / freedom).sqrt() };
-        let enough = CONVERGED * scatter + EXACT * self.data.length();
+    /// columns of `J` (Marquardt 1963). A step is taken if it lowers the squares by a tenth of what the Jacobian
+    /// predicts: longer ones pass over the minimum to where the model hardly changes.
+    fn descend(&mut self, theta: &DVector<f64>, model: &[f64], of: &Linear, damping: &mut f64) -> Descent {
+        let before = of.residual.norm_squared();
+        let scatter = match self.data.sd {
+            Some(_) => 1.0,
+            None => (before / (of.residual.len() - of.free.len()) as f64).sqrt(),
+        };
+        let rest = of.rest();
+        let short = rest <= CONVERGED * scatter + EXACT * self.data.length();
         let mut part = 1.0;
-        for _ in 0..MOST_ATTEMPTS {
-            let next = self.step_from(theta, (jacobian, residual, free), *damping, part);
-            let change = jacobian * (&next - theta);
-            let short = change.norm() <= enough;
+        for _ in 0..if short { 1 } else { MOST_ATTEMPTS } {
+            let next = self.step_from(theta, of, *damping, part);
+            let expected = before - (&of.residual + &of.jacobian * (&next - theta)).norm_squared();
             let tried = self.model(&next);
-            let failed = tried.is_none();
-            match tried.filter(|model| self.data.residual(model).norm_squared() <= before) {
-                Some(model) => {
-                    *damping = (*damping * 0.1).max(LEAST_DAMPING);
+            let lower = tried.as_ref().map(|model| before - self.data.residual(model).norm_squared());
+            let least = if short { 0.0 } else { LEAST_GAIN * expected.max(0.0) };
+            match (tried, lower) {
+                (Some(model), Some(lower)) if lower >= least => {
+                    *damping = (*damping * if lower > 0.5 * expected { 0.1 } else { 1.0 }).max(LEAST_DAMPING);
                     return Descent { theta: next, model, converged: short, stuck: false };
                 }
-                // A shorter step is within the accuracy of the model.
-                None if short => {
-                    return Descent {
-                        theta: theta.clone(),
-                        model: model.to_vec(),
-                        converged: true,
-                        stuck: false,
-                    };
-                }
-                None if failed => part *= 0.5,
-                None => *damping = (*damping * 10.0).max(DAMPING),
+                (None, _) => part *= 0.5,
+                _ => *damping = (*damping * 10.0).max(DAMPING),
             }
         }
-        Descent { theta: theta.clone(), model: model.to_vec(), converged: false, stuck: true }
+        // Close to the minimum the scatter of the runs may hide what is left.
+        let converged = short || rest <= CLOSE * scatter;
+        Descent { theta: theta.clone(), model: model.to_vec(), converged, stuck: !converged }
     }
 
     /// Part of the damped step, within the bounds.
-    fn step_from(
-        &self,
-        theta: &DVector<f64>,
-        (jacobian, residual, free): (&DMatrix<f64>, &DVector<f64>, &[usize]),
-        damping: f64,
-        part: f64,
-    ) -> DVector<f64> {
+    fn step_from(&self, theta: &DVector<f64>, of: &Linear, damping: f64, part: f64) -> DVector<f64> {
         let mut next = theta.clone();
-        let free = felt(jacobian, free, self.data.length());
-        if free.is_empty() {
-            return next;
+        let mut along = of.along.clone();
+        for (a, sigma) in along.iter_mut().zip(of.sigma.iter()) {
+            *a *= -sigma / (sigma * sigma + damping);
         }
-        let (scaled, lengths) = scaled(jacobian, &free);
-        let svd = scaled.svd(true, true);
-        let (Some(u), Some(v)) = (&svd.u, &svd.v_t) else { return next };
-        let mut along = u.tr_mul(residual);
-        for (a, sigma) in along.iter_mut().zip(svd.singular_values.iter()) {
-            // Along a combination that the data do not determine, the constants stay at their start.
-            let determined = *sigma > DETERMINED * self.step;
-            *a *= if determined { -sigma / (sigma * sigma + damping) } else { 0.0 };
-        }
-        let mut step = v.tr_mul(&along).component_div(&lengths);
-        let longest = free.iter().zip(step.iter()).map(|(&k, s)| {
+        let mut step = of.v.tr_mul(&along).component_div(&of.lengths);
+        let longest = of.felt.iter().zip(step.iter()).map(|(&k, s)| {
             let most = if self.constants[k].is_logarithmic() { LONGEST } else { 0.5 };
             s.abs() / most
         });
         step *= part / longest.fold(1.0, f64::max);
-        for (&k, s) in free.iter().zip(step.iter()) {
+        for (&k, s) in of.felt.iter().zip(step.iter()) {
             let [low, high] = self.constants[k].bounds();
             next[k] = (theta[k] + s).clamp(low, high);
         }
         next
+    }
+}
+
+/// The linear problem of one Jacobian.
+struct Linear {
+    jacobian: DMatrix<f64>,
+    residual: DVector<f64>,
+    /// Constants that no bound holds.
+    free: Vec<usize>,
+    /// Those of them with an influence on the data, whose columns are scaled to length 1.
+    felt: Vec<usize>,
+    lengths: DVector<f64>,
+    sigma: DVector<f64>,
+    v: DMatrix<f64>,
+    /// Residual along the left singular vectors; zero along combinations that the data do not determine, so that the
+    /// constants stay at their start along these.
+    along: DVector<f64>,
+}
+
+impl Linear {
+    fn new(
+        jacobian: DMatrix<f64>,
+        residual: DVector<f64>,
+        free: Vec<usize>,
+        length: f64,
+        step: f64,
+    ) -> Linear {
+        let felt = felt(&jacobian, &free, length);
+        let count = felt.len();
+        let (scaled, lengths) = scaled(&jacobian, &felt);
+        // A matrix without columns has no decomposition.
+        let svd = (count > 0).then(|| scaled.svd(true, true));
+        let found = svd.and_then(|svd| Some((svd.u?.tr_mul(&residual), svd.singular_values, svd.v_t?)));
+        let none = || (DVector::zeros(0), DVector::zeros(0), DMatrix::zeros(0, count));
+        let (mut along, sigma, v) = found.unwrap_or_else(none);
+        along
+            .iter_mut()
+            .zip(sigma.iter())
+            .filter(|(_, s)| **s <= DETERMINED * step)
+            .for_each(|(a, _)| *a = 0.0);
+        Linear { jacobian, residual, free, felt, lengths, sigma, v, along }
+    }
+
+    /// Length of the part of the residual that the Jacobian can still take away.
+    fn rest(&self) -> f64 {
+        self.along.norm()
     }
 }
