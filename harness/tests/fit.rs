@@ -128,7 +128,7 @@ fn constants_that_only_their_ratio_determines_are_named() {
     let scene = write(&dir, "block.toml", &scene);
     let done = tissuebench(&["fit", &scene, "--out", &inside(&dir, "out")]);
     assert_eq!(done.code, 0, "{}", done.stderr);
-    let warning = "warning: the curve does not tell apart material.young and load[0].traction[2]";
+    let warning = "warning: the curve does not distinguish material.young and load[0].traction[2]";
     assert!(done.stdout.contains(warning) && done.stdout.contains("correlation 1.0000"), "{}", done.stdout);
     assert!(done.stdout.contains("not determined"), "{}", done.stdout);
     let fit = json(&dir, "out/fit.json");

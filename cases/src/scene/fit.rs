@@ -20,7 +20,7 @@ use super::report::Report;
 use super::vary::{number, written};
 use super::words::words;
 
-/// Most constants of a fit. A curve hardly tells more than three apart.
+/// Most constants of a fit. A curve hardly distinguishes more than three.
 const MOST_CONSTANTS: usize = 12;
 
 /// Constants that are fitted to a measured curve, for `tissuebench fit` and studies

@@ -296,9 +296,9 @@ fn warnings(
             [a, b, ..] => format!(", correlation {:.4}", fitted.confidence.correlation[a][b]),
             _ => String::new(),
         };
-        let told = if of.determined { "hardly tells apart" } else { "does not tell apart" };
+        let verb = if of.determined { "hardly distinguishes" } else { "does not distinguish" };
         out.push(format!(
-            "the curve {told} {} (collinearity index {:.0}{pair}): fix all but one of them by other tests, or measure a \
+            "the curve {verb} {} (collinearity index {:.0}{pair}): fix all but one of them by other tests, or measure a \
              curve on which they act differently",
             names.join(" and "),
             of.index

@@ -48,8 +48,8 @@ pub(super) fn correlations(fits: &[Fit]) -> Table {
     let mut table = Table::new(
         "fit-correlation",
         "Correlations of fitted constants",
-        "Correlations of fitted constants, by the Jacobian of the fit. Near 1 or -1 the curve does not tell two \
-         constants apart",
+        "Correlations of fitted constants, by the Jacobian of the fit. Near 1 or -1 the curve does not distinguish \
+         two constants",
         &[("case", Words), ("method", Words), ("constant", Words), ("other", Words), ("correlation", Number)],
     );
     for fit in fits {

@@ -11,7 +11,7 @@ use crate::normal;
 pub(crate) const DETERMINED: f64 = 2.0;
 /// Part of a unit vector from which a constant belongs to a combination.
 const BELONGS: f64 = 0.2;
-/// Collinearity index from which constants are hard to tell apart (Brun, Reichert and Kuensch 2001: 10 to 15).
+/// Collinearity index from which constants are hard to distinguish (Brun, Reichert and Kuensch 2001: 10 to 15).
 const COLLINEAR: f64 = 15.0;
 /// Residuals over the largest value of the data below which they are rounding.
 const ROUNDING: f64 = 1e-5;
@@ -28,7 +28,7 @@ pub struct Confidence {
     pub correlation: Vec<Vec<f64>>,
     /// Constants without influence on the data.
     pub without_influence: Vec<usize>,
-    /// Constants that the data hardly tell apart.
+    /// Constants that the data hardly distinguish.
     pub collinear: Option<Collinear>,
     /// Number of data minus number of constants that are not on a bound.
     pub freedom: usize,

@@ -101,7 +101,7 @@ fn an_interval_of_one_linear_constant_is_that_of_tables() {
 }
 
 #[test]
-fn constants_that_the_data_do_not_tell_apart_are_reported() {
+fn constants_that_the_data_do_not_distinguish_are_reported() {
     let x = places(10);
     let noise = noise(7, 10);
     let values: Vec<f64> = x.iter().zip(&noise).map(|(x, e)| 6.0 * x + 0.05 * e).collect();
@@ -113,7 +113,7 @@ fn constants_that_the_data_do_not_tell_apart_are_reported() {
     assert!((of.confidence.correlation[0][1] - 1.0).abs() < 1e-6, "{of:?}");
     assert_eq!((&of.confidence.intervals, &of.confidence.without_influence), (&vec![None; 3], &vec![2]));
     assert!((of.values[0] / of.values[1] - 6.0).abs() < 0.1 && of.values[2] == 1.0, "{of:?}");
-    // Nearly the same: told apart, with wide intervals.
+    // Nearly the same: distinguished, with wide intervals.
     let nearly = |x: f64, c: &[f64]| x * c[0] / c[1] * (1.0 + 0.3 * x * c[1]);
     let values: Vec<f64> = x.iter().zip(&noise).map(|(x, e)| nearly(*x, &[6.0, 1.0]) + 0.01 * e).collect();
     let of = fitted(&all[..2], &x, data(&values), nearly);
