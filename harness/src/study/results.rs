@@ -87,16 +87,9 @@ impl StudyPlan {
                 continue;
             }
             if self.is_fit(task) {
-                let verdicts = self.fit_verdicts(task, result);
-                let mut run = self.summary(task, result, &verdicts);
-                if let Some((failure, code)) = &result.failure {
-                    run.failure = Some(failure.reason.clone());
-                    set.failures.push(failure.clone());
-                    failed.push(*code);
-                }
+                let run = self.collect_fit(task, result, &mut set);
+                failed.extend(result.failure.as_ref().map(|(_, code)| *code));
                 runs.push(run);
-                set.fits.extend(result.fit.clone());
-                set.checks.extend(verdicts);
                 continue;
             }
             set.records.extend(result.records.iter().cloned());
@@ -154,6 +147,19 @@ impl StudyPlan {
         set.provenance = provenance::provenance(machine, &texts);
         warn_if_busy(&mut set);
         FinishedStudy { set, failed, runs, ran: results.len(), stored: 0, counters }
+    }
+
+    /// Adds a fit with its checks or its failure, and returns its summary.
+    fn collect_fit(&self, task: &Task, result: &TaskResult, set: &mut RunSet) -> RunSummary {
+        let verdicts = self.fit_verdicts(task, result);
+        let mut run = self.summary(task, result, &verdicts);
+        if let Some((failure, _)) = &result.failure {
+            run.failure = Some(failure.reason.clone());
+            set.failures.push(failure.clone());
+        }
+        set.fits.extend(result.fit.clone());
+        set.checks.extend(verdicts);
+        run
     }
 
     /// Checks of one run: those of the scene, for its own cloud, and those of the study's run table.
