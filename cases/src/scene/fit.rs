@@ -210,6 +210,9 @@ impl FitCheckKeys {
             if of_key { "name a key of fit.keys" } else { "it goes with value and half-width: leave it out" };
         let fits = key.is_some() == of_key && self.key.is_some() == of_key;
         report.require(fits, "key", "does not fit", help);
+        if !fits {
+            return None;
+        }
         let read = |keys: NumberKeys, at: &str| {
             let read = match (key, keys) {
                 (Some(key), NumberKeys::Number(value)) => {
@@ -229,6 +232,6 @@ impl FitCheckKeys {
             report.missing("", "give at_least or at_most");
         }
         let bound = Bound::Within { at_least: at_least.flatten(), at_most: at_most.flatten() };
-        fits.then(|| FitCheck { statistic: self.statistic, key: self.key, bound, at: report.location() })
+        Some(FitCheck { statistic: self.statistic, key: self.key, bound, at: report.location() })
     }
 }
