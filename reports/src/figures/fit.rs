@@ -103,7 +103,7 @@ fn points(fit: &Fit, axes: &Axes, of: fn(&FitPoint) -> f64) -> Places {
 /// The points, then the curve at its load steps, SI.
 fn csv(fit: &Fit) -> String {
     let (x, y) = (format!("{} [SI]", fit.along), format!("{} [SI]", fit.of));
-    let mut out = csv_line(&["what", &x, &y, "fitted", "residual", "sd"]);
+    let mut out = csv_line(&["what", &x, &y, "fitted", "measured minus fitted", "sd"]);
     for FitPoint { x, measured, sd, fitted } in &fit.points {
         let numbers = [*x, *measured, *fitted, measured - fitted].map(|v| format!("{v:e}"));
         let sd = sd.map_or(String::new(), |sd| format!("{sd:e}"));

@@ -86,7 +86,7 @@ pub(super) fn quality(fits: &[Fit]) -> Table {
             ("R2", Number),
             ("chi2", Number),
             ("runs", Number),
-            ("warnings", Words),
+            ("doubts", Words),
         ],
     );
     for fit in fits {

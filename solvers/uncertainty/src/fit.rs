@@ -32,6 +32,9 @@ const CLOSE: f64 = 0.2;
 /// The same over the root of the sum of the squares of the data, for data without scatter.
 const EXACT: f64 = 1e-7;
 
+/// Values of a model at the data for each set of constants; `None` for a set at which it fails.
+pub type Models = Vec<Option<Vec<f64>>>;
+
 /// Result of a fit.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fitted {
@@ -73,7 +76,7 @@ pub fn fit(
     constants: &[Constant],
     data: Measured,
     step: f64,
-    run: &mut dyn FnMut(&[Vec<f64>]) -> Vec<Option<Vec<f64>>>,
+    run: &mut dyn FnMut(&[Vec<f64>]) -> Models,
 ) -> Result<Fitted, FitError> {
     let mut of = Search { constants, data, step, run, runs: 0 };
     let mut theta = DVector::from_iterator(constants.len(), constants.iter().map(|c| c.forward(c.start)));
@@ -108,7 +111,7 @@ struct Search<'a> {
     constants: &'a [Constant],
     data: Measured<'a>,
     step: f64,
-    run: &'a mut dyn FnMut(&[Vec<f64>]) -> Vec<Option<Vec<f64>>>,
+    run: &'a mut dyn FnMut(&[Vec<f64>]) -> Models,
     runs: usize,
 }
 
@@ -122,7 +125,7 @@ struct Descent {
 }
 
 impl Search<'_> {
-    fn at(&mut self, thetas: &[DVector<f64>]) -> Vec<Option<Vec<f64>>> {
+    fn at(&mut self, thetas: &[DVector<f64>]) -> Models {
         self.runs += thetas.len();
         let values =
             |theta: &DVector<f64>| self.constants.iter().zip(theta.iter()).map(|(c, t)| c.back(*t)).collect();

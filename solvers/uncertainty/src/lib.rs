@@ -37,6 +37,6 @@ pub use chaos::Chaos;
 pub use confidence::{Collinear, Confidence};
 pub use constant::{Constant, Measured};
 pub use distribution::Distribution;
-pub use fit::{FitError, Fitted, fit};
+pub use fit::{FitError, Fitted, Models, fit};
 pub use sequence::{MOST_INPUTS, MOST_SAMPLES, SEED, point};
 pub use statistics::{Estimate, Index, LEAST_Q2, LEVELS, Source, Statistics, quantiles, statistics};
