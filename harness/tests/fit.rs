@@ -176,8 +176,8 @@ fn bounds_wrong_models_and_failures_are_reported() {
         .replace("6 kPa", "-6 kPa")
         .replace("check = [{ metric", "# check = [{ metric");
     let weak = write(&dir, "weak.toml", &weak);
-    let done = tissuebench(&["fit", &weak, "--out", &inside(&dir, "out")]);
+    let done = tissuebench(&["fit", &weak, "--out", &inside(&dir, "weak")]);
     assert_eq!(done.code, 3, "{}", done.stderr);
     let without = write(&dir, "plain.toml", SCENE.split("[fit]").next().unwrap());
-    assert_fails(&tissuebench(&["fit", &without, "--out", &inside(&dir, "out")]), 2, "has no [fit]");
+    assert_fails(&tissuebench(&["fit", &without, "--out", &inside(&dir, "plain")]), 2, "has no [fit]");
 }

@@ -58,6 +58,15 @@ impl Constant {
         if self.is_logarithmic() { theta.exp() } else { theta * self.unit() }
     }
 
+    /// The allowed value of the constant for a fitted number: on a bound the bound itself, without rounding.
+    pub(crate) fn value(&self, theta: f64) -> f64 {
+        match self.within {
+            Some([low, _]) if theta <= self.forward(low) => low,
+            Some([_, high]) if theta >= self.forward(high) => high,
+            _ => self.back(theta),
+        }
+    }
+
     /// Lowest and highest value of the fitted number.
     pub(crate) fn bounds(&self) -> [f64; 2] {
         self.within

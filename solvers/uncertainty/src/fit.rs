@@ -97,7 +97,7 @@ pub fn fit(
         }
         if found.converged || found.stuck || iterations == MOST_ITERATIONS {
             let residual = data.residual(&model);
-            let values: Vec<f64> = constants.iter().zip(theta.iter()).map(|(c, t)| c.back(*t)).collect();
+            let values: Vec<f64> = constants.iter().zip(theta.iter()).map(|(c, t)| c.value(*t)).collect();
             let jacobian = (&linear.jacobian, &residual, &linear.free[..]);
             let confidence = confidence(constants, &theta, jacobian, data, step);
             let Search { runs, .. } = of;
@@ -127,8 +127,9 @@ struct Descent {
 impl Search<'_> {
     fn at(&mut self, thetas: &[DVector<f64>]) -> Models {
         self.runs += thetas.len();
-        let values =
-            |theta: &DVector<f64>| self.constants.iter().zip(theta.iter()).map(|(c, t)| c.back(*t)).collect();
+        let values = |theta: &DVector<f64>| {
+            self.constants.iter().zip(theta.iter()).map(|(c, t)| c.value(*t)).collect()
+        };
         (self.run)(&thetas.iter().map(values).collect::<Vec<_>>())
     }
 
