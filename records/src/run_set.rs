@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 use crate::axis::Axis;
 use crate::body::RecordedBody;
 use crate::error::RecordError;
+use crate::fit::Fit;
 use crate::provenance::Provenance;
 use crate::record::{Family, Record};
 use crate::reference::Reference;
@@ -238,4 +239,6 @@ pub struct RunSet {
     pub axes: Vec<Axis>,
     /// Samples of scenes with uncertain inputs.
     pub samples: Vec<Samples>,
+    /// Fits of constants to measured curves.
+    pub fits: Vec<Fit>,
 }

@@ -11,6 +11,7 @@
 //! | `references.json` | references of the runs, with their own errors |
 //! | `axes.json` | outcomes of methods along the axes of the study |
 //! | `samples.json` | samples of uncertain inputs with their results, if a scene has any |
+//! | `fit.json` | constants that were fitted to measured curves, if a scene has any |
 //! | `fields/CASE--METHOD.json` | surface displacements and states, see below |
 //! | `incomplete.json` | present from the start of a study or run until all files are written |
 //!
@@ -32,6 +33,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::cell::csv_line;
 use crate::error::{RecordError, unwritten};
+use crate::fit::Fit;
 use crate::frame;
 use crate::provenance::{FORMAT, Provenance};
 use crate::record::Record;
@@ -43,6 +45,8 @@ const MARK: &str = "incomplete.json";
 
 /// Name of the file of samples.
 const SAMPLES: &str = "samples.json";
+/// Name of the file of fits.
+const FITS: &str = "fit.json";
 
 /// Content of the mark.
 #[derive(Serialize, Deserialize)]
@@ -117,7 +121,8 @@ pub fn write_marked(dir: &Path, run: &RunSet) -> Result<(), RecordError> {
     write_json(&dir.join("warnings.json"), &run.warnings)?;
     write_json(&dir.join("references.json"), &run.references)?;
     write_json(&dir.join("axes.json"), &run.axes)?;
-    write_samples(&dir.join(SAMPLES), &run.samples)?;
+    write_some(&dir.join(SAMPLES), &run.samples)?;
+    write_some(&dir.join(FITS), &run.fits)?;
     let mut csv = String::from("case,method,metric,value,bound,status,reason\n");
     for c in &run.checks {
         let value = c.value.map(|v| format!("{v:e}")).unwrap_or_default();
@@ -152,13 +157,18 @@ pub fn write_marked(dir: &Path, run: &RunSet) -> Result<(), RecordError> {
     Ok(())
 }
 
-/// Writes the samples, or removes those of an earlier run if there are none.
-fn write_samples(path: &Path, samples: &[Samples]) -> Result<(), RecordError> {
-    match samples.is_empty() {
-        false => write_json(path, &samples),
+/// Writes a list, or removes that of an earlier run if it is empty.
+fn write_some<T: Serialize>(path: &Path, list: &[T]) -> Result<(), RecordError> {
+    match list.is_empty() {
+        false => write_json(path, &list),
         true if path.exists() => disk::remove(path).map_err(|source| unwritten(path, source)),
         true => Ok(()),
     }
+}
+
+/// Reads a list; none if there is no file.
+fn read_some<T: DeserializeOwned>(path: &Path) -> Result<Vec<T>, RecordError> {
+    if path.exists() { read_json(path) } else { Ok(Vec::new()) }
 }
 
 /// Rejects rows with the same key.
@@ -237,15 +247,10 @@ pub fn read_marked(dir: &Path) -> Result<RunSet, RecordError> {
         plans: read_json(&dir.join("plans.json"))?,
         failures: read_json(&dir.join("failures.json"))?,
         warnings: read_json(&dir.join("warnings.json"))?,
-        references: match dir.join("references.json") {
-            path if path.exists() => read_json(&path)?,
-            _ => Vec::new(),
-        },
+        references: read_some(&dir.join("references.json"))?,
         axes: read_json(&dir.join("axes.json"))?,
-        samples: match dir.join(SAMPLES) {
-            path if path.exists() => read_json(&path)?,
-            _ => Vec::new(),
-        },
+        samples: read_some::<Samples>(&dir.join(SAMPLES))?,
+        fits: read_some::<Fit>(&dir.join(FITS))?,
     };
     run.records.iter().try_for_each(|r| r.check())?;
     run.fields.iter().try_for_each(|f| f.check())?;

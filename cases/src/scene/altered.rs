@@ -1,4 +1,4 @@
-//! A scene whose keys are set from outside after it was read: along an axis, or to a sample of its inputs.
+//! A scene whose keys are set from outside after it was read: along an axis, to a sample of its inputs, or by a fit.
 
 use catalogue::Problem;
 
@@ -26,7 +26,7 @@ pub(crate) fn resolved(keys: SceneKeys, origin: Origin) -> Result<Scene, Vec<Sce
 }
 
 /// The scene with some keys set, or removed if they have no value, and with the named methods (all if `methods`
-/// is empty). Checks and uncertain inputs are left out: they apply to the scene as written. Errors in the
+/// is empty). Checks, uncertain inputs and a fit are left out: they apply to the scene as written. Errors in the
 /// values name `driver`.
 ///
 /// # Errors
@@ -40,7 +40,7 @@ pub(crate) fn altered(
 ) -> Result<Scene, Vec<SceneError>> {
     let mut document = Document::parse(scene.text(), scene.file())?;
     document.keep(methods);
-    for left_out in ["check", "vary"] {
+    for left_out in ["check", "vary", "fit"] {
         document.root.get_mut().remove(left_out);
     }
     for (key, value) in settings {

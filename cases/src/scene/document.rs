@@ -55,6 +55,12 @@ impl Origin {
         self.places.keys().any(|place| unnumbered(place) == key)
     }
 
+    /// The scalar at `key` as written, without quotes; of a key with empty brackets, that of the first entry.
+    pub(crate) fn scalar(&self, key: &str) -> Option<&str> {
+        let first = key.replace("[]", "[0]");
+        self.places.get(&first)?.1.as_deref()
+    }
+
     /// An error at `key`, such as `method[1].size.nodes`, with the value in the file. If the file does not
     /// have the key, the error is at the nearest key above it.
     pub(crate) fn error(&self, kind: ErrorKind, key: &str, problem: Problem) -> SceneError {

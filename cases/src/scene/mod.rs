@@ -23,11 +23,14 @@ mod drive;
 mod error;
 mod expression;
 mod field;
+mod fit;
+mod fitted;
 mod foundation;
 mod goal;
 mod limits;
 mod load;
 mod material;
+mod measured;
 mod mesh_file;
 mod method;
 mod output;
@@ -65,10 +68,12 @@ pub use drive::{Drive, Leg, Turn};
 pub use error::{ErrorKind, SceneError};
 pub use expression::{Expression, NotFinite};
 pub use field::{ScalarField, VectorField};
+pub use fit::{Fit, FitCheck, FitStatistic, FittedKey};
 pub use foundation::Foundation;
 pub use goal::Goal;
 pub use load::{load, load_with, parse, parse_with, schema};
 pub use material::{Directions, Material, MaterialRegion, Relaxation, medium};
+pub use measured::Measured;
 pub use mesh_file::MeshFile;
 pub use method::{
     Adapt, Basis, Cloud, ConstraintRows, Dilation, Efg, Element, Essential, EssentialKind, External, Family,

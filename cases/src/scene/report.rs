@@ -47,6 +47,12 @@ impl<'o> Report<'o> {
         self.found.borrow_mut().push((key, error));
     }
 
+    /// Adds the errors of another file, which is the value of `key`.
+    pub fn add_of_file(&self, key: &str, errors: Vec<SceneError>) {
+        let key = self.key(key);
+        self.found.borrow_mut().extend(errors.into_iter().map(|error| (key.clone(), error)));
+    }
+
     pub fn missing(&self, key: &str, help: &str) {
         self.add(key, Problem::new("is missing").help(help));
     }

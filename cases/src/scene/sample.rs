@@ -42,12 +42,9 @@ impl Scene {
         let values = vary.values(index);
         let written: Vec<String> = vary.keys.iter().zip(&values).map(|(key, v)| key.written(*v)).collect();
         let set = vary.keys.iter().zip(&written).map(|(key, text)| (key.key.as_str(), Some(text.as_str())));
-        let solved = matches!(self.reference, Some(Reference::Method { .. } | Reference::Record(_)));
-        let reference = (solved && !vary.needs_reference()).then_some("reference");
-        let left_out = LEFT_OUT.into_iter().filter(|(key, needs)| self.has(key) && !vary.needs_any(needs));
-        let left_out = left_out.map(|(key, _)| key).chain(reference).map(|key| (key, None));
+        let left_out = left_out(self, |needs| vary.needs_any(needs), vary.needs_reference());
         let driver = format!("{} at sample {}", self.file(), index + 1);
-        let settings: Vec<_> = left_out.chain(set).collect();
+        let settings: Vec<_> = left_out.into_iter().chain(set).collect();
         let mut sample = altered(self, methods, &settings, &driver)
             .map_err(|errors| vec![self.refused_sample(vary, index, &values, &errors)])?;
         sample.varied = Some((SAMPLE.into(), f64::from(index + 1)));
@@ -75,6 +72,18 @@ impl Scene {
         let help = "leave such values out: within = [low, high] cuts a normal or lognormal distribution off";
         self.error(ErrorKind::Invalid, &place, &problem, Some(help))
     }
+}
+
+/// Requests for output that runs with other values do not need, as keys without a value.
+pub(super) fn left_out(
+    scene: &Scene,
+    needed: impl Fn(&[Needs]) -> bool,
+    compared: bool,
+) -> Vec<(&'static str, Option<&'static str>)> {
+    let solved = matches!(scene.reference, Some(Reference::Method { .. } | Reference::Record(_)));
+    let reference = (solved && !compared).then_some("reference");
+    let left_out = LEFT_OUT.into_iter().filter(|(key, needs)| scene.has(key) && !needed(needs));
+    left_out.map(|(key, _)| key).chain(reference).map(|key| (key, None)).collect()
 }
 
 /// Checks that the scene has the varied keys and metrics, and takes the median of each key.

@@ -14,6 +14,7 @@ use super::condition::{Load, LoadKeys, Support, SupportKeys};
 use super::curve::{CurveKeys, NamedCurve};
 use super::document::Origin;
 use super::error::{ErrorKind, SceneError};
+use super::fit::{Fit, FitKeys};
 use super::foundation::{Foundation, FoundationKeys};
 use super::material::{Material, MaterialKeys, MaterialRegion, RegionKeys};
 use super::method::{Method, MethodKeys};
@@ -64,6 +65,7 @@ pub(crate) struct SceneKeys {
     #[serde(default)]
     check: Vec<CheckKeys>,
     vary: Option<VaryKeys>,
+    fit: Option<FitKeys>,
 }
 
 /// A checked scene.
@@ -105,6 +107,10 @@ pub struct Scene {
     pub checks: Vec<Check>,
     /// Uncertain inputs.
     pub vary: Option<Vary>,
+    /// Constants that are fitted to a measured curve.
+    pub fit: Option<Fit>,
+    /// Whether the scene stands for the fit of its constants, which is one task.
+    pub is_fit: bool,
     /// Number of the sample of its uncertain inputs, from 0; `None` for the scene of the file.
     pub sample: Option<u32>,
     /// Axis of a study along which the scene is varied, with its value; `None` for the scene of the file.
@@ -208,6 +214,7 @@ impl SceneKeys {
         let reference = self.reference.and_then(|keys| keys.read(&report.at("reference")));
         let checks = report.each("check", self.check, CheckKeys::read);
         let vary = self.vary.map(|keys| keys.read(&report.at("vary")));
+        let fit = self.fit.and_then(|keys| keys.read(&report.at("fit")));
         let (body, material) = (body?, material?);
         (regions.len() == count && curves.len() == given).then(|| Scene {
             title: self.title,
@@ -228,6 +235,8 @@ impl SceneKeys {
             reference,
             checks,
             vary,
+            fit,
+            is_fit: false,
             sample: None,
             varied: None,
             origin: report.origin().clone(),

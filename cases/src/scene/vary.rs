@@ -210,13 +210,18 @@ impl Vary {
 impl VariedKey {
     /// A value as TOML.
     pub(crate) fn written(&self, value: f64) -> String {
-        if self.unit.is_empty() { value.to_string() } else { format!("\"{value} {}\"", self.unit) }
+        written(value, &self.unit)
     }
 
     /// A value with its unit.
     pub fn shown(&self, value: f64) -> String {
         format!("{value} {}", self.unit).trim_end().to_string()
     }
+}
+
+/// A value with its unit as TOML.
+pub(super) fn written(value: f64, unit: &str) -> String {
+    if unit.is_empty() { value.to_string() } else { format!("\"{value} {unit}\"") }
 }
 
 impl VaryKeys {
@@ -332,7 +337,7 @@ fn kept(of: Distribution, report: &Report) -> Option<Distribution> {
 }
 
 /// A value of a key: a number, or a quantity in the unit of the values before it.
-fn number(value: &Value, unit: &mut Option<String>) -> Result<f64, Problem> {
+pub(super) fn number(value: &Value, unit: &mut Option<String>) -> Result<f64, Problem> {
     let (number, own) = match value {
         Value::Integer(number) => (*number as f64, String::new()),
         Value::Float(number) if number.is_finite() => (*number, String::new()),
@@ -358,7 +363,7 @@ fn number(value: &Value, unit: &mut Option<String>) -> Result<f64, Problem> {
     let named = |unit: &str| if unit.is_empty() { "no unit".to_string() } else { format!("the unit {unit}") };
     let problem = Problem::new(format!("has {}, where a value before it has {}", named(&own), named(unit)));
     let found = value.as_str().map_or_else(|| value.to_string(), String::from);
-    Err(problem.found(found).help("give all values of a distribution in the same unit"))
+    Err(problem.found(found).help("give all of them in the same unit"))
 }
 
 impl StatisticKeys {

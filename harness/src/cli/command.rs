@@ -11,6 +11,7 @@ use super::args::{
 };
 use super::bound::BoundArgs;
 use super::ci::CiArgs;
+use super::fit::FitArgs;
 use super::history::HistoryAction;
 use super::init::InitArgs;
 use super::pick::PickArgs;
@@ -100,6 +101,11 @@ pub enum Command {
     /// The scene has `[vary]` with the number of samples, the metrics and the distributions of its keys. The scene
     /// as written runs first.
     Vary(VaryArgs),
+    /// Fit constants of a scene to a measured curve, and print them with their confidence
+    ///
+    /// The scene has `[fit]` with the file of the curve and the keys of the constants, whose values in the scene are
+    /// the start. The scene as written runs first.
+    Fit(FitArgs),
     /// Execute one run of a study in its own process
     #[command(hide = true)]
     Experiment(ExperimentArgs),

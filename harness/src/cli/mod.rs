@@ -13,6 +13,7 @@ mod compare;
 mod errors;
 mod export;
 mod fields;
+mod fit;
 mod history;
 mod import;
 mod init;
@@ -48,6 +49,7 @@ use claims::claims;
 use compare::compare;
 use errors::{fail, unreported};
 use export::export;
+use fit::fit;
 use json::RunObject;
 use list::list;
 use merge::merge;
@@ -109,6 +111,7 @@ fn act(cli: Cli) -> u8 {
         Command::Plan { scene, force } => plan(&scene, force),
         Command::Verify { runs, ci } => verify(&runs, &ci),
         Command::Vary(args) => vary(&args),
+        Command::Fit(args) => fit(&args),
         Command::Merge(args) => merge(&args),
         Command::Leash(args) => leash(&args),
         Command::Solve(args) => solve(&args),

@@ -1,6 +1,7 @@
 //! `tissuebench run`: runs one scene with some or all of its methods.
 
 use std::io::IsTerminal;
+use std::path::Path;
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
@@ -26,17 +27,29 @@ const EVERY: Duration = Duration::from_secs(10);
 /// Repeats of timing a single run.
 const REPEATS: Repeats = Repeats { most: 5, seconds: 1.0 };
 
+/// Reports that uncertain inputs are not sampled and constants are not fitted.
+fn as_written(scene: &Scene, file: &Path) {
+    let file = file.display();
+    if let Some(vary) = &scene.vary {
+        let keys = vary.keys.len();
+        eprintln!(
+            "{file}: runs as written; tissuebench vary {file} runs the samples of its {keys} uncertain keys"
+        );
+    }
+    if let Some(fit) = &scene.fit {
+        let (keys, data) = (fit.keys.len(), fit.data.path.display());
+        eprintln!("{file}: runs as written; tissuebench fit {file} fits its {keys} constants to {data}");
+    }
+}
+
 /// Runs the scene, reports the results and returns the exit code.
 pub(super) fn run(args: &RunArgs) -> u8 {
     let (scene, chosen) = match open(&args.scene) {
         Ok(opened) => opened,
         Err(code) => return code,
     };
-    if let Some(vary) = scene.vary.as_ref().filter(|_| !args.quiet) {
-        let (file, keys) = (args.scene.file.display(), vary.keys.len());
-        eprintln!(
-            "{file}: runs as written; tissuebench vary {file} runs the samples of its {keys} uncertain keys"
-        );
+    if !args.quiet {
+        as_written(&scene, &args.scene.file);
     }
     if let Err(code) = affordable_methods(&scene, &chosen, args.force) {
         return code;

@@ -53,7 +53,7 @@ pub(super) fn vary(args: &VaryArgs) -> u8 {
     let mut of = args.scene.clone();
     let samples = args.samples.map(|samples| ("vary.samples", samples.to_string()));
     of.set.extend(samples.map(|(key, value)| Override { key: key.into(), value }));
-    let (scene, chosen) = match open(&of) {
+    let (mut scene, chosen) = match open(&of) {
         Ok(opened) => opened,
         Err(code) => return code,
     };
@@ -62,6 +62,8 @@ pub(super) fn vary(args: &VaryArgs) -> u8 {
         eprintln!("{}: {help}; see the guide 'Uncertain inputs'", of.file.display());
         return 2;
     }
+    // Constants are not fitted.
+    scene.fit = None;
     let mut methods: Vec<String> = chosen.iter().map(|&index| scene.methods[index].id.clone()).collect();
     let mut study = VerifyArgs {
         jobs: args.jobs,
@@ -113,7 +115,7 @@ pub(super) fn vary(args: &VaryArgs) -> u8 {
 }
 
 /// A study of one scene.
-fn of_scene(scene: &Scene, args: &SceneArgs, methods: Vec<String>) -> Study {
+pub(super) fn of_scene(scene: &Scene, args: &SceneArgs, methods: Vec<String>) -> Study {
     Study {
         title: scene.title.clone(),
         runs: vec![Run { methods, ..Run::of(&args.file) }],

@@ -15,6 +15,7 @@ pub(super) fn files(scene: &Scene, method: &scene::Method) -> Vec<PathBuf> {
     if let scene::Body::File(file) = &scene.body {
         found.extend(file.paths());
     }
+    found.extend(scene.fit.iter().map(|fit| fit.data.path.clone()));
     found.extend(scene.tools.iter().filter_map(|tool| tool.file.clone()));
     for transfer in &scene.output.transfers {
         if let scene::Target::File(file) = &transfer.to {

@@ -171,7 +171,9 @@ pub(crate) fn experiment(args: &ExperimentArgs) -> Result<(), Failure> {
     let first = args.tables.first().copied().unwrap_or_default();
     let study = cases::scene::load_study_for(&args.study, first).map_err(unreadable)?;
     let plan = StudyPlan::of_tables(study, &args.tables, args.sample).map_err(unreadable)?;
-    let verify = VerifyArgs { quick: args.quick, ..VerifyArgs::of(&args.study) };
+    // The runs of a fit are stored next to those of the study.
+    let out = args.answer.parent().and_then(|tasks| tasks.parent()).unwrap_or(Path::new("")).into();
+    let verify = VerifyArgs { quick: args.quick, out, ..VerifyArgs::of(&args.study) };
     let index = (0..plan.len()).find(|&index| plan.key(index, &verify) == args.key);
     let index = index
         .ok_or_else(|| Failure::Input("the scene of this run has changed since the study began".into()))?;

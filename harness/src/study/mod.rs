@@ -3,11 +3,13 @@
 mod args;
 mod busy;
 pub mod check;
+mod curve;
 mod events;
 mod execute;
 mod execution;
 mod files;
 mod filters;
+mod fit;
 pub(crate) mod folder;
 mod foreseen;
 pub(crate) mod isolated;

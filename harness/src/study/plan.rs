@@ -69,15 +69,7 @@ impl StudyPlan {
         wanted: impl Fn(&scene::Run) -> bool,
         sampled: impl Fn(u32) -> Range<u32>,
     ) -> Result<StudyPlan, Vec<scene::SceneError>> {
-        let mut plan = StudyPlan {
-            study,
-            scenes: Vec::new(),
-            as_they_are: BTreeMap::new(),
-            cases: BTreeMap::new(),
-            tasks: Vec::new(),
-            refused: Vec::new(),
-            watch: None,
-        };
+        let mut plan = StudyPlan::empty(study);
         let mut errors = Vec::new();
         let mut known = Known::default();
         let runs = plan.study.runs.clone();
@@ -96,6 +88,34 @@ impl StudyPlan {
             }
         }
         if errors.is_empty() { Ok(plan) } else { Err(errors) }
+    }
+
+    /// A plan without tasks.
+    pub(super) fn empty(study: Study) -> StudyPlan {
+        StudyPlan {
+            study,
+            scenes: Vec::new(),
+            as_they_are: BTreeMap::new(),
+            cases: BTreeMap::new(),
+            tasks: Vec::new(),
+            refused: Vec::new(),
+            watch: None,
+        }
+    }
+
+    /// Adds a run of a scene by the method of a task of another plan, and returns its index.
+    pub(super) fn add_run(&mut self, path: &Path, scene: Scene, like: &Task) -> usize {
+        self.scenes.push((path.to_path_buf(), scene.text().to_string(), scene));
+        self.tasks.push(Task {
+            runs: vec![0],
+            scene: self.scenes.len() - 1,
+            method: like.method.clone(),
+            level: like.level,
+            poisson: like.poisson,
+            picture: false,
+            split: None,
+        });
+        self.tasks.len() - 1
     }
 
     /// Reads the unmodified scene of a run table.
@@ -131,8 +151,8 @@ impl StudyPlan {
         Ok(self.scenes.len() - 1)
     }
 
-    /// Index of a scene, and those of the samples of its uncertain inputs if it has any. Along an axis a
-    /// scene is not sampled.
+    /// Index of a scene, and those of the samples of its uncertain inputs and of its fit if it has any. Along an axis a
+    /// scene is neither sampled nor fitted.
     fn with_samples(
         &mut self,
         run: &scene::Run,
@@ -146,6 +166,9 @@ impl StudyPlan {
         let mut found = vec![at];
         for sample in samples {
             found.push(self.add(&run.scene, sample?)?);
+        }
+        if let Some(fit) = self.scenes[at].2.to_fit() {
+            found.push(self.add(&run.scene, fit)?);
         }
         Ok(found)
     }
@@ -216,18 +239,24 @@ impl StudyPlan {
         self.scenes[task.scene].2.sample
     }
 
-    /// Repeats of the timed part of a task. A sample's time is of no interest.
-    pub(super) fn repeats(&self, task: &Task, args: &VerifyArgs) -> Repeats {
-        match (self.sample(task), args.quick) {
-            (Some(_), _) => Repeats::ONCE,
-            (None, true) => QUICK,
-            (None, false) => REPEATS,
-        }
-    }
-
-    /// Whether the task is a run along an axis, or a sample of uncertain inputs.
+    /// Whether a task is a run along an axis, a sample of uncertain inputs, or a fit or one of its runs.
     pub(super) fn is_driven(&self, task: &Task) -> bool {
         self.scenes[task.scene].2.varied.is_some()
+    }
+
+    /// Whether the results of a task are those of a sample or of a fit, which are no records of its case.
+    pub(super) fn is_apart(&self, task: &Task) -> bool {
+        self.sample(task).is_some() || self.is_fit(task)
+    }
+
+    /// Repeats of the timed part of a task. The time of a sample or of a run of a fit is of no interest.
+    pub(super) fn repeats(&self, task: &Task, args: &VerifyArgs) -> Repeats {
+        let driven = self.is_driven(task) && self.tables(task).all(|run| run.axis.is_none());
+        match (driven, args.quick) {
+            (true, _) => Repeats::ONCE,
+            (false, true) => QUICK,
+            (false, false) => REPEATS,
+        }
     }
 
     /// Number of runs.

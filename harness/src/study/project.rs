@@ -26,6 +26,9 @@ fn is_checked(plan: &StudyPlan, task: &Task) -> bool {
         let vary = plan.scenes[task.scene].2.vary.as_ref();
         return vary.is_some_and(|vary| !vary.checks.is_empty());
     }
+    if plan.is_fit(task) {
+        return plan.scenes[task.scene].2.fit.as_ref().is_some_and(|fit| !fit.checks.is_empty());
+    }
     let of_tables = plan.tables(task).flat_map(|run| &run.checks).filter(|check| check::is_of_many(check));
     let mut of_tables = of_tables.filter(|c| c.methods.is_empty() || c.methods.contains(&task.method.id));
     plan.checks(task).next().is_some() || of_tables.next().is_some()

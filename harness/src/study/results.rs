@@ -50,6 +50,16 @@ impl StudyPlan {
     /// Same as [`execute`](StudyPlan::execute), and reports events as they happen.
     pub(crate) fn execute_watched(&self, args: &VerifyArgs, events: Option<&Events>) -> FinishedStudy {
         let machine = Machine { at_once: args.jobs.into(), ..provenance::machine() };
+        let (done, stored) = self.worked(args, events);
+        FinishedStudy { stored, ..self.collect(done, machine) }
+    }
+
+    /// Runs everything. Returns the results by task, and the number of those that were stored.
+    pub(super) fn worked(
+        &self,
+        args: &VerifyArgs,
+        events: Option<&Events>,
+    ) -> (BTreeMap<usize, TaskResult>, usize) {
         let store = Store::of(args);
         let work = Work {
             plan: self,
@@ -61,8 +71,7 @@ impl StudyPlan {
             stored: AtomicUsize::new(0),
         };
         work.all();
-        let finished = self.collect(work.done.into_inner().expect("no worker panicked"), machine);
-        FinishedStudy { stored: work.stored.into_inner(), ..finished }
+        (work.done.into_inner().expect("no worker panicked"), work.stored.into_inner())
     }
 
     pub(super) fn collect(&self, results: BTreeMap<usize, TaskResult>, machine: Machine) -> FinishedStudy {
@@ -75,6 +84,12 @@ impl StudyPlan {
             counters += result.counters;
             if self.sample(task).is_some() {
                 runs.push(self.summary(task, result, &[]));
+                continue;
+            }
+            if self.is_fit(task) {
+                let run = self.collect_fit(task, result, &mut set);
+                failed.extend(result.failure.as_ref().map(|(_, code)| *code));
+                runs.push(run);
                 continue;
             }
             set.records.extend(result.records.iter().cloned());
@@ -112,8 +127,8 @@ impl StudyPlan {
             runs.push(run);
             set.checks.extend(verdicts);
         }
-        // Samples are in the scene's own text.
-        let scenes = || self.scenes.iter().filter(|(_, _, scene)| scene.sample.is_none());
+        // Samples and fits are in the scene's own text.
+        let scenes = || self.scenes.iter().filter(|(_, _, scene)| scene.sample.is_none() && !scene.is_fit);
         for (_, _, scene) in scenes() {
             set.records.extend(reference_records(scene));
         }
@@ -132,6 +147,19 @@ impl StudyPlan {
         set.provenance = provenance::provenance(machine, &texts);
         warn_if_busy(&mut set);
         FinishedStudy { set, failed, runs, ran: results.len(), stored: 0, counters }
+    }
+
+    /// Adds a fit with its checks or its failure, and returns its summary.
+    fn collect_fit(&self, task: &Task, result: &TaskResult, set: &mut RunSet) -> RunSummary {
+        let verdicts = self.fit_verdicts(task, result);
+        let mut run = self.summary(task, result, &verdicts);
+        if let Some((failure, _)) = &result.failure {
+            run.failure = Some(failure.reason.clone());
+            set.failures.push(failure.clone());
+        }
+        set.fits.extend(result.fit.clone());
+        set.checks.extend(verdicts);
+        run
     }
 
     /// Checks of one run: those of the scene, for its own cloud, and those of the study's run table.
@@ -165,7 +193,7 @@ impl StudyPlan {
         let same = |a: &Task, b: &Task| a.method.id == b.method.id && a.poisson == b.poisson;
         for (&index, result) in results {
             let task = &self.tasks[index];
-            if self.sample(task).is_some() {
+            if self.is_apart(task) {
                 continue;
             }
             for &run in &task.runs {

@@ -32,7 +32,7 @@ pub(super) fn condensed(vary: &Vary, result: TaskResult) -> TaskResult {
 }
 
 /// Values of a metric by step.
-fn by_step(of: Address, records: &[Record]) -> BTreeMap<u64, f64> {
+pub(super) fn by_step(of: Address, records: &[Record]) -> BTreeMap<u64, f64> {
     let own = |r: &&Record| r.is(of) && r.statistic == "value";
     records.iter().filter(own).filter_map(|r| Some((r.step?, r.value))).collect()
 }
@@ -105,17 +105,10 @@ impl StudyPlan {
             nominal: check::value(*of, nominal),
             numerical: numerical(*of, nominal),
         };
-        let mut method = task.method.id.clone();
-        if task.level > 0 {
-            method += &format!(" level {}", task.level);
-        }
-        if let Some(poisson) = task.poisson {
-            method += &format!(" nu={poisson}");
-        }
         let along = if scene.tools.is_empty() { &metric::TIME } else { &metric::CLOSURE };
         Samples {
             case: case_name(scene),
-            method,
+            method: method_name(task),
             family: nominal.first().map(|record| record.family).unwrap_or_default(),
             inputs: vary.keys.iter().map(input).collect(),
             seed: uncertainty::SEED,
@@ -158,6 +151,13 @@ impl StudyPlan {
         };
         set.samples.iter().filter(none).filter_map(code).collect()
     }
+}
+
+/// Id of a task's method, with its size and Poisson's ratio if a study varies them.
+pub(super) fn method_name(task: &Task) -> String {
+    let level = if task.level > 0 { format!(" level {}", task.level) } else { String::new() };
+    let poisson = task.poisson.map_or(String::new(), |poisson| format!(" nu={poisson}"));
+    format!("{}{level}{poisson}", task.method.id)
 }
 
 /// Whether two tasks of a scene differ at most in their sample.

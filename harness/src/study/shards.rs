@@ -56,7 +56,7 @@ impl StudyPlan {
         for (index, task) in self.tasks.iter().enumerate() {
             let seconds = foreseen.of(index);
             let ratio = task.poisson.map(f64::to_bits);
-            let sampled = self.sample(task).is_some();
+            let sampled = self.is_apart(task);
             let mut unit =
                 Unit { tasks: vec![index], seconds, groups: BTreeSet::from([(task.scene, ratio)]) };
             let known: BTreeSet<usize> =
@@ -85,7 +85,7 @@ impl StudyPlan {
 type Family<'a> = (usize, &'a str, Option<u64>);
 
 /// Families of a task. A sample of uncertain inputs has none: its statistics are made when all shares are
-/// merged.
+/// merged. A fit has none either.
 fn families(task: &Task, sampled: bool) -> impl Iterator<Item = Family<'_>> {
     let ratio = task.poisson.map(f64::to_bits);
     let runs = if sampled { &[][..] } else { &task.runs[..] };

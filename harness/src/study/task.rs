@@ -4,7 +4,9 @@ use std::path::PathBuf;
 
 use cases::scene;
 use catalogue::metric;
-use records::{Failure as FailedRun, PlanEntry, Record, Reference, SampleResults, SurfaceField, Warning};
+use records::{
+    Failure as FailedRun, Fit, PlanEntry, Record, Reference, SampleResults, SurfaceField, Warning,
+};
 use serde::{Deserialize, Serialize};
 
 use crate::adapter;
@@ -27,6 +29,9 @@ pub struct TaskResult {
     /// Results of a sample of uncertain inputs, which replace all other records.
     #[serde(default)]
     pub sample: Option<SampleResults>,
+    /// Fit of constants, which has no other records.
+    #[serde(default)]
+    pub fit: Option<Fit>,
     /// Surface displacement, if requested.
     pub fields: Vec<SurfaceField>,
     /// Failure of the run, with its exit code.
@@ -48,6 +53,7 @@ impl TaskResult {
             warnings: outcome.warning_rows(),
             reference: outcome.reference.clone(),
             sample: None,
+            fit: None,
             fields: outcome.field.iter().cloned().collect(),
             failure: outcome.stalled.as_ref().map(|f| (stalled(outcome, f), f.exit_code())),
             seconds: 0.0,

@@ -65,10 +65,11 @@ impl Block {
         matches!(self.language.as_str(), "sh" | "console")
     }
 
-    /// File name in the first line of a scene, such as `# block.toml`.
+    /// File name in the first line of a scene or a curve, such as `# block.toml`.
     pub fn file(&self) -> Option<&str> {
         let name = self.text.lines().next()?.strip_prefix("# ")?;
-        (self.language == "toml" && name.ends_with(".toml") && !name.contains(' ')).then_some(name)
+        let kind = ["toml", "csv"].into_iter().find(|kind| self.language == *kind)?;
+        (name.rsplit_once('.')?.1 == kind && !name.contains(' ')).then_some(name)
     }
 }
 

@@ -50,6 +50,7 @@ const SCENE: House<'_> = House {
         "coverage",
         "axis",
         "load",
+        "fitted",
         "sample",
         "altered",
         "shared",
@@ -59,6 +60,8 @@ const SCENE: House<'_> = House {
         "demands",
         "timing",
         "scene",
+        "fit",
+        "measured",
         "vary",
         "output",
         "reference",
@@ -200,7 +203,7 @@ fn an_arrow_back_would_be_seen() {
         BTreeSet::from([0, 2])
     );
     let used = |text: &str| SCENE.used("crate::scene::method::fem", text);
-    assert_eq!(used("use super::{Method, common::{Size, Mass}};"), [17, 26].into());
+    assert_eq!(used("use super::{Method, common::{Size, Mass}};"), [20, 29].into());
     assert_eq!(
         used("use crate::exact::Exact; use crate::scene::{tool::Tool, words::words};"),
         [27, 52].into()

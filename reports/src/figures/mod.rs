@@ -9,6 +9,7 @@ mod convergence;
 mod drawing;
 mod efficiency;
 mod figure;
+mod fit;
 mod grid;
 mod history;
 mod locking;
@@ -43,6 +44,7 @@ pub(crate) fn all(set: &RunSet, runs: &[Run], uncertain: &[Uncertain], trends: &
     figures.extend(stability::maps(&set.axes));
     figures.extend(uncertainty::bands(uncertain));
     figures.extend(uncertainty::shares(uncertain));
+    figures.extend(fit::figures(&set.fits));
     figures.extend(convergence::figures(&solved));
     figures.extend(locking::figures(&solved));
     figures.extend(history::forces(&solved));

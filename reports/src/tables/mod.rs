@@ -7,6 +7,7 @@ mod cost;
 mod error_split;
 mod errors;
 mod face_results;
+mod fit;
 mod modes;
 mod orders;
 mod outcome;
@@ -43,6 +44,9 @@ pub(crate) fn all(
         stability::stability(set),
         uncertainty::uncertainty(uncertain),
         uncertainty::shares(uncertain),
+        fit::constants(&set.fits),
+        fit::correlations(&set.fits),
+        fit::quality(&set.fits),
         errors::relative(runs),
         errors::rms(runs),
         errors::maxima(runs),

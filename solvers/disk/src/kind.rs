@@ -21,6 +21,8 @@ impl Kind {
     pub const SCENE: Kind = Kind::input("a scene, study or list", 4 * MIB);
     /// Meshes, surfaces, decks with their included files, and node positions.
     pub const MESH: Kind = Kind::input("a mesh or a list of points", 1_000_000_000);
+    /// Measured curves.
+    pub const CURVE: Kind = Kind::input("a measured curve", 4 * MIB);
     /// Stored references.
     pub const REFERENCE: Kind = Kind::input("a reference", 128 * MIB);
     /// Files of an adapter, together.

@@ -5,6 +5,8 @@
 //! samples and returns their mean, their quantiles and the share of each input in their variance, from a
 //! polynomial in the inputs ([`Chaos`]) if one fits, and else from the samples themselves.
 //!
+//! [`fit`] goes the other way: from measured values to the constants of a model, with their confidence.
+//!
 //! ```
 //! use tissuebench_uncertainty::{Distribution, point, statistics};
 //! // A spring with an uncertain stiffness and an uncertain end, of which the force is the product.
@@ -22,13 +24,19 @@
 
 mod basis;
 mod chaos;
+mod confidence;
+mod constant;
 mod distribution;
+mod fit;
 mod normal;
 mod resample;
 mod sequence;
 mod statistics;
 
 pub use chaos::Chaos;
+pub use confidence::{Collinear, Confidence};
+pub use constant::{Constant, Measured};
 pub use distribution::Distribution;
+pub use fit::{FitError, Fitted, Models, fit};
 pub use sequence::{MOST_INPUTS, MOST_SAMPLES, SEED, point};
 pub use statistics::{Estimate, Index, LEAST_Q2, LEVELS, Source, Statistics, quantiles, statistics};
