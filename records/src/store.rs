@@ -12,6 +12,7 @@
 //! | `axes.json` | outcomes of methods along the axes of the study |
 //! | `samples.json` | samples of uncertain inputs with their results, if a scene has any |
 //! | `fields/CASE--METHOD.json` | surface displacements and states, see below |
+//! | `ro-crate-metadata.json` | description of all files of the folder, see [`ro_crate`](crate::ro_crate) |
 //! | `incomplete.json` | present from the start of a study or run until all files are written |
 //!
 //! A file in `fields` contains the surface displacements, and the surface at some states for a
@@ -35,6 +36,7 @@ use crate::error::{RecordError, unwritten};
 use crate::frame;
 use crate::provenance::{FORMAT, Provenance};
 use crate::record::Record;
+use crate::ro_crate;
 use crate::run_set::RunSet;
 use crate::samples::Samples;
 
@@ -59,6 +61,8 @@ struct Mark {
 /// A folder or file that cannot be written.
 pub fn begin(dir: &Path, source: &str) -> Result<(), RecordError> {
     make_dir(dir)?;
+    // It would describe files that the run is about to replace.
+    remove(&dir.join(ro_crate::FILE))?;
     write_json(&dir.join(MARK), &Mark { source: source.to_string() })
 }
 
@@ -72,9 +76,13 @@ pub fn is_incomplete(dir: &Path) -> bool {
 /// # Errors
 /// A mark that cannot be removed.
 pub fn end(dir: &Path) -> Result<(), RecordError> {
-    let mark = dir.join(MARK);
-    match disk::remove(&mark) {
-        Err(bad) if bad.kind() != io::ErrorKind::NotFound => Err(unwritten(&mark, bad)),
+    remove(&dir.join(MARK))
+}
+
+/// Removes a file if it exists.
+fn remove(path: &Path) -> Result<(), RecordError> {
+    match disk::remove(path) {
+        Err(bad) if bad.kind() != io::ErrorKind::NotFound => Err(unwritten(path, bad)),
         _ => Ok(()),
     }
 }
@@ -118,7 +126,7 @@ pub fn write_marked(dir: &Path, run: &RunSet) -> Result<(), RecordError> {
     write_json(&dir.join("references.json"), &run.references)?;
     write_json(&dir.join("axes.json"), &run.axes)?;
     write_samples(&dir.join(SAMPLES), &run.samples)?;
-    let mut csv = String::from("case,method,metric,value,bound,status,reason\n");
+    let mut csv = String::from("case,method,metric,value,bound,status,reason,runs\n");
     for c in &run.checks {
         let value = c.value.map(|v| format!("{v:e}")).unwrap_or_default();
         csv.push_str(&csv_line(&[
@@ -129,6 +137,7 @@ pub fn write_marked(dir: &Path, run: &RunSet) -> Result<(), RecordError> {
             &c.bound,
             c.status.name(),
             &c.reason,
+            &c.runs.join(" "),
         ]));
     }
     write_text(&dir.join("checks.csv"), &csv)?;
@@ -156,8 +165,7 @@ pub fn write_marked(dir: &Path, run: &RunSet) -> Result<(), RecordError> {
 fn write_samples(path: &Path, samples: &[Samples]) -> Result<(), RecordError> {
     match samples.is_empty() {
         false => write_json(path, &samples),
-        true if path.exists() => disk::remove(path).map_err(|source| unwritten(path, source)),
-        true => Ok(()),
+        true => remove(path),
     }
 }
 

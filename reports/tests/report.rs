@@ -8,7 +8,7 @@ use std::path::Path;
 use records::{RunSet, write_run};
 use serde_json::Value;
 use tissuebench_reports::commits::add;
-use tissuebench_reports::{ReportError, render, render_over_commits, write_with_report};
+use tissuebench_reports::{ReportError, Statements, render, render_with, write_with_report};
 
 fn text(path: &Path) -> String {
     fs::read_to_string(path).unwrap()
@@ -387,7 +387,7 @@ fn a_history_is_drawn_over_commits_with_what_moved() {
     let mut study = common::study();
     write_run(&results, &study).unwrap();
     let page = |history: Option<&Path>| {
-        let rendered = render_over_commits(&results, &results.join("report"), history)?;
+        let rendered = render_with(&results, &results.join("report"), history, &Statements::default())?;
         Ok::<_, ReportError>((inside(&rendered.page), rendered.files))
     };
     let error = page(Some(&history)).unwrap_err().to_string();

@@ -1,0 +1,138 @@
+//! Evidence that belongs to validation: uncertain inputs, the laws of the scenes, and the lack of experiments.
+
+use std::collections::BTreeMap;
+
+use records::RunSet;
+use records::text::{percent, plural};
+
+use super::document::{Block, Evidence};
+use super::factors;
+use crate::select::Run;
+use crate::table::Column::{Number, Words};
+use crate::table::{Cell, Table};
+use crate::uncertain::{Uncertain, words};
+
+/// Evidence about the form of the model: the scenes with their laws and hashes.
+pub(super) fn form(set: &RunSet, runs: &[Run]) -> Evidence {
+    let mut table = Table::new(
+        "scenes",
+        "Scenes",
+        "The models of this folder: title, laws at large strain, and hash (BLAKE3) of the scene file, by which it is \
+         found again",
+        &[("scene", Words), ("title", Words), ("law", Words), ("hash", Words)],
+    );
+    let mut laws: BTreeMap<&str, Vec<&str>> = BTreeMap::new();
+    for run in runs {
+        let named = laws.entry(&run.is.case).or_default();
+        named.extend(run.is.law.as_deref().filter(|law| !named.contains(law)));
+    }
+    for scene in &set.provenance.scenes {
+        let law = laws.get(scene.case.as_str()).map(|laws| laws.join(", ")).filter(|laws| !laws.is_empty());
+        table.row(&[
+            Cell::Text(&scene.case),
+            Cell::Text(&scene.title),
+            Cell::Text(law.as_deref().unwrap_or("small strain")),
+            Cell::Text(&scene.blake3),
+        ]);
+    }
+    let blocks = if table.is_empty() { Vec::new() } else { vec![Block::Table(table)] };
+    Evidence { factor: &factors::FORM, summary: String::new(), blocks }
+}
+
+/// Evidence about the inputs: what their uncertainty does to the results.
+pub(super) fn inputs(all: &[Uncertain], runs: &[Run], figures: Vec<String>) -> Evidence {
+    if all.is_empty() {
+        let text = "No scene of this folder has uncertain inputs ([vary]), so no sensitivity and no u_input is known.";
+        let blocks = vec![Block::Text(text.into())];
+        return Evidence { factor: &factors::INPUTS, summary: String::new(), blocks };
+    }
+    let of_case = |of: &Uncertain| {
+        let own = runs.iter().find(|run| run.is.case == of.of.case && run.is.method == of.of.method);
+        own.map_or(String::new(), |run| run.is.run.clone())
+    };
+    let mut results = Table::new(
+        "result-uncertainty",
+        "Uncertainty of results",
+        "ASME V&V 20: u_num is the estimated numerical error of the scene as written, u_input the standard deviation by \
+         the uncertain inputs, and u_val = sqrt(u_num^2 + u_input^2), to which a comparison with an experiment adds \
+         u_D. SI units",
+        &[
+            ("scene", Words),
+            ("method", Words),
+            ("result", Words),
+            ("samples", Number),
+            ("missing", Number),
+            ("mean", Number),
+            ("u_input", Number),
+            ("u_num", Number),
+            ("u_val", Number),
+            ("run", Words),
+        ],
+    );
+    let mut ranks = Table::new(
+        "input-ranks",
+        "Ranks of the inputs",
+        "Shares of the uncertain inputs in the variance of each result (total Sobol indices), the largest first",
+        &[
+            ("scene", Words),
+            ("result", Words),
+            ("rank", Number),
+            ("input", Words),
+            ("distribution", Words),
+            ("share", Number),
+            ("run", Words),
+        ],
+    );
+    for of in all {
+        let (run, label) = (of_case(of), of.label());
+        let number = |value| Cell::Digits(value, 4);
+        let found = of.statistics.as_ref();
+        results.row(&[
+            Cell::Text(&of.of.case),
+            Cell::Text(&of.of.method),
+            Cell::Text(&label),
+            Cell::Count((of.results + of.missing) as u64),
+            Cell::Count(of.missing as u64),
+            number(found.map(|s| s.mean.value)),
+            number(found.map(|s| s.sd.value)),
+            number(of.output.numerical),
+            number(of.combined()),
+            Cell::Text(&run),
+        ]);
+        let shares = found.map_or(&[][..], |s| &s.indices);
+        let mut ranked: Vec<_> =
+            of.of.inputs.iter().zip(shares.iter().map(|share| share.total.value)).collect();
+        ranked.sort_by(|a, b| b.1.total_cmp(&a.1));
+        for (rank, (input, share)) in (1..).zip(ranked) {
+            ranks.row(&[
+                Cell::Text(&of.of.case),
+                Cell::Text(&label),
+                Cell::Count(rank),
+                Cell::Text(&input.key),
+                Cell::Text(&words(input)),
+                Cell::Text(&percent(share)),
+                Cell::Text(&run),
+            ]);
+        }
+    }
+    let mut blocks = vec![Block::Table(results)];
+    match ranks.is_empty() {
+        true => blocks.push(Block::Text("No shares of the inputs are known: see the report.".into())),
+        false => blocks.push(Block::Table(ranks)),
+    }
+    blocks.extend(figures.into_iter().map(Block::Figure));
+    let summary = format!("{} result{} with uncertain inputs", all.len(), plural(all.len()));
+    Evidence { factor: &factors::INPUTS, summary, blocks }
+}
+
+/// Evidence of the comparison with an experiment: none, because no reference of a scene is a measurement.
+pub(super) fn comparison(runs: &[Run]) -> Evidence {
+    let mut text = String::from(
+        "No reference of a scene is a measurement: references are exact solutions, finer solutions and stored \
+         solutions. They verify the calculation and validate nothing.",
+    );
+    if runs.iter().any(|run| !run.is.published.is_empty()) {
+        text += " The report compares some runs with published computations, which is no validation either.";
+    }
+    Evidence { factor: &factors::OUTPUT, summary: String::new(), blocks: vec![Block::Text(text)] }
+}
