@@ -1,9 +1,9 @@
-//! Description of a folder of results as a research object, [RO-Crate 1.2](https://w3id.org/ro/crate/1.2), with
-//! the [Process Run Crate](https://w3id.org/ro/wfrun/process/0.5) profile: the program, the run that it made,
-//! the scenes, and every file with its media type, size and hash.
+//! Description of a folder of results as a research object, [RO-Crate 1.2](https://w3id.org/ro/crate/1.2): the
+//! program, the run that it made, the scenes, and every file with its media type, size and hash.
 //!
 //! Results belong to whoever ran the program. The description therefore names no author and no licence.
 
+use std::collections::BTreeSet;
 use std::fs;
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
@@ -14,7 +14,8 @@ use sha2::{Digest, Sha256};
 
 use crate::error::{RecordError, unwritten};
 use crate::provenance::Provenance;
-use crate::store::{provenance_of, write_text};
+use crate::run_set::{Failure, PlanEntry};
+use crate::store::{provenance_of, read_json, write_text};
 
 /// File name of the description.
 pub const FILE: &str = "ro-crate-metadata.json";
@@ -75,12 +76,19 @@ pub fn describe(dir: &Path) -> Result<(), RecordError> {
     let written = fs::metadata(dir.join("provenance.json")).and_then(|file| file.modified());
     let written = written.map_err(|source| RecordError::Io { path: dir.into(), source })?;
     let date = humantime::format_rfc3339_seconds(written).to_string();
-    let mut graph = about(&provenance, &date, &files);
+    let mut graph = about(&provenance, &cases_of(dir)?, &date, &files);
     graph.extend(files);
     let graph = json!({ "@context": "https://w3id.org/ro/crate/1.2/context", "@graph": graph });
     let path = dir.join(FILE);
     let text = serde_json::to_string_pretty(&graph).map_err(|bad| unwritten(&path, bad.into()))?;
     write_text(&path, text + "\n")
+}
+
+/// Cases with a run: a study may read more scenes than it is asked to run.
+fn cases_of(dir: &Path) -> Result<BTreeSet<String>, RecordError> {
+    let plans: Vec<PlanEntry> = read_json(&dir.join("plans.json"))?;
+    let failures: Vec<Failure> = read_json(&dir.join("failures.json"))?;
+    Ok(plans.into_iter().map(|plan| plan.case).chain(failures.into_iter().map(|of| of.case)).collect())
 }
 
 /// Collects the files below a folder, relative to the root. Locks (hidden files), links, claims of runs that
@@ -143,13 +151,16 @@ fn id(name: impl Into<String>) -> Value {
     json!({ "@id": name.into() })
 }
 
-/// Descriptions of the crate, the program, its run, its scenes and the licence.
-fn about(of: &Provenance, date: &str, files: &[Value]) -> Vec<Value> {
+/// Descriptions of the crate, the program, its run, the scenes of these cases and the licence.
+fn about(of: &Provenance, cases: &BTreeSet<String>, date: &str, files: &[Value]) -> Vec<Value> {
     let program = &of.program;
     let source = "#source";
+    // The package URL of the program, because the standard requires an address of software.
+    let package = format!("pkg:cargo/tissuebench-harness@{}", program.version);
     let scenes: Vec<Value> = of
         .scenes
         .iter()
+        .filter(|scene| cases.contains(&scene.case))
         .map(|scene| {
             json!({
                 "@id": format!("#scene-{}", encoded(&scene.case)),
@@ -173,7 +184,6 @@ fn about(of: &Provenance, date: &str, files: &[Value]) -> Vec<Value> {
         json!({
             "@id": "./",
             "@type": "Dataset",
-            "conformsTo": id("https://w3id.org/ro/wfrun/process/0.5"),
             "name": format!("Results of {}", of.source),
             "description": format!(
                 "Results of {} by tissuebench {} ({}): numbers, checks, warnings, tables, figures and a report",
@@ -185,12 +195,6 @@ fn about(of: &Provenance, date: &str, files: &[Value]) -> Vec<Value> {
             "license": id("#licence"),
             "mentions": id("#run"),
             "hasPart": files.iter().map(|file| json!({ "@id": file["@id"] })).collect::<Vec<_>>(),
-        }),
-        json!({
-            "@id": "https://w3id.org/ro/wfrun/process/0.5",
-            "@type": ["CreativeWork", "Profile"],
-            "name": "Process Run Crate",
-            "version": "0.5",
         }),
         json!({
             "@id": "#licence",
@@ -205,18 +209,17 @@ fn about(of: &Provenance, date: &str, files: &[Value]) -> Vec<Value> {
             "name": format!("tissuebench on {}", of.source),
             "description": format!("On {machine}{altered}"),
             "endTime": date,
-            "instrument": id("#tissuebench"),
+            "instrument": id(&package),
             "object": objects.collect::<Vec<_>>(),
             "result": id("./"),
         }),
         json!({
-            "@id": "#tissuebench",
+            "@id": package,
             "@type": "SoftwareApplication",
             "name": "tissuebench",
-            "version": program.version,
-            "softwareVersion": format!("{}, commit {}", program.version, program.revision()),
+            "url": package,
+            "version": format!("{} (commit {})", program.version, program.revision()),
             "description": "Verification and benchmarks of soft-tissue solvers",
-            "license": "MIT OR Apache-2.0",
             "runtimePlatform": format!("{}, {}", program.target, program.rustc),
         }),
         json!({
@@ -232,8 +235,6 @@ fn about(of: &Provenance, date: &str, files: &[Value]) -> Vec<Value> {
 
 #[cfg(test)]
 mod tests {
-    use std::collections::BTreeSet;
-
     use super::*;
     use crate::run_set::RunSet;
     use crate::store::{begin, write_run};

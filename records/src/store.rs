@@ -309,7 +309,7 @@ fn write_json<T: Serialize>(path: &Path, value: &T) -> Result<(), RecordError> {
     write_text(path, text)
 }
 
-fn read_json<T: DeserializeOwned>(path: &Path) -> Result<T, RecordError> {
+pub(crate) fn read_json<T: DeserializeOwned>(path: &Path) -> Result<T, RecordError> {
     let text = disk::read_text(path, Kind::RESULTS)
         .map_err(|source| RecordError::Io { path: path.into(), source })?;
     serde_json::from_str(&text).map_err(|e| RecordError::Content { path: path.into(), reason: e.to_string() })

@@ -46,6 +46,7 @@ fn a_second_page_leaves_no_table_or_figure_of_the_first() {
         .iter()
         .flat_map(|folder| fs::read_dir(dir.path().join(folder)).unwrap().map(|entry| entry.unwrap().path()))
         .chain([rendered.page])
+        .chain(["credibility.md", "credibility.html"].map(|name| dir.path().join(name)))
         .collect();
     let mut written = rendered.files;
     kept.sort();

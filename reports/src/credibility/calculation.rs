@@ -62,9 +62,22 @@ impl Quantity {
         if !matches!(self.value.kind, Kind::Tool | Kind::Place) {
             return vec![self.value.whole()];
         }
-        let alone = [self.value.whole()].into_iter().filter(|of| size(run, *of).is_some());
-        let numbered = (0..).map(|at| self.value.at(at)).take_while(|of| size(run, *of).is_some());
-        alone.chain(numbered).collect()
+        (0..).map(|at| self.value.at(at)).take_while(|of| size(run, *of).is_some()).collect()
+    }
+
+    /// Estimate, its saturation, error against the reference and own error of the reference.
+    fn known(&self, run: &Run, of: Address) -> [Option<f64>; 4] {
+        let alike = |metric: &'static Metric| match metric.is_numbered() {
+            true => Address { index: of.index, ..metric.whole() },
+            false => metric.whole(),
+        };
+        let estimated = self.estimate.map_or([None, None], |(error, saturation)| {
+            [error, saturation].map(|metric| run.value(alike(metric)))
+        });
+        let error = self.errors.iter().find(|error| run.value(alike(error)).is_some());
+        let [error, band] =
+            error.map_or([None, None], |error| [run.value(alike(error)), run.band(alike(error))]);
+        [estimated[0], estimated[1], error, band]
     }
 }
 
@@ -76,13 +89,15 @@ fn size(run: &Run, of: Address) -> Option<f64> {
 
 /// Evidence about the error of discretisation.
 pub(super) fn discretisation(set: &RunSet, runs: &[Run]) -> Evidence {
-    let runs: Vec<Run> = runs.iter().filter(|run| run.is.purpose != Purpose::Patch).cloned().collect();
-    let (errors, [known, none]) = errors(&runs);
+    // A test of exactness has no error to speak of, unless it is a test of the estimate.
+    let judged = |run: &&Run| run.is.purpose != Purpose::Patch || run.has(&metric::DISPLACEMENT_ESTIMATE);
+    let judged: Vec<Run> = runs.iter().filter(judged).cloned().collect();
+    let (errors, [known, none]) = errors(&judged);
     let summary = match known + none {
         0 => String::new(),
         all => format!("{known} of {all} results with an error or an estimate; {none} without"),
     };
-    let tables = [errors, references(set), bounds(&runs), indices(&runs)];
+    let tables = [errors, references(set), bounds(runs), indices(&judged)];
     let blocks = tables.into_iter().filter(|of| !of.is_empty()).map(Block::Table).collect();
     Evidence { factor: &factors::DISCRETISATION, summary, blocks }
 }
@@ -92,7 +107,7 @@ fn errors(runs: &[Run]) -> (Table, [usize; 2]) {
     let mut table = Table::new(
         "result-errors",
         "Errors of results",
-        "Every result of every run, without patch tests. Estimate: relative error that the run estimates without a \
+        "Every run, without patch tests. None: results of the run without an error. Estimate: relative error that the run estimates without a \
          reference; saturation: ratio by which the estimate of a coarser mesh corrects it (near 1 is good). Error: \
          relative error against the reference of the scene, and the own error of this reference",
         &[
@@ -110,42 +125,48 @@ fn errors(runs: &[Run]) -> (Table, [usize; 2]) {
         ],
     );
     let mut counts = [0, 0];
-    let text = |value: Option<f64>| value.map_or(String::new(), percent);
+    let text = |value: Option<f64>| value.map_or("—".into(), percent);
     for run in runs {
-        for quantity in &QUANTITIES {
-            for of in quantity.addresses(run) {
-                let Some(value) = size(run, of) else { continue };
-                let alike = |metric: &'static Metric| match metric.is_numbered() {
-                    true => Address { index: of.index, ..metric.whole() },
-                    false => metric.whole(),
-                };
-                let estimate = quantity.estimate.map(|(error, saturation)| [error, saturation].map(alike));
-                let [estimate, saturation] = estimate.map_or([None, None], |of| of.map(|of| run.value(of)));
-                let error = quantity.errors.iter().find(|error| run.value(alike(error)).is_some());
-                let band = error.and_then(|error| run.band(alike(error)));
-                let error = error.and_then(|error| run.value(alike(error)));
-                let evidence = match (estimate, error) {
-                    (Some(_), Some(_)) => "both",
-                    (Some(_), None) => "estimate",
-                    (None, Some(_)) => "reference",
-                    (None, None) => "none",
-                };
-                counts[usize::from(evidence == "none")] += 1;
-                let unit = quantity::unit(of);
-                table.row(&[
-                    Cell::Text(evidence),
-                    Cell::Text(&run.is.case),
-                    Cell::Text(&run.is.method),
-                    Cell::Count(run.is.nodes),
-                    Cell::Text(&of.to_string()),
-                    Cell::Text(&format!("{} {unit}", significant(value * quantity::scale(of), 4))),
-                    Cell::Text(&text(estimate)),
-                    Cell::Digits(saturation, 3),
-                    Cell::Text(&text(error)),
-                    Cell::Text(&text(band)),
-                    Cell::Text(&run.is.run),
-                ]);
-            }
+        let mut row = |evidence: &str,
+                       result: &str,
+                       value: &str,
+                       [estimate, saturation, error, band]: [Option<f64>; 4]| {
+            table.row(&[
+                Cell::Text(evidence),
+                Cell::Text(&run.is.case),
+                Cell::Text(&run.is.method),
+                Cell::Count(run.is.nodes),
+                Cell::Text(result),
+                Cell::Text(value),
+                Cell::Text(&text(estimate)),
+                Cell::Digits(saturation, 3),
+                Cell::Text(&text(error)),
+                Cell::Text(&text(band)),
+                Cell::Text(&run.is.run),
+            ]);
+        };
+        let mut without = Vec::new();
+        for (quantity, of) in
+            QUANTITIES.iter().flat_map(|of| of.addresses(run).into_iter().map(move |at| (of, at)))
+        {
+            let Some(value) = size(run, of) else { continue };
+            let known @ [estimate, _, error, _] = quantity.known(run, of);
+            let evidence = match (estimate, error) {
+                (Some(_), Some(_)) => "both",
+                (Some(_), None) => "estimate",
+                (None, Some(_)) => "reference",
+                (None, None) => {
+                    without.push(of.to_string());
+                    continue;
+                }
+            };
+            counts[0] += 1;
+            let value = format!("{} {}", significant(value * quantity::scale(of), 4), quantity::unit(of));
+            row(evidence, &of.to_string(), &value, known);
+        }
+        counts[1] += without.len();
+        if !without.is_empty() {
+            row("none", &without.join(", "), "", [None; 4]);
         }
     }
     (table, counts)
@@ -265,8 +286,8 @@ pub(super) fn solver(runs: &[Run]) -> Evidence {
     let mut table = Table::new(
         "solver-facts",
         "Solution of the equations",
-        "Linear solver, residual, iterations, steps and balance of energy of every run, with the names of `tissuebench \
-         list metrics`, SI units. Tolerances are in the scene, whose hash is in provenance.json",
+        "Linear solver, residual, iterations, steps and balance of energy of every run, with the names of \
+         tissuebench list metrics, SI units. Tolerances are in the scene, whose hash is in provenance.json",
         &[("scene", Words), ("method", Words), ("linear solver", Words), ("numbers", Words), ("run", Words)],
     );
     for run in runs {
@@ -278,7 +299,7 @@ pub(super) fn solver(runs: &[Run]) -> Evidence {
         table.row(&[
             Cell::Text(&run.is.case),
             Cell::Text(&run.is.method),
-            Cell::Text(run.is.linear_solver.as_deref().unwrap_or("none")),
+            Cell::Text(run.is.linear_solver.as_deref().unwrap_or("not recorded")),
             Cell::Text(&facts.join("; ")),
             Cell::Text(&run.is.run),
         ]);
@@ -297,7 +318,7 @@ pub(super) fn usage(set: &RunSet) -> Evidence {
     let mut warnings = Table::new(
         "run-warnings",
         "Warnings",
-        "Warnings of the program about the numbers of runs; `tissuebench list warnings` explains the codes",
+        "Warnings of the program about the numbers of runs; tissuebench list warnings explains the codes",
         &[("warning", Words), ("scene", Words), ("method", Words), ("message", Words), ("run", Words)],
     );
     for warning in &set.warnings {

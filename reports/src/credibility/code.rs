@@ -92,7 +92,7 @@ impl<'a> Verified<'a> {
         let summary = match solutions.is_empty() {
             true => String::new(),
             false => format!(
-                "exact solutions: {passed} passed, {failed} failed; {} part{} not exercised",
+                "checks of exact solutions: {passed} passed, {failed} failed; {} part{} not exercised",
                 idle.len(),
                 plural(idle.len())
             ),
@@ -120,7 +120,7 @@ impl<'a> Verified<'a> {
             "exact-solutions",
             "Exact solutions",
             "Every method on every scene with an exact solution, and the outcomes of its checks. Patch: a test of \
-             exactness. A row with a failed check is fail, one without a check is not checked",
+             exactness. Fail: a check failed. Known: checks do not pass, for the stated reasons. Not checked: no check was made",
             &[
                 ("result", Words),
                 ("scene", Words),
@@ -150,15 +150,18 @@ impl<'a> Verified<'a> {
                 .map(|status| checks.iter().filter(|check| check.status == status).count());
             let result = match counts {
                 [_, failed, ..] if failed > 0 => "fail",
-                [0, ..] => "not checked",
-                _ => "pass",
+                [passed, ..] if passed > 0 => "pass",
+                [_, _, known, _] if known > 0 => "known",
+                _ => "not checked",
             };
             let purpose = if is.purpose == Purpose::Patch { ", patch" } else { "" };
             let solution = format!("{}{purpose}", self.exact(&series.runs[0]).unwrap_or_default());
             let law = is.law.clone().unwrap_or_else(|| LINEAR.into());
             rows.push((result, is, solution, law, counts, ids(&series.runs)));
         }
-        rows.sort_by_key(|row| ["fail", "not checked", "pass"].iter().position(|word| *word == row.0));
+        rows.sort_by_key(|row| {
+            ["fail", "known", "not checked", "pass"].iter().position(|word| *word == row.0)
+        });
         for (result, is, solution, law, counts, runs) in &rows {
             let [passed, failed, known, not_run] = counts.map(|count| Cell::Count(count as u64));
             table.row(&[

@@ -140,28 +140,31 @@ impl Document<'_> {
     }
 }
 
+/// Words with more characters are broken, so that a hash does not push other columns off the paper.
+const LONG: usize = 32;
+
 fn html_table(table: &Table) -> String {
-    let class = |column| if column == Words { "" } else { " class=\"n\"" };
-    let columns: Vec<_> = table.header().iter().map(|(_, column)| class(*column)).collect();
+    let of = |column, cell: &str| match column {
+        Words if cell.split(' ').any(|word| word.chars().count() > LONG) => " class=\"long\"",
+        Words => "",
+        _ => " class=\"n\"",
+    };
+    let columns = || table.header().iter().map(|(_, column)| *column);
     let head =
-        table.header().iter().zip(&columns).map(|((name, _), of)| format!("<th{of}>{}</th>", escaped(name)));
+        table.header().iter().map(|(name, column)| format!("<th{}>{}</th>", of(*column, ""), escaped(name)));
     let row = |cells: Vec<&str>| {
-        let cells = cells.iter().zip(&columns).map(|(cell, of)| format!("<td{of}>{}</td>", escaped(cell)));
-        // A check that failed has to be seen on paper without colours, too.
-        let failed = if cells.clone().next().is_some_and(|first| first.contains(">fail<")) {
-            " class=\"bad\""
-        } else {
-            ""
-        };
+        // A failed check has to be seen on paper, too.
+        let failed = if cells.first() == Some(&"fail") { " class=\"bad\"" } else { "" };
+        let cells = cells.iter().zip(columns());
+        let cells = cells.map(|(cell, column)| format!("<td{}>{}</td>", of(column, cell), escaped(cell)));
         format!("<tr{failed}>{}</tr>\n", cells.collect::<String>())
     };
+    let (title, caption, note) = (escaped(&table.title), escaped(&table.caption), table.note());
+    let (head, rows) = (head.collect::<String>(), table.shown().into_iter().map(row).collect::<String>());
+    let note = if note.is_empty() { String::new() } else { format!("<p class=\"caption\">{note}</p>\n") };
     format!(
-        "<h4>{}</h4>\n<p class=\"caption\">{}.</p>\n<table><thead><tr>{}</tr></thead>\n<tbody>\n{}</tbody></table>\n<p class=\"caption\">{}</p>\n",
-        escaped(&table.title),
-        escaped(&table.caption),
-        head.collect::<String>(),
-        table.shown().into_iter().map(row).collect::<String>(),
-        table.note()
+        "<h4>{title}</h4>\n<p class=\"caption\">{caption}.</p>\n<table><thead><tr>{head}</tr></thead>\n\
+         <tbody>\n{rows}</tbody></table>\n{note}"
     )
 }
 

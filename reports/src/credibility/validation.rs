@@ -2,8 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use records::RunSet;
 use records::text::{percent, plural};
+use records::{RunSet, SceneHash};
 
 use super::document::{Block, Evidence};
 use super::factors;
@@ -26,7 +26,8 @@ pub(super) fn form(set: &RunSet, runs: &[Run]) -> Evidence {
         let named = laws.entry(&run.is.case).or_default();
         named.extend(run.is.law.as_deref().filter(|law| !named.contains(law)));
     }
-    for scene in &set.provenance.scenes {
+    let run = |scene: &&SceneHash| laws.contains_key(scene.case.as_str());
+    for scene in set.provenance.scenes.iter().filter(run) {
         let law = laws.get(scene.case.as_str()).map(|laws| laws.join(", ")).filter(|laws| !laws.is_empty());
         table.row(&[
             Cell::Text(&scene.case),
@@ -36,7 +37,9 @@ pub(super) fn form(set: &RunSet, runs: &[Run]) -> Evidence {
         ]);
     }
     let blocks = if table.is_empty() { Vec::new() } else { vec![Block::Table(table)] };
-    Evidence { factor: &factors::FORM, summary: String::new(), blocks }
+    let count = laws.len();
+    let summary = format!("laws of {count} scene{}", plural(count));
+    Evidence { factor: &factors::FORM, summary, blocks }
 }
 
 /// Evidence about the inputs: what their uncertainty does to the results.
