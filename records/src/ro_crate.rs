@@ -15,10 +15,7 @@ use sha2::{Digest, Sha256};
 use crate::error::{RecordError, unwritten};
 use crate::provenance::Provenance;
 use crate::run_set::{Failure, PlanEntry};
-use crate::store::{provenance_of, read_json, write_text};
-
-/// File name of the description.
-pub const FILE: &str = "ro-crate-metadata.json";
+use crate::store::{DESCRIPTION, provenance_of, read_json, write_text};
 
 /// Roles of files, by the beginning of their path.
 const ROLES: [(&str, &str); 17] = [
@@ -79,7 +76,7 @@ pub fn describe(dir: &Path) -> Result<(), RecordError> {
     let mut graph = about(&provenance, &cases_of(dir)?, &date, &files);
     graph.extend(files);
     let graph = json!({ "@context": "https://w3id.org/ro/crate/1.2/context", "@graph": graph });
-    let path = dir.join(FILE);
+    let path = dir.join(DESCRIPTION);
     let text = serde_json::to_string_pretty(&graph).map_err(|bad| unwritten(&path, bad.into()))?;
     write_text(&path, text + "\n")
 }
@@ -102,7 +99,7 @@ fn walk(root: &Path, dir: &Path, paths: &mut Vec<PathBuf>) -> io::Result<()> {
         match entry? {
             _ if hidden => {}
             kind if kind.is_dir() => walk(root, &path, paths)?,
-            kind if kind.is_file() && !transient && local != Path::new(FILE) => paths.push(local),
+            kind if kind.is_file() && !transient && local != Path::new(DESCRIPTION) => paths.push(local),
             _ => {}
         }
     }
@@ -176,7 +173,7 @@ fn about(of: &Provenance, cases: &BTreeSet<String>, date: &str, files: &[Value])
     let altered = if of.set.is_empty() { String::new() } else { format!("; with {}", of.set.join(", ")) };
     let mut graph = vec![
         json!({
-            "@id": FILE,
+            "@id": DESCRIPTION,
             "@type": "CreativeWork",
             "conformsTo": id("https://w3id.org/ro/crate/1.2"),
             "about": id("./"),
@@ -253,7 +250,7 @@ mod tests {
         describe(dir.path()).unwrap();
         // A second time, the description does not describe itself.
         describe(dir.path()).unwrap();
-        let text = fs::read_to_string(at(FILE)).unwrap();
+        let text = fs::read_to_string(at(DESCRIPTION)).unwrap();
         let graph: Value = serde_json::from_str(&text).unwrap();
         let entities = graph["@graph"].as_array().unwrap();
         let files: Vec<&Value> = entities.iter().filter(|of| of["@type"] == "File").collect();
@@ -281,6 +278,6 @@ mod tests {
         assert_eq!(names, BTreeSet::from(known));
         assert_eq!(entities[1]["hasPart"].as_array().unwrap().len(), files.len());
         begin(dir.path(), "study.toml").unwrap();
-        assert!(!at(FILE).exists());
+        assert!(!at(DESCRIPTION).exists());
     }
 }

@@ -36,12 +36,14 @@ use crate::error::{RecordError, unwritten};
 use crate::frame;
 use crate::provenance::{FORMAT, Provenance};
 use crate::record::Record;
-use crate::ro_crate;
 use crate::run_set::RunSet;
 use crate::samples::Samples;
 
 /// Name of the mark of a folder whose results are not those of the last study or run started there.
 const MARK: &str = "incomplete.json";
+
+/// Name of the description of a folder.
+pub(crate) const DESCRIPTION: &str = "ro-crate-metadata.json";
 
 /// Name of the file of samples.
 const SAMPLES: &str = "samples.json";
@@ -62,7 +64,7 @@ struct Mark {
 pub fn begin(dir: &Path, source: &str) -> Result<(), RecordError> {
     make_dir(dir)?;
     // It would describe files that the run is about to replace.
-    remove(&dir.join(ro_crate::FILE))?;
+    remove(&dir.join(DESCRIPTION))?;
     write_json(&dir.join(MARK), &Mark { source: source.to_string() })
 }
 

@@ -107,7 +107,7 @@ fn errors(runs: &[Run]) -> (Table, [usize; 2]) {
     let mut table = Table::new(
         "result-errors",
         "Errors of results",
-        "Every run, without patch tests. None: results of the run without an error. Estimate: relative error that the run estimates without a \
+        "Every run, without patch tests. None: results of the run without an error. The errors of max are those of the displacement field. Estimate: relative error that the run estimates without a \
          reference; saturation: ratio by which the estimate of a coarser mesh corrects it (near 1 is good). Error: \
          relative error against the reference of the scene, and the own error of this reference",
         &[

@@ -49,11 +49,26 @@ pub(super) fn inputs(all: &[Uncertain], runs: &[Run], figures: Vec<String>) -> E
         let blocks = vec![Block::Text(text.into())];
         return Evidence { factor: &factors::INPUTS, summary: String::new(), blocks };
     }
-    let of_case = |of: &Uncertain| {
-        let own = runs.iter().find(|run| run.is.case == of.of.case && run.is.method == of.of.method);
-        own.map_or(String::new(), |run| run.is.run.clone())
+    let ranks = ranks(all, runs);
+    let ranks = match ranks.is_empty() {
+        true => Block::Text("No shares of the inputs are known: see the report.".into()),
+        false => Block::Table(ranks),
     };
-    let mut results = Table::new(
+    let mut blocks = vec![Block::Table(results(all, runs)), ranks];
+    blocks.extend(figures.into_iter().map(Block::Figure));
+    let summary = format!("{} result{} with uncertain inputs", all.len(), plural(all.len()));
+    Evidence { factor: &factors::INPUTS, summary, blocks }
+}
+
+/// Id of the run of the scene as written.
+fn nominal(of: &Uncertain, runs: &[Run]) -> String {
+    let own = runs.iter().find(|run| run.is.case == of.of.case && run.is.method == of.of.method);
+    own.map_or(String::new(), |run| run.is.run.clone())
+}
+
+/// Table of the uncertainty of each result.
+fn results(all: &[Uncertain], runs: &[Run]) -> Table {
+    let mut table = Table::new(
         "result-uncertainty",
         "Uncertainty of results",
         "ASME V&V 20: u_num is the estimated numerical error of the scene as written, u_input the standard deviation by \
@@ -72,7 +87,28 @@ pub(super) fn inputs(all: &[Uncertain], runs: &[Run], figures: Vec<String>) -> E
             ("run", Words),
         ],
     );
-    let mut ranks = Table::new(
+    for of in all {
+        let number = |value| Cell::Digits(value, 4);
+        let found = of.statistics.as_ref();
+        table.row(&[
+            Cell::Text(&of.of.case),
+            Cell::Text(&of.of.method),
+            Cell::Text(&of.label()),
+            Cell::Count((of.results + of.missing) as u64),
+            Cell::Count(of.missing as u64),
+            number(found.map(|s| s.mean.value)),
+            number(found.map(|s| s.sd.value)),
+            number(of.output.numerical),
+            number(of.combined()),
+            Cell::Text(&nominal(of, runs)),
+        ]);
+    }
+    table
+}
+
+/// Table of the inputs of each result, the most important first.
+fn ranks(all: &[Uncertain], runs: &[Run]) -> Table {
+    let mut table = Table::new(
         "input-ranks",
         "Ranks of the inputs",
         "Shares of the uncertain inputs in the variance of each result (total Sobol indices), the largest first",
@@ -87,45 +123,23 @@ pub(super) fn inputs(all: &[Uncertain], runs: &[Run], figures: Vec<String>) -> E
         ],
     );
     for of in all {
-        let (run, label) = (of_case(of), of.label());
-        let number = |value| Cell::Digits(value, 4);
-        let found = of.statistics.as_ref();
-        results.row(&[
-            Cell::Text(&of.of.case),
-            Cell::Text(&of.of.method),
-            Cell::Text(&label),
-            Cell::Count((of.results + of.missing) as u64),
-            Cell::Count(of.missing as u64),
-            number(found.map(|s| s.mean.value)),
-            number(found.map(|s| s.sd.value)),
-            number(of.output.numerical),
-            number(of.combined()),
-            Cell::Text(&run),
-        ]);
-        let shares = found.map_or(&[][..], |s| &s.indices);
+        let shares = of.statistics.as_ref().map_or(&[][..], |s| &s.indices);
         let mut ranked: Vec<_> =
             of.of.inputs.iter().zip(shares.iter().map(|share| share.total.value)).collect();
         ranked.sort_by(|a, b| b.1.total_cmp(&a.1));
         for (rank, (input, share)) in (1..).zip(ranked) {
-            ranks.row(&[
+            table.row(&[
                 Cell::Text(&of.of.case),
-                Cell::Text(&label),
+                Cell::Text(&of.label()),
                 Cell::Count(rank),
                 Cell::Text(&input.key),
                 Cell::Text(&words(input)),
                 Cell::Text(&percent(share)),
-                Cell::Text(&run),
+                Cell::Text(&nominal(of, runs)),
             ]);
         }
     }
-    let mut blocks = vec![Block::Table(results)];
-    match ranks.is_empty() {
-        true => blocks.push(Block::Text("No shares of the inputs are known: see the report.".into())),
-        false => blocks.push(Block::Table(ranks)),
-    }
-    blocks.extend(figures.into_iter().map(Block::Figure));
-    let summary = format!("{} result{} with uncertain inputs", all.len(), plural(all.len()));
-    Evidence { factor: &factors::INPUTS, summary, blocks }
+    table
 }
 
 /// Evidence of the comparison with an experiment: none, because no reference of a scene is a measurement.
