@@ -5,7 +5,7 @@ mod common;
 use std::fs;
 use std::path::Path;
 
-use records::{RunSet, write_run};
+use records::{RunSet, SceneHash, write_run};
 use serde_json::Value;
 use tissuebench_reports::commits::add;
 use tissuebench_reports::{ReportError, Statements, render, render_with, write_with_report};
@@ -302,7 +302,7 @@ fn histories_become_figures_and_nothing_else() {
     // A single step is not a history.
     set.records.retain(|r| r.step == Some(3));
     write_run(dir.path(), &set).unwrap();
-    assert_eq!(render(dir.path(), &dir.path().join("one")).unwrap().files.len(), 1);
+    assert_eq!(render(dir.path(), &dir.path().join("one")).unwrap().files.len(), 3);
 }
 
 /// A report as text: its files with their contents, and for figures the words and the number of shapes.
@@ -358,6 +358,8 @@ fn no_name_of_a_case_means_anything() {
             renamed.checks.iter_mut().for_each(|c| c.case = other.into());
             renamed.plans.iter_mut().for_each(|p| p.case = other.into());
             renamed.failures.iter_mut().for_each(|f| f.case = other.into());
+            let own = |scene: &&mut SceneHash| scene.case == case;
+            renamed.provenance.scenes.iter_mut().filter(own).for_each(|scene| scene.case = other.into());
             let after = contents(&renamed, other);
             for (a, b) in before.iter().zip(&after) {
                 assert_eq!(a, b, "{case} as {other}");
