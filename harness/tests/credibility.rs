@@ -136,7 +136,7 @@ fn every_command_describes_the_folder_that_it_leaves() {
     assert_described(&whole);
     verify(&one, &["--shard", "1/2"]);
     verify(&two, &["--shard", "2/2"]);
-    assert_eq!(tissuebench(&["merge", &one, &two, "--out", &merged]).code, 1);
+    assert_eq!(tissuebench(&["merge", &merged, &one, &two]).code, 1);
     for out in [&one, &two, &merged] {
         assert_described(out);
     }
