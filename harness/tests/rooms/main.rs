@@ -313,7 +313,7 @@ const WORDS: [(&str, &[&str]); 31] = [
     ("harness/src/procedure/statics.rs", &["load"]),
     ("reports/src/commits/trend.rs", &["time"]),
     ("reports/src/compare/across.rs", &["mass"]),
-    ("reports/src/credibility/calculation.rs", &["warnings"]),
+    ("reports/src/credibility/calculation.rs", &["outside", "warnings"]),
     ("reports/src/credibility/code.rs", &["mass"]),
     ("reports/src/credibility/validation.rs", &["mean"]),
     ("reports/src/figures/history.rs", &["closure", "energy", "mode", "time"]),
