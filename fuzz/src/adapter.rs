@@ -1,8 +1,8 @@
 //! Files that people and other programs write for external solvers: `adapter.toml`, `result.json`, `.npy`,
-//! and claims.
+//! claims, and statements about credibility.
 
 use harness::try_readers;
-use reports::read_claims;
+use reports::{read_claims, read_statements};
 
 /// Numbers of nodes and load steps of the problem to which the files belong.
 const NODES: usize = 4;
@@ -16,6 +16,8 @@ pub(crate) fn run(data: &[u8]) {
     for read in try_readers(folder.path(), NODES, STEPS) {
         assert!(read.err().is_none_or(|reason| !reason.is_empty()));
     }
+    // The claims serve as statements, too: both are read as TOML.
+    let _ = read_statements(&folder.path().join("claims.toml"));
     if let Ok(claims) = read_claims(&folder.path().join("claims.toml")) {
         for claim in claims {
             let _ = claim.judge(&records::RunSet::default());

@@ -15,6 +15,7 @@ mod frame;
 mod provenance;
 mod record;
 mod reference;
+pub mod ro_crate;
 mod run_set;
 mod samples;
 pub mod store;

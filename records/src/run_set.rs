@@ -63,6 +63,10 @@ pub struct Check {
     /// Reason for a failure, a known failure or a check that did not run, or why the bound of a passed check
     /// proves nothing; else empty.
     pub reason: String,
+    /// Ids of the runs that gave the value: one, or those of all levels or clouds of a method; empty for a run
+    /// without numbers.
+    #[serde(default)]
+    pub runs: Vec<String>,
     /// Place of the check, as `file:line` with the file name as given. It is not stored, so that results do
     /// not depend on the location of a study.
     #[serde(skip)]

@@ -13,6 +13,7 @@
 //! | `samples.json` | samples of uncertain inputs with their results, if a scene has any |
 //! | `fit.json` | constants that were fitted to measured curves, if a scene has any |
 //! | `fields/CASE--METHOD.json` | surface displacements and states, see below |
+//! | `ro-crate-metadata.json` | description of all files of the folder, see [`ro_crate`](crate::ro_crate) |
 //! | `incomplete.json` | present from the start of a study or run until all files are written |
 //!
 //! A file in `fields` contains the surface displacements, and the surface at some states for a
@@ -43,6 +44,9 @@ use crate::samples::Samples;
 /// Name of the mark of a folder whose results are not those of the last study or run started there.
 const MARK: &str = "incomplete.json";
 
+/// Name of the description of a folder.
+pub(crate) const DESCRIPTION: &str = "ro-crate-metadata.json";
+
 /// Name of the file of samples.
 const SAMPLES: &str = "samples.json";
 /// Name of the file of fits.
@@ -63,6 +67,8 @@ struct Mark {
 /// A folder or file that cannot be written.
 pub fn begin(dir: &Path, source: &str) -> Result<(), RecordError> {
     make_dir(dir)?;
+    // It would describe files that the run is about to replace.
+    remove(&dir.join(DESCRIPTION))?;
     write_json(&dir.join(MARK), &Mark { source: source.to_string() })
 }
 
@@ -76,9 +82,13 @@ pub fn is_incomplete(dir: &Path) -> bool {
 /// # Errors
 /// A mark that cannot be removed.
 pub fn end(dir: &Path) -> Result<(), RecordError> {
-    let mark = dir.join(MARK);
-    match disk::remove(&mark) {
-        Err(bad) if bad.kind() != io::ErrorKind::NotFound => Err(unwritten(&mark, bad)),
+    remove(&dir.join(MARK))
+}
+
+/// Removes a file if it exists.
+fn remove(path: &Path) -> Result<(), RecordError> {
+    match disk::remove(path) {
+        Err(bad) if bad.kind() != io::ErrorKind::NotFound => Err(unwritten(path, bad)),
         _ => Ok(()),
     }
 }
@@ -123,7 +133,7 @@ pub fn write_marked(dir: &Path, run: &RunSet) -> Result<(), RecordError> {
     write_json(&dir.join("axes.json"), &run.axes)?;
     write_some(&dir.join(SAMPLES), &run.samples)?;
     write_some(&dir.join(FITS), &run.fits)?;
-    let mut csv = String::from("case,method,metric,value,bound,status,reason\n");
+    let mut csv = String::from("case,method,metric,value,bound,status,reason,runs\n");
     for c in &run.checks {
         let value = c.value.map(|v| format!("{v:e}")).unwrap_or_default();
         csv.push_str(&csv_line(&[
@@ -134,6 +144,7 @@ pub fn write_marked(dir: &Path, run: &RunSet) -> Result<(), RecordError> {
             &c.bound,
             c.status.name(),
             &c.reason,
+            &c.runs.join(" "),
         ]));
     }
     write_text(&dir.join("checks.csv"), &csv)?;
@@ -161,8 +172,7 @@ pub fn write_marked(dir: &Path, run: &RunSet) -> Result<(), RecordError> {
 fn write_some<T: Serialize>(path: &Path, list: &[T]) -> Result<(), RecordError> {
     match list.is_empty() {
         false => write_json(path, &list),
-        true if path.exists() => disk::remove(path).map_err(|source| unwritten(path, source)),
-        true => Ok(()),
+        true => remove(path),
     }
 }
 
@@ -306,7 +316,7 @@ fn write_json<T: Serialize>(path: &Path, value: &T) -> Result<(), RecordError> {
     write_text(path, text)
 }
 
-fn read_json<T: DeserializeOwned>(path: &Path) -> Result<T, RecordError> {
+pub(crate) fn read_json<T: DeserializeOwned>(path: &Path) -> Result<T, RecordError> {
     let text = disk::read_text(path, Kind::RESULTS)
         .map_err(|source| RecordError::Io { path: path.into(), source })?;
     serde_json::from_str(&text).map_err(|e| RecordError::Content { path: path.into(), reason: e.to_string() })

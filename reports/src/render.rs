@@ -9,6 +9,7 @@ use records::store::{end, make_dir, read_marked, read_numbers, remove_files, wri
 use crate::busy;
 use crate::clouds;
 use crate::commits;
+use crate::credibility::{self, Statements};
 use crate::error::ReportError;
 use crate::figures::{self, Figure};
 use crate::page::{self, Drawn};
@@ -25,28 +26,29 @@ pub struct Rendered {
     pub files: Vec<PathBuf>,
 }
 
-/// Reads the folder of a run and writes `tables/*.{csv,md,tex}`, `figures/*.{svg,png,pdf,csv}` and
-/// `report.html` to another folder (or the same).
+/// Reads the folder of a run and writes `tables/*.{csv,md,tex}`, `figures/*.{svg,png,pdf,csv}`,
+/// `credibility.{md,html}` and `report.html` to another folder (or the same).
 ///
 /// The same records give the same bytes. Nothing is solved or timed again.
 ///
 /// # Errors
 /// A folder without complete results or without records, or a file that cannot be written.
 pub fn render(results: &Path, out: &Path) -> Result<Rendered, ReportError> {
-    render_over_commits(results, out, None)
+    render_with(results, out, None, &Statements::default())
 }
 
 /// Renders a run as [`render`] does, with a history of studies ([`commits`](crate::commits)) drawn over
-/// commits if one is given.
+/// commits if one is given, and with statements about credibility factors.
 ///
 /// # Errors
 /// As for [`render`], and a history that cannot be read.
-pub fn render_over_commits(
+pub fn render_with(
     results: &Path,
     out: &Path,
     history: Option<&Path>,
+    statements: &Statements,
 ) -> Result<Rendered, ReportError> {
-    render_set(&read_numbers(results, "report")?, results, out, history)
+    render_set(&read_numbers(results, "report")?, (results, out), history, statements)
 }
 
 /// Writes a run to a folder, and its report to `report` in this folder. The folder is marked as incomplete
@@ -56,16 +58,17 @@ pub fn render_over_commits(
 /// Invalid records, or a file that cannot be written.
 pub fn write_with_report(dir: &Path, run: &RunSet, history: Option<&Path>) -> Result<Rendered, ReportError> {
     write_marked(dir, run)?;
-    let rendered = render_set(&read_marked(dir)?, dir, &dir.join("report"), history)?;
+    let out = dir.join("report");
+    let rendered = render_set(&read_marked(dir)?, (dir, &out), history, &Statements::default())?;
     end(dir)?;
     Ok(rendered)
 }
 
 fn render_set(
     set: &RunSet,
-    results: &Path,
-    out: &Path,
+    (results, out): (&Path, &Path),
     history: Option<&Path>,
+    statements: &Statements,
 ) -> Result<Rendered, ReportError> {
     let trends = match history {
         Some(history) => commits::shown(history, &set.provenance.source)?,
@@ -104,6 +107,9 @@ fn render_set(
         }
     }
     let drawn: Vec<Drawn> = drawn.into_iter().map(|painted| painted.drawn).collect();
+    let [markdown, html] = credibility::document(set, &runs, &uncertain, &drawn, statements);
+    write(out.join("credibility.md"), markdown.as_bytes())?;
+    write(out.join("credibility.html"), html.as_bytes())?;
     let page = out.join("report.html");
     // The folders of an existing report contain only report files with these suffixes; those not written
     // again are outdated.

@@ -5,10 +5,10 @@ mod common;
 use std::fs;
 use std::path::Path;
 
-use records::{RunSet, write_run};
+use records::{RunSet, SceneHash, write_run};
 use serde_json::Value;
 use tissuebench_reports::commits::add;
-use tissuebench_reports::{ReportError, render, render_over_commits, write_with_report};
+use tissuebench_reports::{ReportError, Statements, render, render_with, write_with_report};
 
 fn text(path: &Path) -> String {
     fs::read_to_string(path).unwrap()
@@ -46,6 +46,7 @@ fn a_second_page_leaves_no_table_or_figure_of_the_first() {
         .iter()
         .flat_map(|folder| fs::read_dir(dir.path().join(folder)).unwrap().map(|entry| entry.unwrap().path()))
         .chain([rendered.page])
+        .chain(["credibility.md", "credibility.html"].map(|name| dir.path().join(name)))
         .collect();
     let mut written = rendered.files;
     kept.sort();
@@ -247,7 +248,7 @@ fn what_was_not_recorded_is_not_claimed() {
     let empty = write_with_report(dir.path(), &nothing, None).unwrap();
     let refused = render(dir.path(), &dir.path().join("empty")).unwrap_err().to_string();
     assert!(refused.ends_with("holds no records: there is nothing to report"), "{refused}");
-    assert_eq!(empty.files.len(), 1);
+    assert_eq!(empty.files.len(), 3);
     assert_eq!(inside(&empty.page)["counts"]["runs"], 0);
 }
 
@@ -275,6 +276,8 @@ fn histories_become_figures_and_nothing_else() {
             "energy-time.png",
             "energy-time.pdf",
             "energy-time.csv",
+            "credibility.md",
+            "credibility.html",
             "report.html"
         ]
     );
@@ -299,7 +302,7 @@ fn histories_become_figures_and_nothing_else() {
     // A single step is not a history.
     set.records.retain(|r| r.step == Some(3));
     write_run(dir.path(), &set).unwrap();
-    assert_eq!(render(dir.path(), &dir.path().join("one")).unwrap().files.len(), 1);
+    assert_eq!(render(dir.path(), &dir.path().join("one")).unwrap().files.len(), 3);
 }
 
 /// A report as text: its files with their contents, and for figures the words and the number of shapes.
@@ -348,11 +351,15 @@ fn no_name_of_a_case_means_anything() {
         assert!(before.len() > 1, "{case}");
         for other in ["beam", "rigid-kidney-paper-patch", "bonded-bar-wave"] {
             let mut renamed = set.clone();
+            // The id of a run contains the name of its case.
+            renamed.records.iter_mut().for_each(|r| r.run = r.run.replace(&case, other));
             renamed.records.iter_mut().for_each(|r| r.case = other.into());
             renamed.fields.iter_mut().for_each(|f| f.case = other.into());
             renamed.checks.iter_mut().for_each(|c| c.case = other.into());
             renamed.plans.iter_mut().for_each(|p| p.case = other.into());
             renamed.failures.iter_mut().for_each(|f| f.case = other.into());
+            let own = |scene: &&mut SceneHash| scene.case == case;
+            renamed.provenance.scenes.iter_mut().filter(own).for_each(|scene| scene.case = other.into());
             let after = contents(&renamed, other);
             for (a, b) in before.iter().zip(&after) {
                 assert_eq!(a, b, "{case} as {other}");
@@ -387,7 +394,7 @@ fn a_history_is_drawn_over_commits_with_what_moved() {
     let mut study = common::study();
     write_run(&results, &study).unwrap();
     let page = |history: Option<&Path>| {
-        let rendered = render_over_commits(&results, &results.join("report"), history)?;
+        let rendered = render_with(&results, &results.join("report"), history, &Statements::default())?;
         Ok::<_, ReportError>((inside(&rendered.page), rendered.files))
     };
     let error = page(Some(&history)).unwrap_err().to_string();

@@ -186,11 +186,15 @@ pub(crate) fn check(check: &Check, scene: &Scene, report: &Report) {
             touched && scene.output.moments_about.is_some(),
             "needs a [[tool]] and output.moments_about in the scene",
         ),
-        Needs::Mean | Needs::Bounds | Needs::MeanBounds => of_output(check.address.metric.needs, scene),
-        Needs::Point => (probed, "needs output.probes in the scene"),
-        Needs::Stretch => (!scene.output.stretches.is_empty(), "needs output.stretches in the scene"),
-        Needs::Enclosed => (!scene.output.volumes.is_empty(), "needs output.volumes in the scene"),
-        Needs::RegionEnergy => (!scene.output.energies.is_empty(), "needs output.energies in the scene"),
+        Needs::Point
+        | Needs::Stretch
+        | Needs::Enclosed
+        | Needs::RegionEnergy
+        | Needs::Transfer
+        | Needs::Trace
+        | Needs::Mean
+        | Needs::Bounds
+        | Needs::MeanBounds => of_output(check.address.metric.needs, scene),
         Needs::Tool => (touched, "needs a [[tool]] in the scene"),
         Needs::ToolReference => (
             touched && (solved || presses(scene)),
@@ -216,7 +220,6 @@ pub(crate) fn check(check: &Check, scene: &Scene, report: &Report) {
         | Needs::PointEstimate
         | Needs::SupportEstimate
         | Needs::ModeEstimate => estimated(check.address.metric.needs, scene),
-        Needs::Transfer => (!scene.output.transfers.is_empty(), "needs output.transfer in the scene"),
     };
     if !holds {
         return report.add("metric", Problem::new(needs).found(check.address.to_string()));
@@ -314,6 +317,12 @@ fn estimated(needs: Needs, scene: &Scene) -> (bool, &'static str) {
 fn of_output(needs: Needs, scene: &Scene) -> (bool, &'static str) {
     let Output { bounds, means, .. } = &scene.output;
     match needs {
+        Needs::Point => (!scene.output.probes.is_empty(), "needs output.probes in the scene"),
+        Needs::Stretch => (!scene.output.stretches.is_empty(), "needs output.stretches in the scene"),
+        Needs::Enclosed => (!scene.output.volumes.is_empty(), "needs output.volumes in the scene"),
+        Needs::RegionEnergy => (!scene.output.energies.is_empty(), "needs output.energies in the scene"),
+        Needs::Transfer => (!scene.output.transfers.is_empty(), "needs output.transfer in the scene"),
+        Needs::Trace => (scene.output.error_of.is_some(), "needs output.error_of in the scene"),
         Needs::MeanBounds => {
             (*bounds && !means.is_empty(), "needs output.bounds = true and output.means in the scene")
         }

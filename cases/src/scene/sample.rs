@@ -15,11 +15,12 @@ use super::vary::Vary;
 /// Name of the samples where runs are named by the setting in which they differ.
 const SAMPLE: &str = "sample";
 /// Requests for output that a sample does not need, with the metrics that need them.
-const LEFT_OUT: [(&str, &[Needs]); 5] = [
+const LEFT_OUT: [(&str, &[Needs]); 6] = [
     (
         "output.estimate",
         &[Needs::Estimate, Needs::ToolEstimate, Needs::PointEstimate, Needs::SupportEstimate],
     ),
+    ("output.error_of", &[Needs::Trace]),
     ("output.transfer", &[Needs::Transfer]),
     ("output.beside", &[Needs::Transfer]),
     ("output.pictures", &[]),

@@ -117,7 +117,8 @@ pub enum Command {
     Solve(SolveArgs),
     /// Merge parts of a study, run with --shard or on several machines, into the results of one run
     Merge(MergeArgs),
-    /// Render tables, figures and the report of stored results
+    /// Render tables, figures and the report of stored results, and the evidence of credibility by the factors of
+    /// ASME V&V 40
     Report {
         /// Folder written by `verify` or `run --out`
         results: PathBuf,
@@ -127,6 +128,10 @@ pub enum Command {
         /// Also plot errors and times over the commits in this folder, filled by `history add`
         #[arg(long, value_name = "DIR")]
         history: Option<PathBuf>,
+        /// Your statements about the factors of ASME V&V 40, as TOML lines such as `context_of_use = "..."`. They
+        /// fill blanks of credibility.html
+        #[arg(long, value_name = "FILE")]
+        statements: Option<PathBuf>,
     },
     /// Compare stored results with accepted ones: bit by bit on the same kind of processor, otherwise with a
     /// tolerance

@@ -1,7 +1,7 @@
 //! `tissuebench merge`: joins the parts of a study.
 
 use crate::cli::errors::{fail, refuse};
-use crate::cli::results::take;
+use crate::cli::results::{close, take};
 use crate::cli::verify::write;
 use crate::study::folder;
 use crate::study::merge::{self, MergeArgs, Unmerged};
@@ -42,6 +42,5 @@ pub(super) fn merge(args: &MergeArgs) -> u8 {
     }
     merged.finished.set.provenance.source = folder::source(&study);
     let code = write(&merged.finished, &folder, &verify);
-    folder.close(|| ());
-    code
+    close(folder, &args.out, code, || ())
 }

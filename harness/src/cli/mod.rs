@@ -116,9 +116,9 @@ fn act(cli: Cli) -> u8 {
         Command::Leash(args) => leash(&args),
         Command::Solve(args) => solve(&args),
         Command::Experiment(args) => experiment(&args).map_or_else(|failure| fail(&failure), |()| 0),
-        Command::Report { results, out, history } => {
+        Command::Report { results, out, history, statements } => {
             let out = out.unwrap_or_else(|| results.join("report"));
-            report(&results, &out, history.as_deref(), false)
+            report(&results, &out, history.as_deref(), statements.as_deref())
         }
         Command::Baseline(args) => baseline(&args).unwrap_or_else(unreported),
         Command::Reference(args) => match reference(&args) {

@@ -12,7 +12,7 @@ use reports::Seconds;
 use crate::cli::args::{Format, RunArgs};
 use crate::cli::errors::unreported;
 use crate::cli::json::RunObject;
-use crate::cli::results::{take, write_results};
+use crate::cli::results::{described, take, write_results};
 use crate::cli::scenes::{affordable_methods, open};
 use crate::cli::{fields, interrupt, text};
 use crate::error::Failure;
@@ -198,7 +198,8 @@ impl Made {
         for check in self.scene.checks.iter().filter(own).filter(|check| !check::is_of_many(check)) {
             let of = check.address;
             let (value, band) = (check::value(of, &records), check::band(of, &records));
-            self.set.checks.push(check::judge(check, &self.case, &method.id, value, band));
+            let verdict = check::judge(check, &self.case, &method.id, value, band);
+            self.set.checks.push(records::Check { runs: check::run_ids(&records), ..verdict });
         }
         self.set.records.extend(records);
         self.set.plans.extend(outcome.plan_entries());
@@ -273,7 +274,8 @@ impl Made {
         }
         let Some(out) = &self.args.out else { return self.code };
         self.set.records.extend(study::reference_records(&self.scene));
-        self.code.max(write_results(out, &self.set, None, self.args.quiet))
+        let written = write_results(out, &self.set, None, self.args.quiet);
+        self.code.max(if written == 0 { described(out) } else { written })
     }
 }
 

@@ -10,7 +10,7 @@ use records::RunSet;
 use crate::cli::args::SceneArgs;
 use crate::cli::errors::refuse;
 use crate::cli::interrupt;
-use crate::cli::results::take;
+use crate::cli::results::{close, take};
 use crate::cli::scenes::{affordable, open};
 use crate::cli::verify::write;
 use crate::study::{self, StudyPlan, VerifyArgs, folder};
@@ -110,8 +110,7 @@ pub(super) fn vary(args: &VaryArgs) -> u8 {
     finished.set.provenance.set = of.set.iter().map(ToString::to_string).collect();
     let code = write(&finished, &folder, &study);
     reports::uncertain(&finished.set).iter().for_each(|of| print!("{}", of.text()));
-    folder.close(|| study::clean(&args.out));
-    code
+    close(folder, &args.out, code, || study::clean(&args.out))
 }
 
 /// A study of one scene.

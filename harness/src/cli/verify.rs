@@ -8,7 +8,7 @@ use records::Status;
 
 use crate::cli::ci::{self, CiArgs};
 use crate::cli::errors::{fail, refuse, unreported};
-use crate::cli::results::{take, write_results};
+use crate::cli::results::{close, take, write_results};
 use crate::cli::scenes::{affordable, holds_key};
 use crate::cli::{colour, interrupt, text};
 use crate::study::folder::{self, Folder};
@@ -85,8 +85,7 @@ pub(super) fn verify(args: &VerifyArgs, ci: &CiArgs) -> u8 {
         |()| code,
     );
     let code = ended(events, ci, &finished, code);
-    folder.close(|| study::clean(&args.out));
-    code
+    close(folder, &args.out, code, || study::clean(&args.out))
 }
 
 /// Reads the study and its scenes. An error is printed, and its exit code returned.

@@ -233,6 +233,7 @@ impl Outcome {
             warnings: Vec::new(),
             reference: None,
             estimates: None,
+            error_source: Vec::new(),
         }
     }
 

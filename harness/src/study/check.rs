@@ -96,8 +96,22 @@ pub fn judge(check: &Check, case: &str, method: &str, value: Option<f64>, band: 
         bound,
         status,
         reason,
+        runs: Vec::new(),
         at: check.at.clone(),
     }
+}
+
+/// Ids of the runs that some records belong to, without those of transfer schemes and references.
+pub fn run_ids<'r>(records: impl IntoIterator<Item = &'r Record>) -> Vec<String> {
+    let solved = |r: &&Record| !matches!(r.family, Family::Interp | Family::Reference);
+    let mut ids: Vec<String> = Vec::new();
+    for record in records.into_iter().filter(solved) {
+        if ids.last() != Some(&record.run) {
+            ids.push(record.run.clone());
+        }
+    }
+    ids.dedup();
+    ids
 }
 
 /// Verdict on a check of a failed run. The failure itself is counted separately.

@@ -177,6 +177,7 @@ impl StudyPlan {
                     check::judge(check, &case_name(scene), &label, value, band)
                 }
             })
+            .map(|verdict| Verdict { runs: check::run_ids(&result.records), ..verdict })
             .collect()
     }
 
@@ -220,10 +221,12 @@ impl StudyPlan {
                 let records: Vec<&[Record]> = members.iter().map(|member| &member.records[..]).collect();
                 let value = check::of_many(check.address, &records);
                 let failed = members.iter().find_map(|member| member.failure.as_ref());
-                verdicts.push(match (value, failed) {
+                let verdict = match (value, failed) {
                     (None, Some((failure, _))) => check::not_run(check, &case, &label, &failure.reason),
                     (value, _) => check::judge(check, &case, &label, value, None),
-                });
+                };
+                let runs = check::run_ids(records.into_iter().flatten());
+                verdicts.push(Verdict { runs, ..verdict });
             }
         }
         verdicts

@@ -59,3 +59,14 @@ pub(crate) fn all(set: &RunSet, runs: &[Run], uncertain: &[Uncertain], trends: &
     figures.extend(over_commits::figure(trends));
     figures
 }
+
+/// Names of the figures of errors over spacing.
+pub(crate) fn of_convergence(runs: &[Run]) -> Vec<String> {
+    convergence::figures(&solved(runs)).into_iter().map(|figure| figure.name).collect()
+}
+
+/// Names of the figures of uncertain results.
+pub(crate) fn of_uncertainty(uncertain: &[Uncertain]) -> Vec<String> {
+    let all = uncertainty::bands(uncertain).into_iter().chain(uncertainty::shares(uncertain));
+    all.map(|figure| figure.name).collect()
+}

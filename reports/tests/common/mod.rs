@@ -347,6 +347,7 @@ fn check(
         bound: bound.into(),
         status,
         reason: reason.into(),
+        runs: Vec::new(),
         at: String::new(),
     }
 }

@@ -17,7 +17,7 @@ pub struct Kind {
 }
 
 impl Kind {
-    /// Scenes, studies, shared methods and claims, written by hand.
+    /// Scenes, studies, shared methods, claims and statements, written by hand.
     pub const SCENE: Kind = Kind::input("a scene, study or list", 4 * MIB);
     /// Meshes, surfaces, decks with their included files, and node positions.
     pub const MESH: Kind = Kind::input("a mesh or a list of points", 1_000_000_000);
@@ -37,6 +37,8 @@ impl Kind {
     pub const BASELINE: Kind = Kind { name: "a baseline", most: 16 * MIB, input: false };
     /// File of results.
     pub const RESULTS: Kind = Kind { name: "a file of results", most: 256 * MIB, input: false };
+    /// File of a folder of results that is only hashed, whatever its size.
+    pub const HASHED: Kind = Kind { name: "a file to be hashed", most: u64::MAX, input: false };
 
     const fn input(name: &'static str, most: u64) -> Kind {
         Kind { name, most, input: true }

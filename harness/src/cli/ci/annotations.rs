@@ -64,6 +64,7 @@ mod tests {
             bound: "at most 1e-1".into(),
             status: Status::Fail,
             reason: "too much".into(),
+            runs: Vec::new(),
             at: "study.toml:3".into(),
         };
         let found = annotate(&[RunSummary { failure: None, checks: vec![check], ..run.clone() }]);

@@ -115,6 +115,7 @@ mod tests {
             bound: "at most 1e-1".into(),
             status,
             reason: reason.into(),
+            runs: Vec::new(),
             at: "cases/block.toml:5".into(),
         }
     }

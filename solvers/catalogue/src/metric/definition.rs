@@ -119,6 +119,8 @@ pub enum Needs {
     Exact,
     /// A requested estimate of errors.
     Estimate,
+    /// A number whose error is traced.
+    Trace,
     /// Requested strict bounds.
     Bounds,
     /// Requested strict bounds, and a face with a requested mean.

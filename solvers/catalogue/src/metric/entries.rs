@@ -80,7 +80,7 @@ metrics! {
         "estimated error of the strain energy, relative to the predicted energy";
     STRAIN_ENERGY_SATURATION: "strain-energy-error-saturation", "saturation of the energy", None, Value, Estimate,
         "change of the predicted strain energy from a coarser mesh, divided by the change of the run's";
-    ERROR_VOLUME: "error-volume", "volume that causes the error", None, Value, Estimate,
+    ERROR_VOLUME: "error-volume", "volume that causes the error", None, Value, Trace,
         "volume of the cells that cause half of the error of the number of output.error_of, divided by the volume of the \
          body";
     MESHES: "meshes", "solved meshes", None, Count, Run,
