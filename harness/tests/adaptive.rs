@@ -46,7 +46,9 @@ fn a_mesh_is_refined_until_its_force_is_accurate() {
     assert!(error(&even) > 1.5 * error(&found).abs(), "{} {}", error(&even), error(&found));
     assert!(nodes(&found) * 3 < nodes(&even), "{} {}", nodes(&found), nodes(&even));
     let again = solved(&dir, &punch(0.3, &refine, ""));
-    assert_eq!(found["metrics"], again["metrics"]);
+    for metric in ["reaction-z-2", "remaining-error", "strain-energy"] {
+        assert_eq!(number(&found, metric), number(&again, metric));
+    }
 }
 
 /// At the edge of the plate half of the error comes from a small part of the cube.
