@@ -186,15 +186,6 @@ pub(crate) fn check(check: &Check, scene: &Scene, report: &Report) {
             touched && scene.output.moments_about.is_some(),
             "needs a [[tool]] and output.moments_about in the scene",
         ),
-        Needs::Point
-        | Needs::Stretch
-        | Needs::Enclosed
-        | Needs::RegionEnergy
-        | Needs::Transfer
-        | Needs::Trace
-        | Needs::Mean
-        | Needs::Bounds
-        | Needs::MeanBounds => of_output(check.address.metric.needs, scene),
         Needs::Tool => (touched, "needs a [[tool]] in the scene"),
         Needs::ToolReference => (
             touched && (solved || presses(scene)),
@@ -220,6 +211,7 @@ pub(crate) fn check(check: &Check, scene: &Scene, report: &Report) {
         | Needs::PointEstimate
         | Needs::SupportEstimate
         | Needs::ModeEstimate => estimated(check.address.metric.needs, scene),
+        needs => of_output(needs, scene),
     };
     if !holds {
         return report.add("metric", Problem::new(needs).found(check.address.to_string()));

@@ -6,7 +6,7 @@ use geometry::generate::bisect;
 use geometry::{Mesh, Point3};
 
 use super::contributions::Contributions;
-use super::{Pass, pass};
+use super::pass::{Pass, pass};
 use crate::discretise::{Adapt, Discretisation};
 use crate::error::Failure;
 use crate::measure::{Request, Solved, number};
@@ -63,7 +63,7 @@ pub(super) fn adapted(
     plan: &Plan,
     request: &Request,
     meters: &mut Meters,
-) -> Result<Pass, Failure> {
+) -> Result<(Pass, Adapted), Failure> {
     let Meters { timings, counters, .. } = meters;
     timings.time_rest("refine", |timings| rounds(method, adapt, (setup, plan), request, (timings, counters)))
 }
@@ -74,7 +74,7 @@ fn rounds(
     (setup, plan): (&Setup, &Plan),
     request: &Request,
     (timings, counters): (&mut Timings, &mut Counters),
-) -> Result<Pass, Failure> {
+) -> Result<(Pass, Adapted), Failure> {
     let mut current = method.clone();
     let mut adapted = Adapted::default();
     loop {
@@ -86,7 +86,7 @@ fn rounds(
             counters.refinements = adapted.meshes as u64 - 1;
             *timings = own.timings;
             *counters += own.counters;
-            return Ok(Pass { refined: Some(current), adapted: Some(adapted), ..pass });
+            return Ok((Pass { refined: Some(current), ..pass }, adapted));
         };
         current = (adapt.on)(mesh)?;
     }

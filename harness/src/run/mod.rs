@@ -11,6 +11,7 @@ mod external_problem;
 mod group;
 mod levels;
 mod memory;
+mod pass;
 mod repeated;
 mod richer;
 pub(crate) mod stored_reference;
@@ -33,8 +34,8 @@ use crate::measure::{
 };
 use crate::outcome::timing::{Meters, Timed, Timings};
 use crate::outcome::{Counters, Estimates, Identity, Outcome, Plan, Size, StageName, Warning};
-use crate::prepare::{Prepared, check_means, prepare};
-use crate::procedure::{self, Problem, Solution, conclude, refined};
+use crate::prepare::{Prepared, check_means};
+use crate::procedure::{conclude, refined};
 use crate::process;
 use crate::scenario::setup::Setup;
 use adaptive::{Adapted, adapted};
@@ -42,6 +43,7 @@ use bounds::add_bounds;
 use contributions::add_trace;
 use estimate::{estimate, estimate_modes};
 use memory::Baseline;
+use pass::{Pass, pass};
 use repeated::repeated;
 
 pub use crate::measure::Repeats;
@@ -87,7 +89,7 @@ fn on_pool(
     let baseline = Baseline::new();
     process::forget_most_memory();
     let mut meters = Meters::default();
-    let Pass { refined, adapted, prepared, solution } = passes(method, setup, &plan, request, &mut meters)?;
+    let (Pass { refined, prepared, solution }, adapted) = passes(method, setup, &plan, request, &mut meters)?;
     let memory = baseline.peak();
     let method = refined.as_ref().unwrap_or(method);
     let run = measure::Solved { method, setup, prepared: &prepared, solution: &solution };
@@ -127,15 +129,6 @@ fn readable(outcome: &Outcome) -> Result<(), Failure> {
     all.map_err(|bad| Failure::Run(bad.to_string()))
 }
 
-/// Results of one timed pass.
-struct Pass {
-    refined: Option<Discretisation>,
-    /// How the mesh was refined, if its number has to be accurate.
-    adapted: Option<Adapted>,
-    prepared: Prepared,
-    solution: Solution,
-}
-
 /// Fraction of a pass's CPU time spent in the operating-system kernel above which the pass is taken to have
 /// touched its memory for the first time.
 const FIRST_USE: f64 = 0.25;
@@ -153,7 +146,7 @@ fn passes(
     plan: &Plan,
     request: &Request,
     meters: &mut Meters,
-) -> Result<Pass, Failure> {
+) -> Result<(Pass, Option<Adapted>), Failure> {
     let before = process::system_seconds();
     let mut start = Instant::now();
     let mut pass = once(method, setup, plan, request, meters)?;
@@ -188,10 +181,11 @@ fn once(
     plan: &Plan,
     request: &Request,
     meters: &mut Meters,
-) -> Result<Pass, Failure> {
+) -> Result<(Pass, Option<Adapted>), Failure> {
     meters.counters = Counters::default();
     if let Some(adapt) = &method.adapt {
-        return adapted(method, adapt, setup, plan, request, meters);
+        let (pass, adapted) = adapted(method, adapt, setup, plan, request, meters)?;
+        return Ok((pass, Some(adapted)));
     }
     let Meters { timings, counters, .. } = meters;
     let refined = if plan.runs(StageName::Refinement) {
@@ -200,25 +194,7 @@ fn once(
         None
     };
     let solved = pass(refined.as_ref().unwrap_or(method), setup, plan, request, meters)?;
-    Ok(Pass { refined, ..solved })
-}
-
-/// Prepares and solves a problem once.
-fn pass(
-    current: &Discretisation,
-    setup: &Setup,
-    plan: &Plan,
-    request: &Request,
-    meters: &mut Meters,
-) -> Result<Pass, Failure> {
-    let Meters { timings, counters, .. } = meters;
-    // The tables that an external solver is compared with do not count as its preparation time.
-    let phase = if current.outside.is_some() { "tables" } else { "prepare" };
-    let prepared = timings.time(phase, || prepare(current, setup, plan, counters))?;
-    let Request { watch, probes, .. } = *request;
-    let problem = Problem { method: current, setup, prepared: &prepared, plan, watch, probes };
-    let solution = procedure::solve(&problem, meters)?;
-    Ok(Pass { refined: None, adapted: None, prepared, solution })
+    Ok((Pass { refined, ..solved }, None))
 }
 
 /// Keeps the estimates of a run, or warns that there are none.

@@ -206,7 +206,7 @@ fn an_arrow_back_would_be_seen() {
     assert_eq!(used("use super::{Method, common::{Size, Mass}};"), [20, 29].into());
     assert_eq!(
         used("use crate::exact::Exact; use crate::scene::{tool::Tool, words::words};"),
-        [27, 52].into()
+        [31, 56].into()
     );
 }
 
