@@ -42,7 +42,7 @@ fn a_mesh_is_refined_until_its_force_is_accurate() {
     assert!(error(&found).abs() < 0.02, "{}", error(&found));
     assert!(number(&found, "remaining-error") <= 0.02);
     let nodes = |found: &serde_json::Value| found["nodes"].as_u64().unwrap();
-    let even = solved(&dir, &punch(0.3, &TET10.replace("[4, 4, 4]", "[15, 15, 15]"), ""));
+    let even = solved(&dir, &punch(0.3, &TET10.replace("[4, 4, 4]", "[16, 16, 16]"), ""));
     assert!(error(&even) > 1.5 * error(&found).abs(), "{} {}", error(&even), error(&found));
     assert!(nodes(&found) * 3 < nodes(&even), "{} {}", nodes(&found), nodes(&even));
     let again = solved(&dir, &punch(0.3, &refine, ""));
@@ -80,6 +80,7 @@ fn numbers_and_meshes_that_cannot_be_refined_are_refused() {
     let by = |by: &str| format!("{TET10}refine = {{ by = \"{by}\", error = \"2 %\" }}");
     refused(&by("max"), "", "is not a number whose error can be traced");
     refused(&by("reaction"), "", "reaction");
+    refused(&by("reaction-x-4"), "", "is a force along an axis that the support leaves free");
     refused(&by("tool-force"), "", "needs number 1 of [[tool]], but the scene has 0");
     refused(&by("reaction-z-9"), "", "needs number 9 of [[support]], but the scene has 4");
     refused(TET10, r#"error_of = "probe""#, "needs number 1 of output.probes");

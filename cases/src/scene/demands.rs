@@ -7,6 +7,7 @@ use material::Material as _;
 use super::body::Body;
 use super::check::{Bound, Check};
 use super::condition::LoadKind;
+use super::goal::Goal;
 use super::material::medium;
 use super::method::{Family, Fem, Method, Size};
 use super::output::Output;
@@ -60,19 +61,24 @@ pub(crate) fn scene(scene: &Scene, report: &Report) {
     }
 }
 
-/// Reports numbers that the scene does not have, and bodies whose meshes can't be refined.
+/// Reports numbers whose error can't be traced in the scene, and bodies whose meshes can't be refined.
 fn goals(scene: &Scene, report: &Report) {
-    let output = &scene.output;
-    let count = [scene.supports.len(), output.means.len(), output.probes.len()];
-    if let Some(goal) = &output.error_of {
-        goal.demands(&scene.tools, count, "error_of", &report.at("output"));
+    let goal = |goal: &Goal, key: &str, report: &Report| {
+        let count = [scene.output.means.len(), scene.output.probes.len()];
+        goal.demands((&scene.supports, &scene.tools), count, key, report);
+        if let Some(staged) = scene.staged().next() {
+            let problem = format!("is not available with supports of a part of the loading, as {staged}");
+            report.add(key, Problem::new(problem).help("leave one of them out"));
+        }
+    };
+    if let Some(of) = &scene.output.error_of {
+        goal(of, "error_of", &report.at("output"));
     }
-    let kind = scene.procedure.kind();
     for (i, method) in scene.methods.iter().enumerate() {
         let Family::Fem(Fem { adapt: Some(adapt), .. }) = &method.family else { continue };
         let report = report.at(&format!("method[{i}].refine"));
-        adapt.by.demands(&scene.tools, count, "by", &report);
-        let at_rest = [ProcedureKind::Linear, ProcedureKind::Static].contains(&kind);
+        goal(&adapt.by, "by", &report);
+        let at_rest = [ProcedureKind::Linear, ProcedureKind::Static].contains(&scene.procedure.kind());
         let help = "take [procedure] kind = \"linear\" or \"static\", or leave refine out";
         report.require(at_rest, "", "is for solutions at rest", help);
         let sound = matches!(scene.body, Body::Box { .. } | Body::File(_))
@@ -147,13 +153,26 @@ pub(crate) fn check(check: &Check, scene: &Scene, report: &Report) {
         let problem = Problem::new("is recorded by phase").found(check.address.to_string());
         return report.add("metric", problem.help("take \"time-total\" or the time of another phase"));
     }
+    match check.address.metric.needs {
+        Needs::Run | Needs::Seeds => {}
+        needs => match met(needs, scene) {
+            (true, _) => number(check, scene, report),
+            (false, missing) => {
+                report.add("metric", Problem::new(missing).found(check.address.to_string()));
+            }
+        },
+    }
+}
+
+/// Whether a scene meets a demand, and the words for what is missing if not.
+fn met(needs: Needs, scene: &Scene) -> (bool, &'static str) {
     let (kind, reference) = (scene.procedure.kind(), scene.reference.as_ref());
     let (compared, solved) = (reference.is_some(), reference.is_some_and(Reference::is_solved));
     let (stepped, moves) = (!kind.has_no_steps(), scene.procedure.ramp().is_some());
     let vibrates = kind == ProcedureKind::Modes;
     let (touched, probed) = (!scene.tools.is_empty(), !scene.output.probes.is_empty());
-    let (holds, needs) = match check.address.metric.needs {
-        Needs::Run | Needs::Seeds => return,
+    match needs {
+        Needs::Run | Needs::Seeds => (true, ""),
         Needs::Axis => (false, "is a metric of a [run.axis] of a study; check the metric there"),
         Needs::Reference | Needs::Levels => (compared, "needs a [reference] in the scene"),
         Needs::Probes => (compared && probed, "needs a [reference] and output.probes in the scene"),
@@ -210,13 +229,17 @@ pub(crate) fn check(check: &Check, scene: &Scene, report: &Report) {
         | Needs::ToolEstimate
         | Needs::PointEstimate
         | Needs::SupportEstimate
-        | Needs::ModeEstimate => estimated(check.address.metric.needs, scene),
-        needs => of_output(needs, scene),
-    };
-    if !holds {
-        return report.add("metric", Problem::new(needs).found(check.address.to_string()));
+        | Needs::ModeEstimate => estimated(needs, scene),
+        Needs::Point
+        | Needs::Stretch
+        | Needs::Enclosed
+        | Needs::RegionEnergy
+        | Needs::Transfer
+        | Needs::Trace
+        | Needs::Mean
+        | Needs::Bounds
+        | Needs::MeanBounds => of_output(needs, scene),
     }
-    number(check, scene, report);
 }
 
 /// Reports a metric of uncertain inputs that a run of the scene does not give.

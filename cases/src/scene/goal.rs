@@ -5,6 +5,7 @@ use std::fmt;
 use catalogue::Problem;
 use catalogue::metric::{self, Address};
 
+use super::condition::Support;
 use super::drive::Drive;
 use super::report::Report;
 use super::tool::Tool;
@@ -59,12 +60,17 @@ impl Goal {
         }
     }
 
-    /// Reports a number that the scene does not have: `count` supports, faces and probes.
-    pub(crate) fn demands(&self, tools: &[Tool], count: [usize; 3], key: &str, report: &Report) {
-        let [supports, faces, probes] = count;
+    /// Reports a number that the scene does not have, with its number of faces and probes.
+    pub(crate) fn demands(
+        &self,
+        (supports, tools): (&[Support], &[Tool]),
+        [faces, probes]: [usize; 2],
+        key: &str,
+        report: &Report,
+    ) {
         let (index, count, what) = match *self {
             Goal::ToolForce(tool) => (tool, tools.len(), "[[tool]]"),
-            Goal::Reaction(support, _) => (support, supports, "[[support]]"),
+            Goal::Reaction(support, _) => (support, supports.len(), "[[support]]"),
             Goal::Mean(face, _) => (face, faces, "output.means"),
             Goal::Probe(probe, _) => (probe, probes, "output.probes"),
         };
@@ -73,6 +79,11 @@ impl Goal {
         };
         if index >= count {
             add(format!("needs number {} of {what}, but the scene has {count}", index + 1), "add it");
+        }
+        if let Goal::Reaction(support, axis) = *self
+            && supports.get(support).is_some_and(|support| support.motion[axis].is_none())
+        {
+            add("is a force along an axis that the support leaves free".into(), "take another axis");
         }
         if let Some(forced) = tools.iter().find(|tool| !matches!(tool.drive, Drive::Closure(_))) {
             let problem =

@@ -216,6 +216,8 @@ pub fn places(outcomes: &[Outcome]) -> String {
     }
     let head = ["estimated error", "of", "value", "unit", "error [%]", "saturation", "predicted"];
     section(&mut text, &head, outcomes.iter().flat_map(estimates).collect());
+    let head = ["mesh", "solved", "remaining error [%]", "half of the error in [%]"];
+    section(&mut text, &head, outcomes.iter().filter_map(refined).collect());
     let head = ["strict bounds", "of", "lower", "upper", "unit", "half-width [%]"];
     section(&mut text, &head, outcomes.iter().flat_map(bounds).collect());
     let modes = outcomes.iter().flat_map(|outcome| {
@@ -271,6 +273,15 @@ fn estimates(outcome: &Outcome) -> Vec<Vec<String>> {
         row("strain energy", energy, "mJ", of_energy, predicted),
     ];
     tools.chain(supports).chain(probes).chain(modes).chain(whole).flatten().collect()
+}
+
+/// Row of a run whose error is traced or whose mesh is refined.
+fn refined(outcome: &Outcome) -> Option<Vec<String>> {
+    let all = [(&metric::MESHES, 1.0), (&metric::REMAINING_ERROR, 100.0), (&metric::ERROR_VOLUME, 100.0)];
+    let values = all.map(|(of, scale)| outcome.value(of).map(|value| digits(scale * value)));
+    let known = values.iter().any(Option::is_some);
+    let texts = values.map(|value| value.unwrap_or_else(|| "-".into()));
+    known.then(|| [outcome.identity.method.clone()].into_iter().chain(texts).collect())
 }
 
 /// Rows of the strict bounds of a run.

@@ -43,7 +43,12 @@ pub(crate) fn traced(problem: &Problem, carried: &Carried, goal: &Goal) -> Resul
             let rows = prepared.source.at_points(at)?.0;
             let along = match axis {
                 Some(axis) => Vector3::ith(axis, 1.0),
-                None => rows.rows().apply(carried.u)[0].normalize(),
+                None => rows.rows().apply(carried.u)[0].try_normalize(0.0).ok_or_else(|| {
+                    Failure::Run(format!(
+                        "point {} does not move, so its displacement has no direction",
+                        probe + 1
+                    ))
+                })?,
             };
             let (nodes, values) = rows.rows().row(0);
             nodes.iter().zip(values).for_each(|(&node, value)| weights[node as usize] = along * *value);

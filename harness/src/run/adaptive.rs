@@ -1,5 +1,5 @@
-//! Meshes refined until a number is accurate: each run's error is traced to its cells, which are bisected where
-//! it comes from, and the next mesh is solved from the start.
+//! Meshes refined until a number is accurate: each run's error is traced to its cells, which are bisected
+//! where it comes from, and the next mesh is solved from the start.
 
 use catalogue::{metric, warning};
 use geometry::generate::bisect;
@@ -11,21 +11,21 @@ use crate::discretise::{Adapt, Discretisation};
 use crate::error::Failure;
 use crate::measure::{Request, Solved, number};
 use crate::outcome::timing::{Meters, Timings};
-use crate::outcome::{Counters, Outcome, Plan, Warning, corrected, push};
+use crate::outcome::{Counters, Outcome, Plan, SATURATED, Warning, corrected, push};
 use crate::scenario::setup::Setup;
 
 /// Power of the cell size with which the contribution of all cells of a region is taken to fall, and that of
 /// one cell.
 const RATE: f64 = 2.0;
 const RATE_OF_CELL: f64 = RATE + 3.0;
-/// Smallest ratio of a new cell to the cell that contains it, and smallest and largest ratio of the error to that
-/// on the mesh before. Sizes for less are guessed too badly; a mesh with more shows nothing new.
+/// Smallest ratio of a new cell to the cell that contains it, and smallest and largest ratio of the error to
+/// that on the mesh before. Sizes for less are guessed too badly; a mesh with more shows nothing new.
 const SMALLEST: f64 = 0.25;
 const LEFT: [f64; 2] = [0.12, 0.5];
 /// Part of the wanted error at which the sizes aim.
 const AIM: f64 = 0.7;
 /// Most cells of a mesh.
-const MOST_CELLS: usize = 1_000_000;
+const MOST_CELLS: f64 = 1e6;
 
 /// The refinement of a run.
 #[derive(Clone, Debug, Default)]
@@ -37,6 +37,8 @@ pub(super) struct Adapted {
     /// The last prediction, corrected by the one before; `None` with a single one, which may share most of the
     /// error of its mesh.
     predicted: Option<f64>,
+    /// Saturation of the last prediction, if known.
+    saturation: Option<f64>,
     /// Relative error of the last mesh against the last prediction.
     error: f64,
     /// Reason why the refinement ended before the error was reached.
@@ -44,13 +46,25 @@ pub(super) struct Adapted {
 }
 
 impl Adapted {
-    /// Adds the metrics, and a warning if the error was not reached.
+    /// Adds the metrics, and warnings if the error was not reached, and if it is uncertain.
     pub(super) fn report(&self, outcome: &mut Outcome) {
         push(&mut outcome.metrics, &metric::MESHES, self.meshes as f64);
         push(&mut outcome.metrics, &metric::REMAINING_ERROR, self.error);
         if let Some(why) = &self.ended {
             let message = format!("the error is still {:.2} %: {why}", 100.0 * self.error);
             outcome.warnings.push(Warning::new(&warning::NOT_ACCURATE, self.error, "method.refine", message));
+        }
+        if let Some(saturation) = self.saturation.filter(|saturation| *saturation > SATURATED) {
+            let message = format!(
+                "the remaining error may be far larger: between the last two traced meshes the prediction changed by \
+                 {saturation:.2} of the change of the number; start from a finer mesh"
+            );
+            outcome.warnings.push(Warning::new(
+                &warning::LEVELS_DISAGREE,
+                saturation,
+                "method.refine",
+                message,
+            ));
         }
     }
 }
@@ -100,6 +114,10 @@ fn refined(
     counters: &mut Counters,
     adapted: &mut Adapted,
 ) -> Result<Option<Mesh>, Failure> {
+    if !run.solution.is_whole() {
+        adapted.ended = Some("the load path ended early".into());
+        return Ok(None);
+    }
     if let Some(predicted) = adapted.predicted {
         let number = number(run, &adapt.by, probes)?;
         adapted.error = relative(number, predicted);
@@ -116,8 +134,16 @@ fn refined(
         Err(failure) => return Err(failure),
     };
     let now = [found.number, found.predicted];
-    adapted.predicted = adapted.before.map(|before| corrected(now, before));
-    adapted.before = Some(now);
+    if !(found.predicted.abs() > 0.0) {
+        return Err(Failure::Run(format!(
+            "{} is {} in a richer method, so it has no relative error",
+            adapt.by, found.predicted
+        )));
+    }
+    if let Some(before) = adapted.before.replace(now) {
+        let (predicted, saturation) = corrected(now, before);
+        (adapted.predicted, adapted.saturation) = (Some(predicted), saturation);
+    }
     adapted.error = relative(found.number, adapted.predicted.unwrap_or(found.predicted));
     if adapted.error <= adapt.error && adapted.predicted.is_some() {
         return Ok(None);
@@ -131,12 +157,12 @@ fn refined(
     let ratios = ratios(&found.of_cell, left);
     let longest =
         (0..mesh.cell_count()).map(|cell| ratios[cell] * longest_edge(mesh, cell)).collect::<Vec<_>>();
-    let finer = bisect(mesh, &longest);
-    if finer.cell_count() > MOST_CELLS {
-        adapted.ended = Some(format!("the next mesh would have {} cells", finer.cell_count()));
+    let cells: f64 = ratios.iter().map(|ratio| ratio.powi(-3)).sum();
+    if cells > MOST_CELLS {
+        adapted.ended = Some(format!("the next mesh would have {cells:.1e} cells"));
         return Ok(None);
     }
-    Ok(Some(finer))
+    Ok(Some(bisect(mesh, &longest)))
 }
 
 /// Ratio of the new to the present size of each cell, so that a part `left` of the sum of all contributions is
