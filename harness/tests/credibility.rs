@@ -10,8 +10,8 @@ use common::{PRESSED, assert_fails, cases, inside, tissuebench, write};
 use serde_json::Value;
 use tempfile::TempDir;
 
-/// A patch test with a bound that cannot hold, an exact solution at two levels, and a block between plates with a
-/// probe outside of it.
+/// A patch test with a bound that cannot hold, an exact solution at two levels, and a block between plates
+/// with a probe outside of it.
 fn study(dir: &TempDir) -> String {
     let block =
         PRESSED.replace("[[\"20 mm\", \"20 mm\", \"20 mm\"]] }", "[[\"20 mm\", \"20 mm\", \"21 mm\"]] }");

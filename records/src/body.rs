@@ -15,8 +15,9 @@ pub struct RecordedBody {
     /// empty if neither is known.
     #[serde(default)]
     pub off: String,
-    /// Part of the error of output.error_of that each cell causes per volume, over the mean of the body, averaged
-    /// over the cells around each point, on faces and then inside, packed; empty unless it was traced.
+    /// Part of the error of output.error_of that each cell causes per volume, over the mean of the body,
+    /// averaged over the cells around each point, on faces and then inside, packed; empty unless it was
+    /// traced.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub source: String,
     /// Values on a cut through the body; `None` if they were omitted.

@@ -31,8 +31,8 @@ pub struct Fit {
     pub rms: f64,
     /// Coefficient of determination.
     pub r2: f64,
-    /// Sum of the squared residuals over the stated standard deviations, over the degrees of freedom; `None` without
-    /// stated standard deviations.
+    /// Sum of the squared residuals over the stated standard deviations, over the degrees of freedom; `None`
+    /// without stated standard deviations.
     pub chi2: Option<f64>,
     /// Number of points minus number of constants that are not on a bound.
     pub freedom: u64,

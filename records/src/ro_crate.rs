@@ -1,5 +1,5 @@
-//! Description of a folder of results as a research object, [RO-Crate 1.2](https://w3id.org/ro/crate/1.2): the
-//! program, the run that it made, the scenes, and every file with its media type, size and hash.
+//! Description of a folder of results as a research object, [RO-Crate 1.2](https://w3id.org/ro/crate/1.2):
+//! the program, the run that it made, the scenes, and every file with its media type, size and hash.
 //!
 //! Results belong to whoever ran the program. The description therefore names no author and no licence.
 
@@ -138,7 +138,8 @@ fn file(dir: &Path, path: &Path) -> io::Result<Value> {
     }))
 }
 
-/// A path as a relative URI reference: all but unreserved characters, slashes and non-ASCII letters is escaped.
+/// A path as a relative URI reference: all but unreserved characters, slashes and non-ASCII letters is
+/// escaped.
 fn encoded(path: &str) -> String {
     let plain = |c: char| !c.is_ascii() || c.is_ascii_alphanumeric() || "-._~/".contains(c);
     let each = path.chars().map(|c| if plain(c) { c.to_string() } else { format!("%{:02X}", c as u32) });

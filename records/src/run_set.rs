@@ -58,13 +58,16 @@ pub struct Check {
     pub value: Option<f64>,
     /// The bound in words, such as `at most 1e-12`.
     pub bound: String,
+    /// Whether the bound has an upper end: an error that only has a least value proves nothing right.
+    #[serde(default)]
+    pub capped: bool,
     /// Outcome of the check.
     pub status: Status,
     /// Reason for a failure, a known failure or a check that did not run, or why the bound of a passed check
     /// proves nothing; else empty.
     pub reason: String,
-    /// Ids of the runs that gave the value: one, or those of all levels or clouds of a method; empty for a run
-    /// without numbers.
+    /// Ids of the runs that gave the value: one, or those of all levels or clouds of a method; empty for a
+    /// run without numbers.
     #[serde(default)]
     pub runs: Vec<String>,
     /// Place of the check, as `file:line` with the file name as given. It is not stored, so that results do

@@ -12,6 +12,9 @@ pub struct Samples {
     pub case: String,
     /// Method id, with its size if a study varies it.
     pub method: String,
+    /// Id of the run of the scene as written; empty if it has no numbers.
+    #[serde(default)]
+    pub run: String,
     /// Family of the method.
     pub family: Family,
     /// Uncertain inputs.

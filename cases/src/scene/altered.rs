@@ -1,4 +1,5 @@
-//! A scene whose keys are set from outside after it was read: along an axis, to a sample of its inputs, or by a fit.
+//! A scene whose keys are set from outside after it was read: along an axis, to a sample of its inputs, or by
+//! a fit.
 
 use catalogue::Problem;
 
@@ -25,9 +26,9 @@ pub(crate) fn resolved(keys: SceneKeys, origin: Origin) -> Result<Scene, Vec<Sce
     }
 }
 
-/// The scene with some keys set, or removed if they have no value, and with the named methods (all if `methods`
-/// is empty). Checks, uncertain inputs and a fit are left out: they apply to the scene as written. Errors in the
-/// values name `driver`.
+/// The scene with some keys set, or removed if they have no value, and with the named methods (all if
+/// `methods` is empty). Checks, uncertain inputs and a fit are left out: they apply to the scene as written.
+/// Errors in the values name `driver`.
 ///
 /// # Errors
 ///

@@ -27,11 +27,11 @@ const MOST_CONSTANTS: usize = 12;
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct FitKeys {
-    /// CSV file of the curve, relative to the folder of the scene. Its header names a metric along the curve, the
-    /// measured metric, and optionally "sd", its standard deviation: closure [mm],tool-force [N],sd [N]
+    /// CSV file of the curve, relative to the folder of the scene. Its header names a metric along the curve,
+    /// the measured metric, and optionally "sd", its standard deviation: closure [mm],tool-force [N],sd [N]
     data: String,
-    /// Keys of the scene whose values are fitted, such as "material.young", or "tool[].friction" for every tool. The
-    /// fit starts at the values in the scene
+    /// Keys of the scene whose values are fitted, such as "material.young", or "tool[].friction" for every
+    /// tool. The fit starts at the values in the scene
     keys: ConstantsKeys,
     /// Bounds on the results of the fit
     #[serde(default)]

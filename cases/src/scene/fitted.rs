@@ -29,8 +29,9 @@ impl Scene {
         Some(Scene { varied: Some((FIT.into(), 0.0)), is_fit: true, ..self.clone() })
     }
 
-    /// The scene with other values of its fitted constants, for the run `index` of the fit, with one method. Requests
-    /// for output that the fit does not need are left out, and so is a reference that has to be solved.
+    /// The scene with other values of its fitted constants, for the run `index` of the fit, with one method.
+    /// Requests for output that the fit does not need are left out, and so is a reference that has to be
+    /// solved.
     ///
     /// # Errors
     /// The scene refuses the values.
@@ -52,9 +53,9 @@ impl Scene {
         Ok(made)
     }
 
-    /// The text of the scene's file, with its comments, with the values of the fitted constants. Relative paths of
-    /// files are made absolute, so that the text runs from any folder. `None` if a constant is not in this file, such
-    /// as one of a named tissue.
+    /// The text of the scene's file, with its comments, with the values of the fitted constants. Relative
+    /// paths of files are made absolute, so that the text runs from any folder. `None` if a constant is not
+    /// in this file, such as one of a named tissue.
     pub fn fitted_text(&self, values: &[f64]) -> Option<String> {
         let fit = self.fit.as_ref()?;
         let text = disk::read_text(Path::new(self.file()), disk::Kind::SCENE).ok()?;
@@ -98,7 +99,8 @@ fn places(value: &DeValue, key: &str, found: &mut Vec<Range<usize>>) -> Option<(
     at(table.get(head)?, rest)
 }
 
-/// Edits that make paths of files absolute: texts with a dot or a slash that are files from the scene's folder.
+/// Edits that make paths of files absolute: texts with a dot or a slash that are files from the scene's
+/// folder.
 fn paths(value: &DeValue, file: &str, edits: &mut Vec<(Range<usize>, String)>) {
     let mut one = |value: &Spanned<DeValue>| match value.get_ref() {
         DeValue::String(text) if text.contains(['.', '/']) && Path::new(text.as_ref()).is_relative() => {

@@ -43,8 +43,8 @@ pub(crate) struct OutputKeys {
     /// Whether the errors of each run are estimated, by a prediction with more shape functions on the same body
     #[serde(default)]
     estimate: bool,
-    /// Number whose error is traced to the cells of each method that cause it, such as "tool-force", "probe-2"
-    /// or "reaction-z"
+    /// Number whose error is traced to the cells of each method that cause it, such as "tool-force",
+    /// "probe-2" or "reaction-z"
     error_of: Option<String>,
     /// Whether strict bounds of the strain energy are computed with each run, in linear elasticity
     #[serde(default)]

@@ -25,8 +25,8 @@ pub(crate) struct ReferenceKeys {
     /// A method of this scene, run at another size if `size` is given
     method: Option<String>,
     size: Option<SizeKeys>,
-    /// Largest own error of the method's displacement and tool forces, such as "0.5 %": its spacing is halved until
-    /// it is reached
+    /// Largest own error of the method's displacement and tool forces, such as "0.5 %": its spacing is halved
+    /// until it is reached
     accuracy: Option<Q<Part>>,
     #[serde(flatten)]
     settings: Given<Solutions>,

@@ -18,7 +18,13 @@ const SAMPLE: &str = "sample";
 const LEFT_OUT: [(&str, &[Needs]); 6] = [
     (
         "output.estimate",
-        &[Needs::Estimate, Needs::ToolEstimate, Needs::PointEstimate, Needs::SupportEstimate],
+        &[
+            Needs::Estimate,
+            Needs::ToolEstimate,
+            Needs::PointEstimate,
+            Needs::SupportEstimate,
+            Needs::ModeEstimate,
+        ],
     ),
     ("output.error_of", &[Needs::Trace]),
     ("output.transfer", &[Needs::Transfer]),
@@ -28,9 +34,9 @@ const LEFT_OUT: [(&str, &[Needs]); 6] = [
 ];
 
 impl Scene {
-    /// The scene with the values of its uncertain keys in the sample `index`, which counts from 0, and with the
-    /// named methods (all if `methods` is empty). Requests for output that no metric of the samples needs are
-    /// left out, and so is a reference that has to be solved.
+    /// The scene with the values of its uncertain keys in the sample `index`, which counts from 0, and with
+    /// the named methods (all if `methods` is empty). Requests for output that no metric of the samples needs
+    /// are left out, and so is a reference that has to be solved.
     ///
     /// # Errors
     ///

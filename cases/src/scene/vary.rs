@@ -37,8 +37,8 @@ pub(crate) struct VaryKeys {
     samples: u32,
     /// Metrics whose statistics are made, such as "tool-force"
     of: Vec<String>,
-    /// Keys of the scene, such as "material.young" or "tool[].friction" for every tool, with the distributions
-    /// of their values, which are independent of each other
+    /// Keys of the scene, such as "material.young" or "tool[].friction" for every tool, with the
+    /// distributions of their values, which are independent of each other
     keys: BTreeMap<String, DistributionKeys>,
     /// Bounds on the statistics
     #[serde(default)]

@@ -25,8 +25,8 @@ pub struct BoundArgs {
     /// The scene
     #[command(flatten)]
     pub scene: SceneArgs,
-    /// Edge length of the tetrahedra of the bounds, such as "3 mm"; unless given, the finest mesh of the methods
-    /// that the bounds can use
+    /// Edge length of the tetrahedra of the bounds, such as "3 mm"; unless given, the finest mesh of the
+    /// methods that the bounds can use
     #[arg(long, value_name = "LENGTH", value_parser = length)]
     pub size: Option<f64>,
     /// Approximate number of nodes of the tetrahedra, instead of --size

@@ -69,10 +69,12 @@ pub enum Command {
     /// Each method runs from coarse to fine until it meets the bound, or costs more than another method that
     /// does. Exit code 0: found; 1: no method meets the bound.
     Pick(PickArgs),
-    /// Enclose the strain energy of a linear scene, and the force of its moving support, between strict bounds
+    /// Enclose the strain energy of a linear scene, and the force of its moving support, between strict
+    /// bounds
     ///
-    /// The exact values lie between the bounds. All methods run, and those whose values lie outside are wrong.
-    /// Exit code 0: done; 1: the reference of the scene lies outside; 2: the scene has no bounds, with the reason.
+    /// The exact values lie between the bounds. All methods run, and those whose values lie outside are
+    /// wrong. Exit code 0: done; 1: the reference of the scene lies outside; 2: the scene has no bounds, with
+    /// the reason.
     Bound(BoundArgs),
     /// Run methods of a scene and write every recorded state of the body, as .vtu files and a .pvd series for
     /// ParaView
@@ -98,13 +100,13 @@ pub enum Command {
     /// Run the samples of a scene's uncertain inputs, and print the mean, the quantiles and the share of each
     /// input
     ///
-    /// The scene has `[vary]` with the number of samples, the metrics and the distributions of its keys. The scene
-    /// as written runs first.
+    /// The scene has `[vary]` with the number of samples, the metrics and the distributions of its keys. The
+    /// scene as written runs first.
     Vary(VaryArgs),
     /// Fit constants of a scene to a measured curve, and print them with their confidence
     ///
-    /// The scene has `[fit]` with the file of the curve and the keys of the constants, whose values in the scene are
-    /// the start. The scene as written runs first.
+    /// The scene has `[fit]` with the file of the curve and the keys of the constants, whose values in the
+    /// scene are the start. The scene as written runs first.
     Fit(FitArgs),
     /// Execute one run of a study in its own process
     #[command(hide = true)]
@@ -117,8 +119,8 @@ pub enum Command {
     Solve(SolveArgs),
     /// Merge parts of a study, run with --shard or on several machines, into the results of one run
     Merge(MergeArgs),
-    /// Render tables, figures and the report of stored results, and the evidence of credibility by the factors of
-    /// ASME V&V 40
+    /// Render tables, figures and the report of stored results, and the evidence of credibility by the
+    /// factors of ASME V&V 40
     Report {
         /// Folder written by `verify` or `run --out`
         results: PathBuf,
@@ -128,8 +130,8 @@ pub enum Command {
         /// Also plot errors and times over the commits in this folder, filled by `history add`
         #[arg(long, value_name = "DIR")]
         history: Option<PathBuf>,
-        /// Your statements about the factors of ASME V&V 40, as TOML lines such as `context_of_use = "..."`. They
-        /// fill blanks of credibility.html
+        /// Your statements about the factors of ASME V&V 40, as TOML lines such as `context_of_use = "..."`.
+        /// They fill blanks of credibility.html
         #[arg(long, value_name = "FILE")]
         statements: Option<PathBuf>,
     },

@@ -4,12 +4,13 @@ use std::path::{Path, PathBuf};
 
 use cases::scene::{FittedKey, Scene};
 use clap::Args;
-use records::Fit;
+use records::store::{files_ending, remove_files};
+use records::{Fit, RecordError};
 
 use crate::cli::args::SceneArgs;
 use crate::cli::errors::{refuse, unreported};
 use crate::cli::interrupt;
-use crate::cli::results::take;
+use crate::cli::results::{close, take};
 use crate::cli::scenes::{affordable, open};
 use crate::cli::vary::of_scene;
 use crate::cli::verify::write;
@@ -33,8 +34,8 @@ pub struct FitArgs {
     /// Print only the constants and errors
     #[arg(short, long)]
     pub quiet: bool,
-    /// Folder for the fit, its table, its figure, the fitted scene and the report; replaces the results of an earlier
-    /// run of the scene
+    /// Folder for the fit, its table, its figure, the fitted scene and the report; replaces the results of an
+    /// earlier run of the scene
     #[arg(long, value_name = "DIR", default_value = "results")]
     pub out: PathBuf,
 }
@@ -51,7 +52,7 @@ pub(super) fn fit(args: &FitArgs) -> u8 {
         eprintln!("{}: {help}; see the guide 'Fitting constants'", file.display());
         return 2;
     };
-    let methods = chosen.iter().map(|&index| scene.methods[index].id.clone()).collect();
+    let methods: Vec<String> = chosen.iter().map(|&index| scene.methods[index].id.clone()).collect();
     let study = VerifyArgs {
         jobs: args.jobs,
         resume: args.resume,
@@ -59,6 +60,7 @@ pub(super) fn fit(args: &FitArgs) -> u8 {
         out: args.out.clone(),
         ..VerifyArgs::of(file)
     };
+    let several = methods.len() > 1;
     // Uncertain inputs are not sampled.
     let mut alone = scene.clone();
     alone.vary = None;
@@ -71,6 +73,9 @@ pub(super) fn fit(args: &FitArgs) -> u8 {
         Ok(folder) => folder,
         Err(code) => return code,
     };
+    if let Err(bad) = clear(&args.out) {
+        return unreported(bad);
+    }
     interrupt::at_last(interrupt::resumable(args.out.clone()));
     let mut finished = plan.execute(&study);
     finished.set.provenance.source = folder::source(file);
@@ -78,21 +83,29 @@ pub(super) fn fit(args: &FitArgs) -> u8 {
     let mut code = write(&finished, &folder, &study);
     for of in &finished.set.fits {
         print!("{}", reports::fitted_text(of));
-        code = code.max(fitted_scene(&scene, of, &fit.keys, args, finished.set.fits.len() > 1));
+        code = code.max(fitted_scene(&scene, of, &fit.keys, args, several));
     }
-    folder.close(|| study::clean(&args.out));
-    code
+    close(folder, &args.out, code, || study::clean(&args.out))
+}
+
+/// Removes the fitted scenes of an earlier fit.
+fn clear(out: &Path) -> Result<(), RecordError> {
+    let is_other = |path: &PathBuf| {
+        let name = path.file_stem().unwrap_or_default().to_string_lossy();
+        name != "fitted" && !name.starts_with("fitted-")
+    };
+    let others: Vec<PathBuf> = files_ending(out, &["toml"])?.into_iter().filter(is_other).collect();
+    remove_files(out, &["toml"], &others)
 }
 
 /// Writes the scene with the fitted constants, and prints how to run it; returns the exit code.
 fn fitted_scene(scene: &Scene, fit: &Fit, keys: &[FittedKey], args: &FitArgs, several: bool) -> u8 {
     let values: Vec<f64> = fit.constants.iter().map(|constant| constant.value).collect();
     let file = args.scene.file.display();
-    let set: Vec<String> = keys
-        .iter()
-        .zip(&values)
-        .map(|(key, value)| format!("--set '{}={}'", key.key, key.written(*value)))
-        .collect();
+    let own = args.scene.set.iter().map(|set| format!("--set '{set}'"));
+    let fitted = keys.iter().zip(&values);
+    let fitted = fitted.map(|(key, value)| format!("--set '{}={}'", key.key, key.written(*value)));
+    let set: Vec<String> = own.chain(fitted).collect();
     println!("  tissuebench run {file} {}", set.join(" "));
     let name = if several {
         format!("fitted-{}.toml", records::store::slug(&fit.method))
@@ -103,7 +116,6 @@ fn fitted_scene(scene: &Scene, fit: &Fit, keys: &[FittedKey], args: &FitArgs, se
     match scene.fitted_text(&values).filter(|_| args.scene.set.is_empty()) {
         Some(text) => written(&path, &text),
         None => {
-            let _ = disk::remove(&path);
             println!(
                 "  no {}: a constant is not in the scene's own file, or --set changes the scene",
                 path.display()

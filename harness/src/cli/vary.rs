@@ -43,7 +43,8 @@ pub struct VaryArgs {
     /// Print only the statistics and errors
     #[arg(short, long)]
     pub quiet: bool,
-    /// Folder for samples, tables, figures and the report; replaces the results of an earlier run of the scene
+    /// Folder for samples, tables, figures and the report; replaces the results of an earlier run of the
+    /// scene
     #[arg(long, value_name = "DIR", default_value = "results")]
     pub out: PathBuf,
 }
@@ -122,8 +123,8 @@ pub(super) fn of_scene(scene: &Scene, args: &SceneArgs, methods: Vec<String>) ->
     }
 }
 
-/// The first method whose numerical error is at most a tenth of the spread by the inputs, or else the last. The
-/// spread is that of the first method over a few samples, because it hardly depends on the mesh.
+/// The first method whose numerical error is at most a tenth of the spread by the inputs, or else the last.
+/// The spread is that of the first method over a few samples, because it hardly depends on the mesh.
 fn fine_enough(scene: &Scene, args: &SceneArgs, methods: Vec<String>, study: &VerifyArgs) -> String {
     let mut pilot = scene.clone();
     if let Some(vary) = &mut pilot.vary {

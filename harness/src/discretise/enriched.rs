@@ -13,9 +13,9 @@ pub(crate) const NEARLY_INCOMPRESSIBLE: f64 = 0.45;
 
 impl Discretisation {
     /// Quadratic elements on the cells of linear elements or of a cloud's background mesh, or on eighths of
-    /// quadratic cells, with the dilation `free` if they would lock at this Poisson's ratio. For a displacement
-    /// carried over from other elements it has to be a pressure field: the pressure of its dilation is nowhere
-    /// near the right one.
+    /// quadratic cells, with the dilation `free` if they would lock at this Poisson's ratio. For a
+    /// displacement carried over from other elements it has to be a pressure field: the pressure of its
+    /// dilation is nowhere near the right one.
     pub(crate) fn enriched(&self, poisson: f64, free: Dilation) -> Discretisation {
         let mesh = &self.mesh;
         let linear = (0..mesh.cell_count()).all(|cell| mesh.kind(cell).order() == 1);

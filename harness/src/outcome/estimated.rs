@@ -134,8 +134,8 @@ fn beyond(saturation: f64) -> f64 {
     1.0 / (1.0 - counted) - 1.0
 }
 
-/// Corrects the prediction of a number by that on a coarser mesh, and returns it with its saturation, if known.
-/// Both are a number in the run and its prediction.
+/// Corrects the prediction of a number by that on a coarser mesh, and returns it with its saturation, if
+/// known. Both are a number in the run and its prediction.
 pub(crate) fn corrected([own, predicted]: [f64; 2], coarser: [f64; 2]) -> (f64, Option<f64>) {
     let moved = (own - coarser[0]).abs();
     if moved <= ROUNDING * predicted.abs() {

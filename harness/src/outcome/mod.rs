@@ -180,8 +180,8 @@ pub struct Outcome {
     pub reference: Option<Reference>,
     /// Quantities beside their predictions, if requested.
     pub(crate) estimates: Option<Estimates>,
-    /// Part of the error of output.error_of that each cell causes per volume, over the mean of the body; empty
-    /// unless traced.
+    /// Part of the error of output.error_of that each cell causes per volume, over the mean of the body;
+    /// empty unless traced.
     pub(crate) error_source: Vec<f64>,
 }
 

@@ -46,8 +46,8 @@ impl Prepared {
         self.held.iter().map(|held| held.axes)
     }
 
-    /// Iterates over the nodes whose parameter along an axis a support prescribes, unless an earlier one does;
-    /// `None` if it is a weak support or has constraint rows.
+    /// Iterates over the nodes whose parameter along an axis a support prescribes, unless an earlier one
+    /// does; `None` if it is a weak support or has constraint rows.
     pub fn nodes_of_support(&self, support: usize, axis: usize) -> Option<impl Iterator<Item = u32>> {
         let Held { from, to, .. } = &self.held[support];
         let along = move |dof: &&FixedDof| usize::from(dof.axis) == axis;

@@ -148,8 +148,8 @@ pub(super) fn serves(method: &Discretisation, setup: &Setup, asked: LinearSolver
     }
 }
 
-/// Whether the tangents of Newton's method are iterated, and the description of the factorisation stage in the
-/// plan.
+/// Whether the tangents of Newton's method are iterated, and the description of the factorisation stage in
+/// the plan.
 pub(super) fn tangents(method: &Discretisation, setup: &Setup, asked: Option<&Static>) -> (bool, String) {
     let forced = |tool: &PlacedTool| matches!(tool.drive, Drive::Force(_));
     let direct = !method.interpolates

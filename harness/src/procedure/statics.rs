@@ -163,8 +163,8 @@ fn path(problem: &Problem, asked: &Static, counters: &mut Counters) -> Result<(S
     Ok((solution, limit))
 }
 
-/// Calls `work` with the static problem of a richer method, parameters of Newton's method with this tolerance,
-/// and the state near its equilibrium that another method's solution gives.
+/// Calls `work` with the static problem of a richer method, parameters of Newton's method with this
+/// tolerance, and the state near its equilibrium that another method's solution gives.
 pub(super) fn near<T>(
     problem: &Problem,
     carried: &Carried,

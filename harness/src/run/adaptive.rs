@@ -34,8 +34,8 @@ pub(super) struct Adapted {
     meshes: usize,
     /// Number on the last traced mesh, and its prediction.
     before: Option<[f64; 2]>,
-    /// The last prediction, corrected by the one before; `None` with a single one, which may share most of the
-    /// error of its mesh.
+    /// The last prediction, corrected by the one before; `None` with a single one, which may share most of
+    /// the error of its mesh.
     predicted: Option<f64>,
     /// Saturation of the last prediction, if known.
     saturation: Option<f64>,
@@ -165,8 +165,9 @@ fn refined(
     Ok(Some(bisect(mesh, &longest)))
 }
 
-/// Ratio of the new to the present size of each cell, so that a part `left` of the sum of all contributions is
-/// left with the fewest cells: ratios are proportional to contributions to the power of `-1 / RATE_OF_CELL`.
+/// Ratio of the new to the present size of each cell, so that a part `left` of the sum of all contributions
+/// is left with the fewest cells: ratios are proportional to contributions to the power of `-1 /
+/// RATE_OF_CELL`.
 fn ratios(contributions: &[f64], left: f64) -> Vec<f64> {
     let total: f64 = contributions.iter().map(|c| c.abs()).sum();
     let ratio =

@@ -46,8 +46,8 @@ impl Contributions {
         let (problem, carried) = (richer.problem(probes), richer.carried());
         let traced = traced(&problem, &carried, goal)?;
         counters.traced_dofs += 3 * traced.influence.len() as u64;
-        // A mean dilation gives the influence of linear problems at a fraction of the cost of a pressure field,
-        // and the number, but no pressure that is near that of the run.
+        // A mean dilation gives the influence of linear problems at a fraction of the cost of a pressure
+        // field, and the number, but no pressure that is near that of the run.
         let unbalanced = match richer.method.dilation {
             Dilation::ElementMean => {
                 let mixed = Richer::new(run, Dilation::Mixed, &mut own.counters)?;

@@ -103,7 +103,8 @@ fn witnesses(reference: &Method, nodes: usize) -> Result<Vec<Method>, String> {
 }
 
 /// A method, which gave this number of nodes, with twice the spacing, or the reason why there is none; with
-/// twice the error, if its mesh is refined until an error is reached. An external solver is replaced by its elements.
+/// twice the error, if its mesh is refined until an error is reached. An external solver is replaced by its
+/// elements.
 pub(super) fn coarser_version(method: &Method, nodes: usize) -> Result<Method, String> {
     let mut same = method.clone();
     if let Family::Fem(Fem { adapt: Some(adapt), .. }) = &mut same.family {

@@ -94,6 +94,7 @@ pub fn judge(check: &Check, case: &str, method: &str, value: Option<f64>, band: 
         metric: check.address.to_string(),
         value: value.filter(|v| v.is_finite()),
         bound,
+        capped: !matches!(check.bound, Bound::Within { at_most: None, .. }),
         status,
         reason,
         runs: Vec::new(),
@@ -110,7 +111,6 @@ pub fn run_ids<'r>(records: impl IntoIterator<Item = &'r Record>) -> Vec<String>
             ids.push(record.run.clone());
         }
     }
-    ids.dedup();
     ids
 }
 

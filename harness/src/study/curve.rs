@@ -2,8 +2,8 @@
 
 /// A curve through points of increasing `x`.
 ///
-/// Between two points it is the cubic with the slopes of parabolas through three points each (Catmull and Rom 1974
-/// for equal steps): its error falls by the cube of the step, that of a line by the square.
+/// Between two points it is the cubic with the slopes of parabolas through three points each (Catmull and Rom
+/// 1974 for equal steps): its error falls by the cube of the step, that of a line by the square.
 #[derive(Clone, Debug)]
 pub(super) struct Curve {
     points: Vec<(f64, f64)>,

@@ -1,5 +1,5 @@
-//! A fit of constants to a measured curve as one task of a study. The runs of each Jacobian are tasks of a study of
-//! their own, with its jobs and its store of results.
+//! A fit of constants to a measured curve as one task of a study. The runs of each Jacobian are tasks of a
+//! study of their own, with its jobs and its store of results.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -21,9 +21,9 @@ use crate::error::Failure;
 use crate::outcome::Counters;
 use crate::run::case_name;
 
-/// Least step of the differences, of the logarithm of a constant. Differences have an error of half a step times
-/// the curvature, and of the scatter of the runs over the step. Runs scatter by the tolerance of Newton's method, so
-/// that its root balances both; contact that comes and goes adds more.
+/// Least step of the differences, of the logarithm of a constant. Differences have an error of half a step
+/// times the curvature, and of the scatter of the runs over the step. Runs scatter by the tolerance of
+/// Newton's method, so that its root balances both; contact that comes and goes adds more.
 const LEAST_STEP: f64 = 1e-3;
 /// Score of the runs of signs below which residuals are not random: 1 % of all fits by chance.
 const NOT_RANDOM: f64 = -2.33;
@@ -49,7 +49,7 @@ impl StudyPlan {
             fit,
             made: 0,
             curves: Vec::new(),
-            first: None,
+            last: None,
             counters: Counters::default(),
             family: records::Family::default(),
         };
@@ -74,13 +74,14 @@ impl StudyPlan {
                     .join(", "),
                 records::text::significant(fitted.confidence.rms, 3)
             )),
-            Err(FitError::Start) => match runs.first.take() {
+            Err(FitError::Start) => match runs.last.take() {
                 Some(failure) => failure,
                 None => Failure::Run("the run at the start values has no results".into()),
             },
             Err(FitError::Derivative(k)) => Failure::Run(format!(
-                "the fit has no derivative by {}: the runs at both sides of its value fail",
-                fit.keys[k].key
+                "the fit has no derivative by {}: the runs at both sides of its value fail{}",
+                fit.keys[k].key,
+                runs.last.take().map_or(String::new(), |failure| format!(" ({failure})"))
             )),
         };
         TaskResult {
@@ -119,8 +120,8 @@ struct Runs<'a> {
     made: usize,
     /// Curves of the runs that did not fail, with their constants.
     curves: Vec<(Vec<f64>, Curve)>,
-    /// First failure.
-    first: Option<Failure>,
+    /// Last failure.
+    last: Option<Failure>,
     counters: Counters,
     family: records::Family,
 }
@@ -156,7 +157,7 @@ impl Runs<'_> {
             match result.and_then(|result| self.values(set, &result)) {
                 Ok(values) => Some(values),
                 Err(failure) => {
-                    self.first.get_or_insert(failure);
+                    self.last = Some(failure);
                     None
                 }
             }

@@ -151,8 +151,8 @@ impl StudyPlan {
         Ok(self.scenes.len() - 1)
     }
 
-    /// Index of a scene, and those of the samples of its uncertain inputs and of its fit if it has any. Along an axis a
-    /// scene is neither sampled nor fitted.
+    /// Index of a scene, and those of the samples of its uncertain inputs and of its fit if it has any. Along
+    /// an axis a scene is neither sampled nor fitted.
     fn with_samples(
         &mut self,
         run: &scene::Run,

@@ -15,8 +15,9 @@ use crate::run::case_name;
 
 /// Metrics with an estimate of their numerical error: the value, its relative error, the predicted value that
 /// the error is relative to.
-const ESTIMATED: [[&Metric; 3]; 2] = [
+const ESTIMATED: [[&Metric; 3]; 3] = [
     [&metric::TOOL_FORCE, &metric::TOOL_FORCE_ESTIMATE, &metric::TOOL_FORCE_PREDICTED],
+    [&metric::FREQUENCY, &metric::FREQUENCY_ESTIMATE, &metric::FREQUENCY_PREDICTED],
     [&metric::STRAIN_ENERGY, &metric::STRAIN_ENERGY_ESTIMATE, &metric::STRAIN_ENERGY_PREDICTED],
 ];
 
@@ -109,6 +110,7 @@ impl StudyPlan {
         Samples {
             case: case_name(scene),
             method: method_name(task),
+            run: nominal.first().map(|record| record.run.clone()).unwrap_or_default(),
             family: nominal.first().map(|record| record.family).unwrap_or_default(),
             inputs: vary.keys.iter().map(input).collect(),
             seed: uncertainty::SEED,
@@ -142,7 +144,8 @@ impl StudyPlan {
         let code = |samples: &Samples| {
             let own = |index: &usize| {
                 let task = &self.tasks[*index];
-                self.sample(task).is_some() && case_name(&self.scenes[task.scene].2) == samples.case
+                let case = case_name(&self.scenes[task.scene].2);
+                self.sample(task).is_some() && case == samples.case && method_name(task) == samples.method
             };
             let failed = |(index, result): (&usize, &TaskResult)| {
                 result.failure.as_ref().filter(|_| own(index)).map(|(_, code)| *code)

@@ -5,6 +5,7 @@ use std::collections::BTreeSet;
 use std::fs::{self, File, TryLockError};
 use std::io;
 use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
 
 use disk::Kind;
 use records::{Machine, Program, RecordError};
@@ -32,11 +33,16 @@ pub(super) struct Maker {
 impl Maker {
     /// The running program on this machine.
     pub(super) fn new(program: &Program, machine: &Machine) -> Maker {
-        let bytes = std::env::current_exe().and_then(fs::read).unwrap_or_default();
+        // Fits and refinements of samples store results many times, and the program has 200 MB.
+        static HASH: OnceLock<String> = OnceLock::new();
+        let hash = HASH.get_or_init(|| {
+            let bytes = std::env::current_exe().and_then(fs::read).unwrap_or_default();
+            blake3::hash(&bytes).to_hex().to_string()
+        });
         let Machine { cpu, model, instructions, threads, .. } = machine;
         Maker {
             program: program.clone(),
-            hash: blake3::hash(&bytes).to_hex().to_string(),
+            hash: hash.clone(),
             machine: format!("{cpu}, {model}, {instructions}, {threads} threads"),
         }
     }

@@ -1,9 +1,9 @@
-//! Evidence of code verification: exact solutions, observed orders, and parts of the program that none of them
-//! exercised.
+//! Evidence of code verification: exact solutions, observed orders, and parts of the program that none of
+//! them exercised.
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use catalogue::metric::{self, Kind};
+use catalogue::metric::{self, Kind, Needs};
 use records::text::plural;
 use records::{Check, Purpose, RunSet, Status};
 
@@ -20,13 +20,37 @@ const LINEAR: &str = "linear elasticity";
 /// Errors with an observed order.
 const ERRORS: [&metric::Metric; 3] = [&metric::L2, &metric::ENERGY, &metric::PRESSURE];
 
+/// Whether a check compares a run with its exact solution: a bound on an error or on an order.
+fn compares(check: &Check) -> bool {
+    let Some(of) = metric::find(&check.metric).map(|of| of.metric) else { return false };
+    let against = matches!(
+        of.needs,
+        Needs::Reference
+            | Needs::ToolReference
+            | Needs::StepsReference
+            | Needs::ProbesReference
+            | Needs::Probes
+            | Needs::Exact
+            | Needs::ExactContact
+            | Needs::ModesReference
+    );
+    let is_error = of.kind == Kind::Error || *of == metric::TOOL_FORCE_ERROR;
+    matches!(of.kind, Kind::Order(_)) || against && is_error
+}
+
+/// Whether the bound of a check that holds shows that a run is right: an error that is at least something is
+/// known to be wrong.
+fn confirms(check: &Check) -> bool {
+    check.capped || metric::find(&check.metric).is_some_and(|of| matches!(of.metric.kind, Kind::Order(_)))
+}
+
 /// Results of a study, by the reference of each case.
 pub(super) struct Verified<'a> {
     set: &'a RunSet,
     /// Name of the exact solution of each case that has one.
     exact: BTreeMap<&'a str, &'a str>,
-    /// Checks by the id of their runs.
-    checks: BTreeMap<&'a str, Vec<&'a Check>>,
+    /// Indices of the checks that compare a run with its reference, by the id of the run.
+    checks: BTreeMap<&'a str, Vec<usize>>,
     runs: &'a [Run<'a>],
 }
 
@@ -34,9 +58,9 @@ impl<'a> Verified<'a> {
     /// `runs` are those of solvers.
     pub(super) fn new(set: &'a RunSet, runs: &'a [Run<'a>]) -> Verified<'a> {
         let exact = set.references.iter().filter(|of| of.nodes == 0);
-        let mut checks: BTreeMap<&str, Vec<&Check>> = BTreeMap::new();
-        for check in &set.checks {
-            check.runs.iter().for_each(|run| checks.entry(run).or_default().push(check));
+        let mut checks: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
+        for (index, check) in set.checks.iter().enumerate().filter(|(_, check)| compares(check)) {
+            check.runs.iter().for_each(|run| checks.entry(run).or_default().push(index));
         }
         Verified { set, exact: exact.map(|of| (&*of.case, &*of.method)).collect(), checks, runs }
     }
@@ -46,20 +70,30 @@ impl<'a> Verified<'a> {
         self.exact.get(run.is.case.as_str()).copied()
     }
 
-    fn checks_of(&self, run: &Run) -> &[&'a Check] {
-        self.checks.get(run.is.run.as_str()).map_or(&[], Vec::as_slice)
+    /// Indices of the checks that compare some runs with their exact solution.
+    fn checks_of(&self, runs: &[Run]) -> BTreeSet<usize> {
+        let of = |run: &Run| self.checks.get(run.is.run.as_str()).into_iter().flatten().copied();
+        runs.iter().flat_map(of).collect()
     }
 
-    /// Whether an exact solution confirms a run: a check of an error or of an order holds, and none fails.
+    /// Numbers of some checks that passed, failed, are known not to pass, and did not run.
+    fn outcomes(&self, checks: &BTreeSet<usize>) -> [usize; 4] {
+        let all = || checks.iter().map(|&check| &self.set.checks[check]);
+        let shown = |check: &&Check| check.status != Status::Pass || confirms(check);
+        let count = |status| all().filter(shown).filter(|check| check.status == status).count();
+        [Status::Pass, Status::Fail, Status::KnownFailure, Status::NotRun].map(count)
+    }
+
+    /// Whether an exact solution confirms a run: a check of an error or of an order holds, and none is
+    /// missed.
     fn is_confirmed(&self, run: &Run) -> bool {
-        let checks = self.checks_of(run);
-        let of_error = |check: &&&Check| {
-            let of = metric::find(&check.metric);
-            check.status == Status::Pass
-                && of.is_some_and(|of| matches!(of.metric.kind, Kind::Error | Kind::Order(_)))
-        };
-        let fails = checks.iter().any(|check| check.status == Status::Fail);
-        self.exact(run).is_some() && !fails && checks.iter().any(|check| of_error(&check))
+        let [passed, failed, known, _] = self.outcomes(&self.checks_of(std::slice::from_ref(run)));
+        self.exact(run).is_some() && passed > 0 && failed + known == 0
+    }
+
+    /// Series of runs with an exact solution.
+    fn of_exact(&self) -> Vec<Run<'a>> {
+        self.runs.iter().filter(|run| self.exact(run).is_some()).cloned().collect()
     }
 
     /// Evidence of the quality of the software: the build and its tests.
@@ -104,23 +138,25 @@ impl<'a> Verified<'a> {
         let (open, orders) = (self.open_checks(), self.orders());
         blocks.extend([solutions, open, orders].into_iter().filter(|of| !of.is_empty()).map(Block::Table));
         blocks.extend(figures.into_iter().map(Block::Figure));
-        blocks.push(match idle.is_empty() {
-            true => Block::Text(
-                "Every part of the program that the runs use is exercised by an exact solution.".into(),
-            ),
-            false => Block::Table(idle.table()),
-        });
+        if !idle.is_empty() {
+            blocks.push(Block::Table(idle.table()));
+        } else if !self.runs.is_empty() {
+            let text =
+                "An exact solution exercises every law, setting and stage of these runs, each by itself.";
+            blocks.push(Block::Text(text.into()));
+        }
         Evidence { factor: &factors::CODE, summary, blocks }
     }
 
-    /// Table of the exact solutions by method and law, failed ones first, and the numbers of passed and failed
-    /// checks.
+    /// Table of the exact solutions by method and law, failed ones first, and the numbers of passed and
+    /// failed checks.
     fn solutions(&self) -> (Table, [usize; 2]) {
         let mut table = Table::new(
             "exact-solutions",
             "Exact solutions",
-            "Every method on every scene with an exact solution, and the outcomes of its checks. Patch: a test of \
-             exactness. Fail: a check failed. Known: checks do not pass, for the stated reasons. Not checked: no check was made",
+            "Every method on every scene with an exact solution, and the outcomes of the checks of its errors and orders. Patch: \
+             a test of exactness. Fail: a check failed. Known: a check is known not to pass, for the stated reason. Not checked: \
+             no error and no order was checked",
             &[
                 ("result", Words),
                 ("scene", Words),
@@ -134,35 +170,27 @@ impl<'a> Verified<'a> {
                 ("runs", Words),
             ],
         );
-        let of_exact: Vec<Run> = self.runs.iter().filter(|run| self.exact(run).is_some()).cloned().collect();
+        let of_exact = self.of_exact();
         let mut rows = Vec::new();
         let mut all = BTreeSet::new();
         for series in series(&of_exact) {
             let is = series.is();
-            let mut checks: Vec<&Check> = Vec::new();
-            for check in series.runs.iter().flat_map(|run| self.checks_of(run)) {
-                if !checks.iter().any(|known| std::ptr::eq(*known, *check)) {
-                    checks.push(check);
-                }
-            }
-            all.extend(checks.iter().map(|check| std::ptr::from_ref(*check)));
-            let counts = [Status::Pass, Status::Fail, Status::KnownFailure, Status::NotRun]
-                .map(|status| checks.iter().filter(|check| check.status == status).count());
-            let result = match counts {
-                [_, failed, ..] if failed > 0 => "fail",
-                [passed, ..] if passed > 0 => "pass",
-                [_, _, known, _] if known > 0 => "known",
-                _ => "not checked",
+            let checks = self.checks_of(&series.runs);
+            let counts = self.outcomes(&checks);
+            all.extend(checks);
+            let (rank, result) = match counts {
+                [_, failed, ..] if failed > 0 => (0, "fail"),
+                [_, _, known, _] if known > 0 => (1, "known"),
+                [0, ..] => (2, "not checked"),
+                _ => (3, "pass"),
             };
             let purpose = if is.purpose == Purpose::Patch { ", patch" } else { "" };
             let solution = format!("{}{purpose}", self.exact(&series.runs[0]).unwrap_or_default());
             let law = is.law.clone().unwrap_or_else(|| LINEAR.into());
-            rows.push((result, is, solution, law, counts, ids(&series.runs)));
+            rows.push((rank, (result, is, solution, law, counts, ids(&series.runs))));
         }
-        rows.sort_by_key(|row| {
-            ["fail", "known", "not checked", "pass"].iter().position(|word| *word == row.0)
-        });
-        for (result, is, solution, law, counts, runs) in &rows {
+        rows.sort_by_key(|(rank, _)| *rank);
+        for (_, (result, is, solution, law, counts, runs)) in &rows {
             let [passed, failed, known, not_run] = counts.map(|count| Cell::Count(count as u64));
             table.row(&[
                 Cell::Text(result),
@@ -177,9 +205,8 @@ impl<'a> Verified<'a> {
                 Cell::Text(runs),
             ]);
         }
-        let checks = || self.set.checks.iter().filter(|check| all.contains(&std::ptr::from_ref(*check)));
-        let count = |status| checks().filter(|check| check.status == status).count();
-        (table, [count(Status::Pass), count(Status::Fail)])
+        let [passed, failed, ..] = self.outcomes(&all);
+        (table, [passed, failed])
     }
 
     /// Table of all checks that did not pass, with or without an exact solution.
@@ -235,7 +262,7 @@ impl<'a> Verified<'a> {
                 ("runs", Words),
             ],
         );
-        let of_exact: Vec<Run> = self.runs.iter().filter(|run| self.exact(run).is_some()).cloned().collect();
+        let of_exact = self.of_exact();
         for series in series(&of_exact) {
             for error in ERRORS {
                 let Some(order) = observed(&series.points(error)) else { continue };

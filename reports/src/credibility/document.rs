@@ -2,6 +2,7 @@
 
 use super::factors::{CHAPTERS, Factor};
 use super::statements::Statements;
+use crate::figures::backend::escaped;
 use crate::page::Drawn;
 use crate::table::Column::Words;
 use crate::table::{Cell, Table, markdown};
@@ -152,9 +153,10 @@ fn html_table(table: &Table) -> String {
     let columns = || table.header().iter().map(|(_, column)| *column);
     let head =
         table.header().iter().map(|(name, column)| format!("<th{}>{}</th>", of(*column, ""), escaped(name)));
+    let results = columns_begin_with_results(table);
     let row = |cells: Vec<&str>| {
         // A failed check has to be seen on paper, too.
-        let failed = if cells.first() == Some(&"fail") { " class=\"bad\"" } else { "" };
+        let failed = if results && cells.first() == Some(&"fail") { " class=\"bad\"" } else { "" };
         let cells = cells.iter().zip(columns());
         let cells = cells.map(|(cell, column)| format!("<td{}>{}</td>", of(column, cell), escaped(cell)));
         format!("<tr{failed}>{}</tr>\n", cells.collect::<String>())
@@ -168,6 +170,6 @@ fn html_table(table: &Table) -> String {
     )
 }
 
-fn escaped(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
+fn columns_begin_with_results(table: &Table) -> bool {
+    table.header().first().is_some_and(|(name, _)| *name == "result")
 }

@@ -1,5 +1,5 @@
-//! The credibility factors of ASME V&V 40-2018 (Table 5-1) and the steps around them, each with the part of the
-//! FDA's guidance "Assessing the Credibility of Computational Modeling and Simulation in Medical Device
+//! The credibility factors of ASME V&V 40-2018 (Table 5-1) and the steps around them, each with the part of
+//! the FDA's guidance "Assessing the Credibility of Computational Modeling and Simulation in Medical Device
 //! Submissions" (November 17, 2023) to which its evidence belongs.
 
 /// A factor or step.

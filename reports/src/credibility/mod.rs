@@ -1,5 +1,5 @@
-//! Evidence of credibility for a reviewer, laid out by the factors of ASME V&V 40-2018 and the FDA's guidance of
-//! 2023, from the records of a folder of results. Blanks name what no record has.
+//! Evidence of credibility for a reviewer, laid out by the factors of ASME V&V 40-2018 and the FDA's guidance
+//! of 2023, from the records of a folder of results. Blanks name what no record has.
 
 mod calculation;
 mod code;
@@ -50,7 +50,7 @@ pub(crate) fn document(
             calculation::solver(&runs),
             calculation::usage(set),
             validation::form(set, &runs),
-            validation::inputs(uncertain, &runs, figures::of_uncertainty(uncertain)),
+            validation::inputs(uncertain, figures::of_uncertainty(uncertain)),
             validation::comparison(&runs),
         ],
         statements,

@@ -1,4 +1,5 @@
-//! Evidence that belongs to validation: uncertain inputs, the laws of the scenes, and the lack of experiments.
+//! Evidence that belongs to validation: uncertain inputs, the laws of the scenes, and the lack of
+//! experiments.
 
 use std::collections::BTreeMap;
 
@@ -43,31 +44,25 @@ pub(super) fn form(set: &RunSet, runs: &[Run]) -> Evidence {
 }
 
 /// Evidence about the inputs: what their uncertainty does to the results.
-pub(super) fn inputs(all: &[Uncertain], runs: &[Run], figures: Vec<String>) -> Evidence {
+pub(super) fn inputs(all: &[Uncertain], figures: Vec<String>) -> Evidence {
     if all.is_empty() {
         let text = "No scene of this folder has uncertain inputs ([vary]), so no sensitivity and no u_input is known.";
         let blocks = vec![Block::Text(text.into())];
         return Evidence { factor: &factors::INPUTS, summary: String::new(), blocks };
     }
-    let ranks = ranks(all, runs);
+    let ranks = ranks(all);
     let ranks = match ranks.is_empty() {
         true => Block::Text("No shares of the inputs are known: see the report.".into()),
         false => Block::Table(ranks),
     };
-    let mut blocks = vec![Block::Table(results(all, runs)), ranks];
+    let mut blocks = vec![Block::Table(results(all)), ranks];
     blocks.extend(figures.into_iter().map(Block::Figure));
     let summary = format!("{} result{} with uncertain inputs", all.len(), plural(all.len()));
     Evidence { factor: &factors::INPUTS, summary, blocks }
 }
 
-/// Id of the run of the scene as written.
-fn nominal(of: &Uncertain, runs: &[Run]) -> String {
-    let own = runs.iter().find(|run| run.is.case == of.of.case && run.is.method == of.of.method);
-    own.map_or(String::new(), |run| run.is.run.clone())
-}
-
 /// Table of the uncertainty of each result.
-fn results(all: &[Uncertain], runs: &[Run]) -> Table {
+fn results(all: &[Uncertain]) -> Table {
     let mut table = Table::new(
         "result-uncertainty",
         "Uncertainty of results",
@@ -100,14 +95,14 @@ fn results(all: &[Uncertain], runs: &[Run]) -> Table {
             number(found.map(|s| s.sd.value)),
             number(of.output.numerical),
             number(of.combined()),
-            Cell::Text(&nominal(of, runs)),
+            Cell::Text(&of.of.run.clone()),
         ]);
     }
     table
 }
 
 /// Table of the inputs of each result, the most important first.
-fn ranks(all: &[Uncertain], runs: &[Run]) -> Table {
+fn ranks(all: &[Uncertain]) -> Table {
     let mut table = Table::new(
         "input-ranks",
         "Ranks of the inputs",
@@ -135,7 +130,7 @@ fn ranks(all: &[Uncertain], runs: &[Run]) -> Table {
                 Cell::Text(&input.key),
                 Cell::Text(&words(input)),
                 Cell::Text(&percent(share)),
-                Cell::Text(&nominal(of, runs)),
+                Cell::Text(&of.of.run.clone()),
             ]);
         }
     }

@@ -245,7 +245,7 @@ fn hexadecimal(color: BackendColor) -> String {
 }
 
 /// Text escaped for use between tags and quotes.
-pub(super) fn escaped(text: &str) -> String {
+pub(crate) fn escaped(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for c in text.chars() {
         match c {

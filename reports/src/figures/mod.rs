@@ -1,7 +1,7 @@
 //! Figures of a report, and their common parts.
 
 mod axes;
-mod backend;
+pub(crate) mod backend;
 mod bars;
 mod cloud;
 mod colour;

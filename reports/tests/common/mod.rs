@@ -345,6 +345,7 @@ fn check(
         metric: metric.into(),
         value,
         bound: bound.into(),
+        capped: true,
         status,
         reason: reason.into(),
         runs: Vec::new(),

@@ -5,15 +5,28 @@ use fem::{SurfaceRule, VolumeRule};
 use geometry::CellKind;
 use geometry::generate::box_mesh;
 use material::{Law, NeoHookean};
-use shape::{FixedDof, Matrix3, Point3, Vector3};
+use shape::{FixedDof, Matrix3, Point3, Vector3, VolumeRows};
 use tissuebench_statics::{
     Active, Curves, Goal, LinearSystems, Load, Nearby, NewtonParams, Solid, SolidDilation, StaticParams,
     StaticProblem, solve_static, trace,
 };
 
-/// A ball presses into a soft block and drags over it with friction. The influence of a nodal force on the force
-/// of the ball, on the displacement of a node and on the force of the support is the difference between the
-/// equilibria with a little of this force forth and back. The tangent is unsymmetric: without its
+fn solid<'a>(volume: &'a VolumeRows, laws: &'a [Law]) -> Solid<'a> {
+    let (active, dilation) = (Active::default(), SolidDilation::Standard);
+    Solid { volume, laws, region: &[], axes: &[], active, dilation }
+}
+
+/// A ball that touches the block, with its direction of travel.
+fn ball() -> (Tool, Vector3) {
+    let law = ContactLaw::coulomb(2e7, 0.3, 1e7).unwrap();
+    let along = Vector3::new(0.8, 0.0, -0.6);
+    let at = Point3::new(0.008, 0.011, 0.018);
+    (Tool::new(Sphere { radius: 8e-3 }.into(), at, Matrix3::identity(), along, law).unwrap(), along)
+}
+
+/// A ball presses into a soft block and drags over it with friction. The influence of a nodal force on the
+/// force of the ball, on the displacement of a node and on the force of the support is the difference between
+/// the equilibria with a little of this force forth and back. The tangent is unsymmetric: without its
 /// transposition an influence on the ball is six times too large.
 #[test]
 fn an_influence_is_the_difference_of_solutions() {
@@ -25,10 +38,7 @@ fn an_influence_is_the_difference_of_solutions() {
     let bottom = mesh.facet_group_nodes(mesh.group("z-min").unwrap());
     let fixed: Vec<FixedDof> =
         bottom.iter().flat_map(|&node| (0..3).map(move |axis| FixedDof { node, axis, value: 0.0 })).collect();
-    let law = ContactLaw::coulomb(2e7, 0.3, 1e7).unwrap();
-    let along = Vector3::new(0.8, 0.0, -0.6);
-    let at = Point3::new(0.008, 0.011, 0.018);
-    let tool = Tool::new(Sphere { radius: 8e-3 }.into(), at, Matrix3::identity(), along, law).unwrap();
+    let (tool, along) = ball();
     let closure = 1e-3;
     let laws = [Law::NeoHookean(NeoHookean::new(20e3, 0.3).unwrap())];
     let nodes = mesh.points().len();
@@ -52,14 +62,7 @@ fn an_influence_is_the_difference_of_solutions() {
         forces[node] = force;
         let problem = StaticProblem {
             nodes: mesh.points(),
-            solid: Solid {
-                volume: &volume,
-                laws: &laws,
-                region: &[],
-                axes: &[],
-                active: Active::default(),
-                dilation: SolidDilation::Standard,
-            },
+            solid: solid(&volume, &laws),
             loads: &[Load::Nodal { forces }],
             following: &[],
             fixed: &fixed,

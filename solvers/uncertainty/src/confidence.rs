@@ -11,7 +11,8 @@ use crate::normal;
 pub(crate) const DETERMINED: f64 = 2.0;
 /// Part of a unit vector from which a constant belongs to a combination.
 const BELONGS: f64 = 0.2;
-/// Collinearity index from which constants are hard to distinguish (Brun, Reichert and Kuensch 2001: 10 to 15).
+/// Collinearity index from which constants are hard to distinguish (Brun, Reichert and Kuensch 2001: 10 to
+/// 15).
 const COLLINEAR: f64 = 15.0;
 /// Residuals over the largest value of the data below which they are rounding.
 const ROUNDING: f64 = 1e-5;
@@ -36,11 +37,12 @@ pub struct Confidence {
     pub rms: f64,
     /// Coefficient of determination, `1 - sum (r^2) / sum (y - mean y)^2`, weighted as the fit.
     pub r2: f64,
-    /// Sum of the squares of the residuals over the stated standard deviations, over the degrees of freedom; `None`
-    /// without stated standard deviations.
+    /// Sum of the squares of the residuals over the stated standard deviations, over the degrees of freedom;
+    /// `None` without stated standard deviations.
     pub chi2: Option<f64>,
-    /// Standard score of the number of runs of residuals of one sign (Wald and Wolfowitz 1940). It is below -2.33 by
-    /// chance in 1 % of all fits; `None` if all residuals have one sign or are rounding.
+    /// Standard score of the number of runs of residuals of one sign (Wald and Wolfowitz 1940). It is below
+    /// -2.33 by chance in 1 % of all fits; minus infinity if eight or more all have one sign, which chance
+    /// gives in 0.8 %; `None` if fewer do, or if all are rounding.
     pub runs_score: Option<f64>,
 }
 
@@ -110,7 +112,8 @@ pub(crate) fn confidence(
         }
         if *s < 1.0 / COLLINEAR && of.collinear.as_ref().is_none_or(|known| 1.0 / s > known.index) {
             let mut parts: Vec<usize> = parts().collect();
-            parts.sort_by(|&a, &b| v[(m, b)].abs().total_cmp(&v[(m, a)].abs()));
+            // Equal parts keep the order of the constants.
+            parts.sort_by_key(|&i| std::cmp::Reverse((v[(m, i)].abs() / ROUNDING).round() as u64));
             let constants = parts.iter().map(|&i| felt_by[i]).collect();
             of.collinear = Some(Collinear { constants, index: 1.0 / s, determined });
         }
@@ -147,6 +150,9 @@ fn runs_score(residual: &DVector<f64>, size: f64) -> Option<f64> {
     let signs: Vec<bool> = residual.iter().filter(|r| **r != 0.0).map(|r| *r > 0.0).collect();
     let runs = 1.0 + signs.windows(2).filter(|pair| pair[0] != pair[1]).count() as f64;
     let (n, above) = (signs.len() as f64, signs.iter().filter(|sign| **sign).count() as f64);
+    if n >= 8.0 && (above == 0.0 || above == n) {
+        return Some(f64::NEG_INFINITY);
+    }
     let mean = 2.0 * above * (n - above) / n + 1.0;
     let variance = (mean - 1.0) * (mean - 2.0) / (n - 1.0);
     (variance > 0.0).then(|| (runs - mean) / variance.sqrt())

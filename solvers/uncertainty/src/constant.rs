@@ -74,8 +74,8 @@ impl Constant {
     }
 }
 
-/// Those of some constants that have an influence on the data, by the lengths of their columns of the Jacobian over
-/// the length of the data.
+/// Those of some constants that have an influence on the data, by the lengths of their columns of the
+/// Jacobian over the length of the data.
 pub(crate) fn felt(jacobian: &DMatrix<f64>, constants: &[usize], data: f64) -> Vec<usize> {
     constants.iter().copied().filter(|&k| jacobian.column(k).norm() > NO_INFLUENCE * data).collect()
 }

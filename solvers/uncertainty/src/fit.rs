@@ -1,8 +1,9 @@
 //! Least squares for constants of a model that is costly to run, by Levenberg and Marquardt's method.
 //!
-//! A positive constant is fitted by its logarithm, so that its unit and its magnitude do not matter and it stays
-//! positive. Derivatives are forward differences: all runs of a Jacobian are independent of each other, and are
-//! handed to the caller together. The crate `levenberg-marquardt` knows neither bounds nor runs that fail.
+//! A positive constant is fitted by its logarithm, so that its unit and its magnitude do not matter and it
+//! stays positive. Derivatives are forward differences: all runs of a Jacobian are independent of each other,
+//! and are handed to the caller together. The crate `levenberg-marquardt` knows neither bounds nor runs that
+//! fail.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -15,8 +16,8 @@ const MOST_ITERATIONS: usize = 30;
 const MOST_ATTEMPTS: usize = 8;
 /// Least part of the predicted fall of the squares for which a step is taken.
 const LEAST_GAIN: f64 = 0.1;
-/// Step of the differences once those of the requested step have led nowhere: contact that comes and goes makes a model
-/// rough, and a longer step smooths it.
+/// Step of the differences once those of the requested step have led nowhere: contact that comes and goes
+/// makes a model rough, and a longer step smooths it.
 const LONGEST_STEP: f64 = 0.02;
 /// Largest change of the logarithm of a constant in one iteration: a factor of four.
 const LONGEST: f64 = 1.386_294_361_119_890_6;
@@ -24,8 +25,9 @@ const LONGEST: f64 = 1.386_294_361_119_890_6;
 const DAMPING: f64 = 1e-3;
 /// Least damping after steps that lowered the squares.
 const LEAST_DAMPING: f64 = 1e-9;
-/// Part of the residual that the Jacobian can still take away, over the standard deviation of a measurement, below which
-/// a fit has converged: no constant would move by more than a hundredth of its own standard error.
+/// Part of the residual that the Jacobian can still take away, over the standard deviation of a measurement,
+/// below which a fit has converged: no constant would move by more than a hundredth of its own standard
+/// error.
 const CONVERGED: f64 = 0.01;
 /// The same where no step lowers the squares any more.
 const CLOSE: f64 = 0.2;
@@ -63,12 +65,12 @@ pub enum FitError {
 
 /// Fits the constants.
 ///
-/// `run` returns the values of the model at the data for each set of constants, or `None` for a set at which the
-/// model fails. `step` is the step of the differences: of the logarithm of a constant, or of a fraction of its
-/// range. Numbers of rows have to exceed those of constants.
+/// `run` returns the values of the model at the data for each set of constants, or `None` for a set at which
+/// the model fails. `step` is the step of the differences: of the logarithm of a constant, or of a fraction
+/// of its range. Numbers of rows have to exceed those of constants.
 ///
-/// A step to constants at which the model fails is halved. A constant at a bound stays there while the squares
-/// fall towards the outside.
+/// A step to constants at which the model fails is halved. A constant at a bound stays there while the
+/// squares fall towards the outside.
 ///
 /// # Errors
 /// The model fails at the start, or on both sides of a constant.
@@ -88,10 +90,10 @@ pub fn fit(
         let jacobian = of.jacobian(&theta, &model)?;
         let residual = data.residual(&model);
         let free = of.free(&theta, &jacobian.tr_mul(&residual));
-        let linear = Linear::new(jacobian, residual, free, data.length(), step);
+        let linear = Linear::new(jacobian, residual, free, data.length(), of.step);
         let found = of.descend(&theta, &model, &linear, &mut damping);
         (theta, model) = (found.theta, found.model);
-        if found.stuck && of.step < LONGEST_STEP {
+        if found.stuck && of.step < LONGEST_STEP && iterations < MOST_ITERATIONS {
             (of.step, damping) = (LONGEST_STEP, DAMPING);
             continue;
         }
@@ -99,8 +101,8 @@ pub fn fit(
             let residual = data.residual(&model);
             let values: Vec<f64> = constants.iter().zip(theta.iter()).map(|(c, t)| c.value(*t)).collect();
             let jacobian = (&linear.jacobian, &residual, &linear.free[..]);
+            let Search { runs, step, .. } = of;
             let confidence = confidence(constants, &theta, jacobian, data, step);
-            let Search { runs, .. } = of;
             let converged = found.converged;
             return Ok(Fitted { values, model, iterations, runs, converged, confidence });
         }
@@ -126,6 +128,9 @@ struct Descent {
 
 impl Search<'_> {
     fn at(&mut self, thetas: &[DVector<f64>]) -> Models {
+        if thetas.is_empty() {
+            return Vec::new();
+        }
         self.runs += thetas.len();
         let values = |theta: &DVector<f64>| {
             self.constants.iter().zip(theta.iter()).map(|(c, t)| c.value(*t)).collect()
@@ -139,13 +144,16 @@ impl Search<'_> {
 
     /// Derivatives of the residuals, a column for each constant. A constant that cannot go up is moved down.
     fn jacobian(&mut self, theta: &DVector<f64>, model: &[f64]) -> Result<DMatrix<f64>, FitError> {
+        // Within the bounds, where the model has its values.
         let moved = |k: usize, step: f64| {
+            let [low, high] = self.constants[k].bounds();
             let mut theta = theta.clone();
-            theta[k] += step;
+            theta[k] = (theta[k] + step).clamp(low, high);
             theta
         };
         let own = |k: usize| {
-            let up = theta[k] + self.step <= self.constants[k].bounds()[1];
+            let [low, high] = self.constants[k].bounds();
+            let up = theta[k] + self.step <= high || high - theta[k] >= theta[k] - low;
             if up { self.step } else { -self.step }
         };
         let mut steps: Vec<f64> = (0..theta.len()).map(own).collect();
@@ -157,8 +165,9 @@ impl Search<'_> {
         let here = self.data.residual(model);
         let mut jacobian = DMatrix::zeros(here.len(), theta.len());
         for (k, model) in found.iter().enumerate() {
-            let there = self.data.residual(model.as_ref().ok_or(FitError::Derivative(k))?);
-            jacobian.set_column(k, &((there - &here) / steps[k]));
+            let length = moved(k, steps[k])[k] - theta[k];
+            let model = model.as_ref().filter(|_| length != 0.0).ok_or(FitError::Derivative(k))?;
+            jacobian.set_column(k, &((self.data.residual(model) - &here) / length));
         }
         Ok(jacobian)
     }
@@ -172,9 +181,9 @@ impl Search<'_> {
         (0..theta.len()).filter(is_free).collect()
     }
 
-    /// Lowers the squares along damped steps, `(J^T J + damping D^2) step = -J^T r` with the lengths `D` of the
-    /// columns of `J` (Marquardt 1963). A step is taken if it lowers the squares by a tenth of what the Jacobian
-    /// predicts: longer ones pass over the minimum to where the model hardly changes.
+    /// Lowers the squares along damped steps, `(J^T J + damping D^2) step = -J^T r` with the lengths `D` of
+    /// the columns of `J` (Marquardt 1963). A step is taken if it lowers the squares by a tenth of what the
+    /// Jacobian predicts: longer ones pass over the minimum to where the model hardly changes.
     fn descend(&mut self, theta: &DVector<f64>, model: &[f64], of: &Linear, damping: &mut f64) -> Descent {
         let before = of.residual.norm_squared();
         let scatter = match self.data.sd {
@@ -236,8 +245,8 @@ struct Linear {
     lengths: DVector<f64>,
     sigma: DVector<f64>,
     v: DMatrix<f64>,
-    /// Residual along the left singular vectors; zero along combinations that the data do not determine, so that the
-    /// constants stay at their start along these.
+    /// Residual along the left singular vectors; zero along combinations that the data do not determine, so
+    /// that the constants stay at their start along these.
     along: DVector<f64>,
 }
 

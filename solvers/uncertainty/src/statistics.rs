@@ -151,26 +151,31 @@ fn with_intervals<const N: usize>(values: [f64; N], drawn: impl Iterator<Item = 
     })
 }
 
-/// Coefficients of the polynomial fitted to each resample, without those that leave it undetermined.
+/// Coefficients of the polynomial for each resample, to first order in the number of times that a sample is
+/// drawn: `c + (A^T A)^-1 sum of (times - 1) A_i e_i` with the errors `e_i` of predicting each sample from
+/// all others (the estimator HC3 of MacKinnon and White 1985). Fitted anew, most resamples of few samples
+/// would leave terms undetermined: they have two thirds of the samples.
 fn coefficients(chaos: &Chaos, samples: &[Vec<f64>], results: &[f64]) -> Vec<DVector<f64>> {
     let matrix = chaos.rows(samples);
+    let decomposed = matrix.clone().qr();
+    let (q, r) = (decomposed.q(), decomposed.r());
+    let residual = DVector::from_row_slice(results) - &matrix * &chaos.coefficients;
+    let error = |i: usize| residual[i] / (1.0 - q.row(i).norm_squared());
+    let errors = DVector::from_iterator(results.len(), (0..results.len()).map(error));
     let ends = blocks(results.len());
     let part = |block: &[usize]| {
-        let rows = matrix.rows(block[0], block[1] - block[0]);
-        let own = DVector::from_row_slice(&results[block[0]..block[1]]);
-        (rows.tr_mul(&rows), rows.tr_mul(&own))
+        let (first, count) = (block[0], block[1] - block[0]);
+        matrix.rows(first, count).tr_mul(&errors.rows(first, count))
     };
-    let parts: Vec<(DMatrix<f64>, DVector<f64>)> = ends.windows(2).map(part).collect();
-    let size = matrix.ncols();
-    let solved = draws(parts.len()).filter_map(|times| {
-        let (mut left, mut right) = (DMatrix::zeros(size, size), DVector::zeros(size));
-        for ((gram, own), times) in parts.iter().zip(times).filter(|(_, times)| *times > 0) {
-            left += gram * f64::from(times);
-            right += own * f64::from(times);
+    let parts: Vec<DVector<f64>> = ends.windows(2).map(part).collect();
+    let drawn = draws(parts.len()).filter_map(|times| {
+        let mut sum = DVector::zeros(matrix.ncols());
+        for (part, times) in parts.iter().zip(times) {
+            sum += part * (f64::from(times) - 1.0);
         }
-        Some(left.cholesky()?.solve(&right))
+        Some(&chaos.coefficients + r.solve_upper_triangular(&r.tr_solve_upper_triangular(&sum)?)?)
     });
-    solved.filter(|c| c.iter().all(|c| c.is_finite())).collect()
+    drawn.collect()
 }
 
 /// Shares of the inputs. An interval is that of the resamples, wider by the part of the variance that the

@@ -54,8 +54,8 @@ fn exact_data_give_the_truth() {
     assert!(of.confidence.r2 > 1.0 - 1e-12 && of.confidence.runs_score.is_none());
 }
 
-/// 95 % of all intervals contain the truth: of 20, fewer than 17 do with a probability of 1.6 %. The seeds are
-/// fixed, so that the outcome is.
+/// 95 % of all intervals contain the truth: of 20, fewer than 17 do with a probability of 1.6 %. The seeds
+/// are fixed, so that the outcome is.
 #[test]
 fn intervals_contain_the_truth_as_often_as_they_say() {
     let x = places(16);

@@ -183,7 +183,8 @@ impl Method {
         }
     }
 
-    /// Requested number of nodes of the mesh, if the size is given by nodes; `None` for the first of several meshes.
+    /// Requested number of nodes of the mesh, if the size is given by nodes; `None` for the first of several
+    /// meshes.
     pub fn nodes_of_size(&self) -> Option<usize> {
         if matches!(&self.family, Family::Fem(Fem { adapt: Some(_), .. })) {
             return None;

@@ -113,6 +113,7 @@ mod tests {
             metric: "l2".into(),
             value: Some(0.5),
             bound: "at most 1e-1".into(),
+            capped: true,
             status,
             reason: reason.into(),
             runs: Vec::new(),

@@ -15,7 +15,7 @@ use reports::Seconds;
 use serde::Serialize;
 
 use crate::cli::args::{Format, SceneArgs};
-use crate::cli::results::{take, write_results};
+use crate::cli::results::{described, take, write_results};
 use crate::cli::scenes::{choose, refuse_scene};
 use crate::cli::{interrupt, text};
 use crate::measure::Repeats;
@@ -288,5 +288,8 @@ fn sentence(demand: &Demand, found: &Found) -> String {
 fn write(args: &PickArgs, scene: &Scene, mut found: Found) -> u8 {
     let Some(out) = &args.out else { return 0 };
     found.set.records.extend(study::reference_records(scene));
-    write_results(out, &found.set, None, false)
+    match write_results(out, &found.set, None, false) {
+        0 => described(out),
+        code => code,
+    }
 }

@@ -42,17 +42,21 @@ pub(crate) fn bounds(method: &Discretisation, setup: &Setup) -> Result<Bounds, F
 
     // An energy is never negative. The potential of loads is the negative energy.
     let mut energy = Bracket::default();
+    let whole = fields(&given)?;
+    let (both, of_whole) = (on_faces.moves() && on_faces.is_loaded(), enclosed(&whole));
+    // Of a single cause, the fields are those of the given ones.
+    let alone =
+        |cause: usize| if both { Ok(enclosed(&fields(&unit(cause))?)) } else { Ok::<_, Failure>(of_whole) };
     if on_faces.moves() {
-        let moved = enclosed(&fields(&unit(0))?);
+        let moved = alone(0)?;
         energy = Bracket { lower: moved.lower.max(0.0), upper: moved.upper };
     }
     if on_faces.is_loaded() {
-        let loaded = enclosed(&fields(&unit(1))?);
+        let loaded = alone(1)?;
         energy.lower += (-loaded.upper).max(0.0);
         energy.upper -= loaded.lower;
     }
-    let whole = fields(&given)?;
-    if on_faces.moves() && on_faces.is_loaded() {
+    if both {
         let other = on_sphere(&whole);
         energy = Bracket { lower: energy.lower.max(other.lower), upper: energy.upper.min(other.upper) };
     }
@@ -60,7 +64,7 @@ pub(crate) fn bounds(method: &Discretisation, setup: &Setup) -> Result<Bounds, F
     results.extend(on_faces.conjugate().map(|(of, size)| (of, energy.scaled(2.0 / size))));
     for (k, cause) in (2..causes).enumerate() {
         let own = enclosed(&fields(&unit(cause))?);
-        let scale = scale(&enclosed(&whole), &own);
+        let scale = scale(&of_whole, &own);
         let pair = |sign: f64| {
             let mut weights: Vec<f64> = given.iter().map(|weight| scale * weight).collect();
             weights[cause] = sign / scale;

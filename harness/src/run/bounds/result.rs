@@ -12,7 +12,8 @@ pub(crate) struct Bracket {
 }
 
 impl Bracket {
-    /// Half the width divided by the larger magnitude of both ends' mean and the width, so that it is at most 1.
+    /// Half the width divided by the larger magnitude of both ends' mean and the width, so that it is at most
+    /// 1.
     pub fn half_width(&self) -> f64 {
         let (half, middle) = ((self.upper - self.lower) / 2.0, (self.upper + self.lower) / 2.0);
         if half == 0.0 { 0.0 } else { half / middle.abs().max(half) }

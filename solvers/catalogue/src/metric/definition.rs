@@ -39,7 +39,8 @@ pub enum Kind {
     Count,
     /// One value per tool, numbered from 1.
     Tool,
-    /// One value per support, face, point or volume of a list in the scene, or per mode, numbered like the tools.
+    /// One value per support, face, point or volume of a list in the scene, or per mode, numbered like the
+    /// tools.
     Place,
 }
 
