@@ -44,13 +44,7 @@ fn an_influence_is_the_difference_of_solutions() {
     let nodes = mesh.points().len();
     let newton =
         NewtonParams { tolerance: 1e-11, iterations: 40, chords: false, keeps: f64::INFINITY, loosest: None };
-    let params = StaticParams {
-        steps: 1,
-        smallest: 1.0,
-        newton: newton.clone(),
-        augmentations: 0,
-        limit_within: None,
-    };
+    let params = StaticParams { steps: 1, smallest: 1.0, newton, augmentations: 0, limit_within: None };
     let node = mesh.points().iter().position(|p| *p == Point3::new(0.01, 0.01, 0.01)).unwrap();
     let mut weights = vec![Vector3::zeros(); nodes];
     weights[node] = Vector3::new(0.6, 0.8, 0.0);
