@@ -78,6 +78,32 @@ impl Check {
     }
 }
 
+impl Bound {
+    /// Reads a range whose ends `read` converts to SI units. A bound that could not be read is reported.
+    pub(super) fn read(
+        at_least: Option<NumberKeys>,
+        at_most: Option<NumberKeys>,
+        read: impl Fn(NumberKeys) -> Result<f64, Problem>,
+        report: &Report,
+    ) -> Option<Bound> {
+        if at_least.is_none() && at_most.is_none() {
+            report.missing("", "give at_least or at_most");
+            return None;
+        }
+        let number = |keys: Option<NumberKeys>, key| {
+            let read = keys.map(|keys| read(keys).map_err(|bad| report.add(key, bad)).ok());
+            read.map_or(Some(None), |number| number.map(Some))
+        };
+        let ends = (number(at_least, "at_least"), number(at_most, "at_most"));
+        let (at_least, at_most) = (ends.0?, ends.1?);
+        if let (Some(low), Some(high)) = (at_least, at_most) {
+            let help = "at_least must not be above at_most";
+            report.require(low <= high, "at_most", "leaves no value to pass", help);
+        }
+        Some(Bound::Within { at_least, at_most })
+    }
+}
+
 impl CheckKeys {
     pub fn read(self, report: &Report) -> Option<Check> {
         let address = metric::named(&self.metric).map_err(|bad| report.add("metric", bad)).ok()?;
@@ -104,20 +130,9 @@ impl CheckKeys {
                 return None;
             }
             (low, high, None) => {
-                let at_least = low.map(|low| number(low, "at_least"));
-                let at_most = high.map(|high| number(high, "at_most"));
                 let stray = self.reason.is_some();
                 report.require(!stray, "reason", "applies to known_band only", "leave it out");
-                // A bound that could not be read is already reported; the check is dropped.
-                let (at_least, at_most) = (
-                    at_least.map_or(Some(None), |b| b.map(Some))?,
-                    at_most.map_or(Some(None), |b| b.map(Some))?,
-                );
-                if let (Some(low), Some(high)) = (at_least, at_most) {
-                    let help = "at_least must not be above at_most";
-                    report.require(low <= high, "at_most", "leaves no value to pass", help);
-                }
-                Bound::Within { at_least, at_most }
+                Bound::read(low, high, |keys| keys.read(address.metric.dimension), report)?
             }
         };
         let methods = self.method.map(Vec::from).unwrap_or_default();

@@ -213,25 +213,17 @@ impl FitCheckKeys {
         if !fits {
             return None;
         }
-        let read = |keys: NumberKeys, at: &str| {
-            let read = match (key, keys) {
-                (Some(key), NumberKeys::Number(value)) => {
-                    number(&Value::Float(value), &mut Some(key.unit.clone()))
-                }
-                (Some(key), NumberKeys::Quantity(text)) => {
-                    number(&Value::String(text), &mut Some(key.unit.clone()))
-                }
-                (None, keys) if self.statistic == FitStatistic::Rms => keys.read(dimension),
-                (None, keys) => keys.read(Dimension::None),
-            };
-            read.map_err(|bad| report.add(at, bad)).ok()
+        let read = |keys: NumberKeys| match (key, keys) {
+            (Some(key), NumberKeys::Number(value)) => {
+                number(&Value::Float(value), &mut Some(key.unit.clone()))
+            }
+            (Some(key), NumberKeys::Quantity(text)) => {
+                number(&Value::String(text), &mut Some(key.unit.clone()))
+            }
+            (None, keys) if self.statistic == FitStatistic::Rms => keys.read(dimension),
+            (None, keys) => keys.read(Dimension::None),
         };
-        let at_least = self.at_least.map(|keys| read(keys, "at_least"));
-        let at_most = self.at_most.map(|keys| read(keys, "at_most"));
-        if at_least.is_none() && at_most.is_none() {
-            report.missing("", "give at_least or at_most");
-        }
-        let bound = Bound::Within { at_least: at_least.flatten(), at_most: at_most.flatten() };
+        let bound = Bound::read(self.at_least, self.at_most, read, report)?;
         Some(FitCheck { statistic: self.statistic, key: self.key, bound, at: report.location() })
     }
 }

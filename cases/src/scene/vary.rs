@@ -378,15 +378,7 @@ impl StatisticKeys {
         report.require(known == with_key && self.key.is_some() == with_key, "key", "does not fit", help);
         let dimension =
             if self.statistic.is_of_metric() { address.metric.dimension } else { Dimension::None };
-        let number = |keys: Option<NumberKeys>, key: &str| match keys.map(|keys| keys.read(dimension)) {
-            None => Some(None),
-            Some(read) => read.map_err(|bad| report.add(key, bad)).ok().map(Some),
-        };
-        let (at_least, at_most) = (number(self.at_least, "at_least")?, number(self.at_most, "at_most")?);
-        if at_least.is_none() && at_most.is_none() {
-            report.missing("", "give at_least or at_most");
-        }
-        let bound = Bound::Within { at_least, at_most };
+        let bound = Bound::read(self.at_least, self.at_most, |keys| keys.read(dimension), report)?;
         Some(StatisticCheck {
             address,
             statistic: self.statistic,

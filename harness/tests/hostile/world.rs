@@ -8,8 +8,8 @@ use tempfile::TempDir;
 
 /// Time after which a command counts as hanging.
 const LIMIT: Duration = Duration::from_secs(10);
-/// Memory that the program may allocate, KiB: 1 GiB.
-const MEMORY: &str = "1048576";
+/// Memory that the program may allocate besides [`product_buffers`], KiB: 1 GiB.
+const MEMORY: usize = 1 << 20;
 
 const SCENE: &str = r#"title = "A block"
 BODY
@@ -101,7 +101,7 @@ impl World {
         let mut command = Command::new("sh");
         command.args([
             "-c",
-            &format!("ulimit -d {MEMORY}; exec \"$0\" \"$@\""),
+            &format!("ulimit -d {}; exec \"$0\" \"$@\"", MEMORY + product_buffers()),
             env!("CARGO_BIN_EXE_tissuebench"),
         ]);
         command.args(args).current_dir(self.dir.path()).stdin(Stdio::null());
@@ -128,6 +128,17 @@ impl World {
         assert!(!done.stderr.contains("panicked"), "{args:?}: {}", done.stderr);
         done
     }
+}
+
+/// Returns the address space that dense products reserve, KiB: twice the largest cache on every thread, which
+/// is 1.2 GB on two cores with 300 MB of cache.
+fn product_buffers() -> usize {
+    let size = |index: usize| {
+        let path = format!("/sys/devices/system/cpu/cpu0/cache/index{index}/size");
+        std::fs::read_to_string(path).ok()?.trim().strip_suffix('K')?.parse().ok()
+    };
+    let largest: usize = (0..4).filter_map(size).max().unwrap_or(0);
+    2 * largest * std::thread::available_parallelism().map_or(1, usize::from)
 }
 
 pub fn fifo(path: &Path) {

@@ -332,6 +332,7 @@ impl Neighbours {
     /// Computes the gradients if `s_a` is not parallel to `r_a`: with a detour `d_a`,
     /// `s_a = -2 beta_a (|r_a| + d_a) grad (|r_a| + d_a)`.
     #[cold]
+    #[inline(never)]
     fn bent_gradients(&self, state: &State, inverse: &Matrix3, grads: &mut [Vector3]) {
         let mut slopes: Vec<Vector3> =
             (0..self.count).map(|k| self.vector(k) * (-2.0 * self.beta[k / LANES][k % LANES])).collect();

@@ -1,6 +1,5 @@
 //! Isoparametric map at one point: `x(xi) = sum_a N_a x_a`, `J_ik = dx_i / dxi_k`, `grad N = J^-T dN/dxi`.
 
-use geometry::element::ReferenceCell;
 use geometry::{Mesh, Point3, Vector3};
 
 /// Node positions of a cell relative to its first node. Sums over shape gradients then cancel to the last
@@ -16,7 +15,11 @@ impl<const N: usize> Nodes<N> {
     pub(crate) fn gather(mesh: &Mesh, nodes: &[u32; N]) -> Nodes<N> {
         let points = mesh.points();
         let origin = points[nodes[0] as usize];
-        Nodes { origin, dx: nodes.map(|n| points[n as usize] - origin) }
+        let mut dx = [Vector3::zeros(); N];
+        for a in 1..N {
+            dx[a] = points[nodes[a] as usize] - origin;
+        }
+        Nodes { origin, dx }
     }
 
     /// Returns the position relative to the origin, m.
@@ -45,18 +48,6 @@ impl<const N: usize> Nodes<N> {
             }
         }
         t
-    }
-
-    /// Returns whether a mid-edge node is not in the middle of its edge, beyond rounding.
-    pub(crate) fn is_curved(&self, cell: &ReferenceCell) -> bool {
-        // The test takes 8 % of the instructions of straight tet10 rows.
-        let [mut off, mut size] = [0.0; 2];
-        for (middle, &[a, b]) in self.dx[cell.corners..].iter().zip(cell.edges) {
-            let (a, b) = (&self.dx[a], &self.dx[b]);
-            off += (2.0 * middle - a - b).norm_squared();
-            size += (a - b).norm_squared();
-        }
-        off > 1e-20 * size
     }
 }
 
