@@ -25,8 +25,10 @@ use crate::executor::{End, Job, Site, State};
 use crate::outcome::provenance;
 use crate::run::case_name;
 
-/// Ratio of the time limit of a job to its expected or wanted time.
+/// Ratio of the time limit of a job to its expected or wanted time, and the time to start it and to read the
+/// study, s.
 const LIMIT: f64 = 3.0;
+const START: f64 = 60.0;
 /// Time between the signal that a job's time is over and its end by force.
 const NOTICE: Duration = Duration::from_secs(60);
 /// Longest wait for the results of a finished job to appear on a network file system.
@@ -188,7 +190,7 @@ impl Drive<'_> {
             note: Note::new(self.args, self.args.path()),
             runs: packed.runs.iter().map(run).collect(),
             bytes: packed.bytes,
-            limit: LIMIT * packed.seconds.max(self.args.on.job_time.as_secs_f64()),
+            limit: START + LIMIT * packed.seconds.max(self.args.on.job_time.as_secs_f64()),
             isolate: apart.isolate,
             time_limit: apart.time_limit,
             memory_limit: apart.memory_limit,
@@ -323,7 +325,7 @@ impl Drive<'_> {
     /// Records the failure of a run, unless another process has it.
     fn fail(&mut self, run: usize, why: &str) {
         let count = self.attempts.get(&run).copied().unwrap_or_default();
-        let failure = Failure::Run(format!("crashed in {count} of {count} jobs: {why}"));
+        let failure = Failure::Run(format!("gave no result in {count} jobs: {why}"));
         let task = &self.plan.tasks[run];
         let result = TaskResult::failed(&self.case(run), &task.method, &failure);
         let key = &self.keys[run];
