@@ -1,11 +1,13 @@
 //! Systems that run jobs: this machine, Slurm, HyperQueue, Snakemake. Each implements [`Executor`], and passes
 //! the tests in `harness/tests/executors.rs`.
 
+mod hyperqueue;
 mod job;
 mod local;
 mod programs;
 mod site;
 mod slurm;
+mod snakemake;
 
 use crate::error::Failure;
 
@@ -22,6 +24,14 @@ pub fn open(site: &Site) -> Result<Box<dyn Executor>, Failure> {
         Site::Slurm { options, .. } => {
             programs::needed("slurm", &["sbatch", "squeue", "scancel"])?;
             Box::new(slurm::Slurm::new(options.clone()))
+        }
+        Site::HyperQueue { options, .. } => {
+            programs::needed("hyperqueue", &["hq"])?;
+            Box::new(hyperqueue::HyperQueue::new(options.clone()))
+        }
+        Site::Snakemake { folder, jobs } => {
+            programs::needed("snakemake", &["snakemake"])?;
+            Box::new(snakemake::Snakemake::new(folder, (*jobs).into()))
         }
     })
 }

@@ -1,10 +1,11 @@
 //! Calls to the programs of a job system.
 
-use std::ffi::OsStr;
+use std::ffi::{OsStr, OsString};
 use std::path::Path;
 use std::process::Command;
 use std::time::Duration;
 
+use super::job::Job;
 use crate::error::Failure;
 use crate::process::heard_within;
 
@@ -46,4 +47,14 @@ pub(super) fn said(program: &str, args: &[impl AsRef<OsStr>]) -> Result<String, 
 pub(super) fn quoted(text: &OsStr) -> Result<String, String> {
     let text = text.to_str().ok_or_else(|| format!("{}: is not UTF-8", Path::new(text).display()))?;
     Ok(format!("'{}'", text.replace('\'', r"'\''")))
+}
+
+/// Exit code of `timeout` for a program that exceeded its time.
+pub(super) const LATE: &str = "124";
+
+/// Command of a job under the program `timeout`, for systems that end a late job without a signal before.
+pub(super) fn limited(job: &Job) -> Vec<OsString> {
+    let [time, notice] = [job.time, job.notice].map(|time| time.as_secs_f64().to_string());
+    let words = ["timeout".into(), format!("--kill-after={notice}"), time];
+    words.into_iter().map(OsString::from).chain(job.command.iter().cloned()).collect()
 }

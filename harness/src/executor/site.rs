@@ -1,11 +1,12 @@
 //! The value of `--on`: the system that runs the jobs of a study.
 
 use std::fmt;
+use std::path::PathBuf;
 use std::str::FromStr;
 
 /// Jobs at once on a cluster, unless `jobs=N` is given.
 const JOBS: u16 = 16;
-const USAGE: &str = "write local:8 or slurm:jobs=16,partition=NAME";
+const USAGE: &str = "write local:8, slurm:jobs=16,partition=NAME, hyperqueue:jobs=16 or snakemake:FOLDER";
 
 /// System that runs jobs, with its options.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -22,13 +23,30 @@ pub enum Site {
         /// Further options of `sbatch`.
         options: Vec<(String, String)>,
     },
+    /// HyperQueue.
+    HyperQueue {
+        /// Number of jobs in the queue at once.
+        jobs: u16,
+        /// Further options of `hq submit`.
+        options: Vec<(String, String)>,
+    },
+    /// Snakemake.
+    Snakemake {
+        /// Folder with the profile (`config.yaml`), if there is one, and for the files of the jobs.
+        folder: PathBuf,
+        /// Number of jobs at once.
+        jobs: u16,
+    },
 }
 
 impl Site {
     /// Number of jobs that are handed over at once.
     pub fn jobs(&self) -> usize {
         match self {
-            Site::Local { jobs } | Site::Slurm { jobs, .. } => usize::from(*jobs),
+            Site::Local { jobs }
+            | Site::Slurm { jobs, .. }
+            | Site::HyperQueue { jobs, .. }
+            | Site::Snakemake { jobs, .. } => usize::from(*jobs),
         }
     }
 
@@ -49,6 +67,24 @@ impl FromStr for Site {
                 let (jobs, options) = options(rest)?;
                 Ok(Site::Slurm { jobs, options })
             }
+            "hyperqueue" => {
+                let (jobs, options) = options(rest)?;
+                Ok(Site::HyperQueue { jobs, options })
+            }
+            "snakemake" => match rest {
+                "" => Err(format!("snakemake needs a folder; {USAGE}")),
+                rest => {
+                    let given =
+                        rest.strip_prefix("jobs=").map(|rest| rest.split_once(',').unwrap_or((rest, "")));
+                    match given {
+                        None => Ok(Site::Snakemake { folder: rest.into(), jobs: JOBS }),
+                        Some((_, "")) => Err(format!("snakemake needs a folder; {USAGE}")),
+                        Some((jobs, folder)) => {
+                            Ok(Site::Snakemake { folder: folder.into(), jobs: count(jobs, "jobs=")? })
+                        }
+                    }
+                }
+            },
             _ => Err(format!("no system '{system}'; {USAGE}")),
         }
     }
@@ -58,8 +94,10 @@ impl fmt::Display for Site {
     fn fmt(&self, to: &mut fmt::Formatter) -> fmt::Result {
         match self {
             Site::Local { jobs } => write!(to, "local:{jobs}"),
-            Site::Slurm { jobs, options } => {
-                write!(to, "slurm:jobs={jobs}")?;
+            Site::Snakemake { folder, jobs } => write!(to, "snakemake:jobs={jobs},{}", folder.display()),
+            Site::Slurm { jobs, options } | Site::HyperQueue { jobs, options } => {
+                let system = if matches!(self, Site::Slurm { .. }) { "slurm" } else { "hyperqueue" };
+                write!(to, "{system}:jobs={jobs}")?;
                 options.iter().try_for_each(|(key, value)| write!(to, ",{key}={value}"))
             }
         }
@@ -94,9 +132,24 @@ fn options(text: &str) -> Result<(u16, Vec<(String, String)>), String> {
     Ok((jobs, options))
 }
 
-/// Options of `sbatch` that follow from the runs of a job.
-const RESERVED: [&str; 10] =
-    ["array", "chdir", "cpus-per-task", "error", "mem", "ntasks", "output", "signal", "time", "wait"];
+/// Options of `sbatch` and `hq submit` that follow from the runs of a job.
+const RESERVED: [&str; 15] = [
+    "array",
+    "chdir",
+    "cpus",
+    "cpus-per-task",
+    "cwd",
+    "error",
+    "mem",
+    "name",
+    "ntasks",
+    "output",
+    "signal",
+    "stderr",
+    "stdout",
+    "time",
+    "wait",
+];
 
 fn is_option(key: &str) -> bool {
     !key.is_empty() && key.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-')
@@ -120,6 +173,8 @@ mod tests {
             ("slurm:jobs=x", "'x' is no number"),
             ("slurm:partition", "'partition' is no option"),
             ("slurm:time=3", "time is set for each job"),
+            ("hyperqueue:cpus=3", "cpus is set for each job"),
+            ("snakemake", "needs a folder"),
         ] {
             let bad = read(text).unwrap_err();
             assert!(bad.contains(says), "{text}: {bad}");

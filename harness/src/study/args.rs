@@ -27,8 +27,9 @@ pub struct ApartArgs {
 /// Execution of a study as jobs.
 #[derive(Args, Clone, Debug)]
 pub struct OnArgs {
-    /// Execute the runs as jobs: local:N (N processes of this machine) or slurm[:jobs=N,OPTION=VALUE,...], with
-    /// at most N jobs at once and options of sbatch. Stored results are kept as with --resume
+    /// Execute the runs as jobs: local:N (N processes of this machine), slurm or hyperqueue, with options such as
+    /// slurm:jobs=16,partition=short, or snakemake:FOLDER, whose profile says where. Stored results are kept as
+    /// with --resume
     #[arg(long, value_name = "SYSTEM", conflicts_with_all = ["shard", "join", "jobs"])]
     pub on: Option<Site>,
     /// Wanted time of a job. Runs are bundled by their stored times, or by estimates

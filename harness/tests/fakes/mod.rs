@@ -26,8 +26,19 @@ pub fn slurm(dir: &TempDir) -> PathBuf {
             ("squeue", include_str!("squeue.py")),
             ("scancel", include_str!("scancel.py")),
             ("fake-slurm-job", include_str!("slurm_job.py")),
+            ("places.py", include_str!("places.py")),
         ],
     )
+}
+
+/// Writes the program of HyperQueue and returns its folder.
+pub fn hyperqueue(dir: &TempDir) -> PathBuf {
+    programs(dir, &[("hq", include_str!("hq.py")), ("places.py", include_str!("places.py"))])
+}
+
+/// Writes the program of Snakemake and returns its folder.
+pub fn snakemake(dir: &TempDir) -> PathBuf {
+    programs(dir, &[("snakemake", include_str!("snakemake.py"))])
 }
 
 fn programs(dir: &TempDir, programs: &[(&str, &str)]) -> PathBuf {

@@ -5,6 +5,8 @@ import shlex
 import subprocess
 import sys
 
+import places
+
 here = os.path.dirname(os.path.abspath(__file__))
 flag, script = sys.argv[1:]
 assert flag == "--parsable", flag
@@ -18,11 +20,9 @@ if options.get("partition", "short") != "short":
     sys.exit("sbatch: error: invalid partition specified: " + options["partition"])
 assert options["signal"].startswith("B:TERM@"), "without B: the signal reaches job steps only"
 notice = options["signal"].split("@")[1]
-count = os.path.join(here, "count")
-number = int(open(count).read()) + 1 if os.path.exists(count) else 1
-open(count, "w").write(str(number))
+number = places.next_number()
 state = os.path.join(here, f"{number}.state")
-open(state, "w").write("PENDING|Resources")
+places.put(state, "PENDING|Resources")
 subprocess.Popen(
     [os.path.join(here, "fake-slurm-job"), state, script, options["output"].replace("%%", "%"), options["chdir"],
      options["time"], notice],

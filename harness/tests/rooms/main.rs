@@ -36,6 +36,7 @@ const HARNESS: House<'_> = House {
         "discretise",
         "adapter",
         "outcome",
+        "executor",
         "process",
         "error",
     ],

@@ -81,7 +81,8 @@ impl Status {
             running: claimed.iter().map(|&index| name(index)).collect(),
             failed,
             jobs,
-            seconds_left: left.values().sum::<f64>() / workers.max(1) as f64,
+            // A sum of nothing is -0.
+            seconds_left: left.values().fold(0.0, |sum, seconds| sum + seconds) / workers.max(1) as f64,
             worst: worst.map(|(&index, &seconds)| (name(index), seconds)),
         })
     }
