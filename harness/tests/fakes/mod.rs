@@ -1,6 +1,8 @@
 //! Small programs in place of those of job systems. They keep the rules on which executors depend: Slurm
 //! signals the shell of a job's script and no other process, and forgets nothing that ended.
 
+#![allow(dead_code)] // each test file uses its share
+
 use std::ffi::OsString;
 use std::os::unix::fs::PermissionsExt;
 use std::path::{Path, PathBuf};
