@@ -28,7 +28,7 @@ use crate::run::case_name;
 /// Ratio of the time limit of a job to its expected or wanted time, and the time to start it and to read the
 /// study, s.
 const LIMIT: f64 = 3.0;
-const START: f64 = 60.0;
+const START: f64 = 300.0;
 /// Time between the signal that a job's time is over and its end by force.
 const NOTICE: Duration = Duration::from_secs(60);
 /// Longest wait for the results of a finished job to appear on a network file system.
