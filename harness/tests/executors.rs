@@ -1,5 +1,5 @@
-//! Conformance of executors: the same list of properties for each system that runs jobs. Clusters are represented
-//! by small programs on the search path, and by the real ones if they are installed.
+//! Conformance of executors: the same list of properties for each system that runs jobs. Clusters are
+//! represented by small programs on the search path, and by the real ones if they are installed.
 #![cfg(target_os = "linux")]
 
 mod common;

@@ -96,9 +96,9 @@ enum Task {
     Python,
     /// Import and run the models of other programs' test suites, and compare the results with those stored there
     Suites(suites::SuitesArgs),
-    /// Do everything of a release that can be done without publishing: compare versions, build each crate from
-    /// its package, build the wheel and test it in a fresh environment, run the README, and build the container;
-    /// if the tools are installed. 30 minutes on two cores
+    /// Do everything of a release that can be done without publishing: compare versions, build each crate
+    /// from its package, build the wheel and test it in a fresh environment, run the README, and build the
+    /// container; if the tools are installed. 30 minutes on two cores
     Release {
         /// Publish nothing. Only the workflow of a tag publishes
         #[arg(long, required = true)]

@@ -1,5 +1,5 @@
-//! Systems that run jobs: this machine, Slurm, HyperQueue, Snakemake. Each implements [`Executor`], and passes
-//! the tests in `harness/tests/executors.rs`.
+//! Systems that run jobs: this machine, Slurm, HyperQueue, Snakemake. Each implements [`Executor`], and
+//! passes the tests in `harness/tests/executors.rs`.
 
 mod hyperqueue;
 mod job;

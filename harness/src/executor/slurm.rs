@@ -1,7 +1,7 @@
 //! Jobs of Slurm. A job is one script for `sbatch`, whose state `squeue` reports.
 //!
-//! Slurm signals the steps of a job only, and a script without `srun` has none: `--signal` needs `B:`, and the
-//! script must replace its shell by the program (`exec`), because the shell does not pass the signal on.
+//! Slurm signals the steps of a job only, and a script without `srun` has none: `--signal` needs `B:`, and
+//! the script must replace its shell by the program (`exec`), because the shell does not pass the signal on.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;

@@ -33,7 +33,8 @@ fn workflow(job: &Job, code: &Path) -> Result<String, String> {
     let words: Vec<String> = limited(job).iter().map(|word| quoted(word)).collect::<Result<_, String>>()?;
     let [folder, log, code] = [&folder, &job.log, code].map(|path| quoted(path.as_os_str()));
     let (folder, log, code) = (folder?, log?, code?);
-    // The shell waits for the program and passes on the signals that end a job. `timeout` leads a process group.
+    // The shell waits for the program and passes on the signals that end a job. `timeout` leads a process
+    // group.
     let shell = format!(
         "set +e; cd {folder} || exit; {} > {log} 2>&1 & p=$!; trap 'kill -TERM $p' TERM INT; wait $p; c=$?; trap '' TERM; \
          wait $p; kill -KILL -$p 2> /dev/null; echo $c > {code}; exit $c",

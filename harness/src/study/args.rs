@@ -27,16 +27,16 @@ pub struct ApartArgs {
 /// Execution of a study as jobs.
 #[derive(Args, Clone, Debug)]
 pub struct OnArgs {
-    /// Execute the runs as jobs: local:N (N processes of this machine), slurm or hyperqueue, with options such as
-    /// slurm:jobs=16,partition=short, or snakemake:FOLDER, whose profile says where. Stored results are kept as
-    /// with --resume
+    /// Execute the runs as jobs: local:N (N processes of this machine), slurm or hyperqueue, with options such
+    /// as slurm:jobs=16,partition=short, or snakemake:FOLDER, whose profile says where. Stored results are kept
+    /// as with --resume
     #[arg(long, value_name = "SYSTEM", conflicts_with_all = ["shard", "join", "jobs"])]
     pub on: Option<Site>,
     /// Wanted time of a job. Runs are bundled by their stored times, or by estimates
     #[arg(long, value_name = "TIME", requires = "on", default_value = "10 min", value_parser = duration)]
     pub job_time: Duration,
-    /// Number of times that a run is repeated if it crashes or exceeds a time limit, each time in a job of its
-    /// own
+    /// Number of times that a run is repeated if it crashes or exceeds a time limit, each time in a job of
+    /// its own
     #[arg(long, value_name = "N", requires = "on", default_value_t = 2)]
     pub retries: u8,
 }

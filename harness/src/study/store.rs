@@ -83,8 +83,8 @@ pub(super) struct Claim {
 }
 
 impl Claim {
-    /// Whether no other process has taken the task. A network file system may drop the lock of a process that it
-    /// has not heard of for some time; the next owner writes its own token.
+    /// Whether no other process has taken the task. A network file system may drop the lock of a process that
+    /// it has not heard of for some time; the next owner writes its own token.
     pub(super) fn is_live(&self) -> bool {
         match disk::read_text(&self.path, Kind::MESSAGE) {
             Ok(token) => token == self.token,

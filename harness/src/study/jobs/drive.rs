@@ -350,7 +350,8 @@ impl Drive<'_> {
         self.progress.running(self.case(index), self.plan.tasks[index].method.id.clone(), index)
     }
 
-    /// Describes the jobs in part of a line: `2 failed; 8 jobs running, 3 waiting: Resources; about 72 s left`.
+    /// Describes the jobs in part of a line, such as `2 failed; 8 jobs running, 3 waiting: Resources; about
+    /// 72 s left`.
     fn summary(&self) -> String {
         let failed = self.results.values().filter(|result| result.failure.is_some()).count();
         let running = self.active.iter().filter(|active| active.state == State::Running).count();

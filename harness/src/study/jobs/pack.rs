@@ -52,8 +52,8 @@ impl StudyPlan {
     }
 }
 
-/// Packs groups. A group that takes longer than the wanted time is divided, but not into parts that spend more
-/// time on the reference than on their runs.
+/// Packs groups. A group that takes longer than the wanted time is divided, but not into parts that spend
+/// more time on the reference than on their runs.
 fn packed(groups: Vec<Group>, seconds: f64, jobs: usize) -> Vec<Packed> {
     let all: f64 = groups.iter().map(|g| g.reference + g.runs.iter().map(|run| run.1).sum::<f64>()).sum();
     let wanted = (all / (PER_JOB * jobs as f64)).max(SHORTEST).min(seconds);
