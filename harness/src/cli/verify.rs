@@ -57,7 +57,7 @@ pub(super) fn verify(args: &VerifyArgs, ci: &CiArgs, threads: Option<u16>) -> u8
     if let Some(Err(bad)) = args.history.as_deref().map(reports::commits::check) {
         return unreported(bad);
     }
-    let jobs = match args.on.on.as_ref().map(|site| Jobs::open(site)).transpose() {
+    let jobs = match args.on.on.as_ref().map(Jobs::open).transpose() {
         Ok(jobs) => jobs,
         Err(failure) => return fail(&failure),
     };
