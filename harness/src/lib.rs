@@ -4,7 +4,7 @@
 //! this):
 //!
 //! `cli` > `study` > `run` > `measure` > `procedure` > `prepare` > `scenario` > `discretise` > `adapter` >
-//! `outcome` > `process` > `error`
+//! `outcome` > `executor` > `process` > `error`
 //!
 //! Data flows in the opposite direction. A checked TOML scene becomes a `scenario::Scenario`. The scenario
 //! becomes a `scenario::setup::Setup` and a `discretise::Discretisation`, and `prepare::prepare` builds the
@@ -43,6 +43,7 @@ mod adapter;
 pub mod cli;
 mod discretise;
 mod error;
+pub mod executor;
 mod measure;
 pub mod outcome;
 mod prepare;

@@ -8,6 +8,7 @@ mod instructions;
 mod mutants;
 mod nightly;
 mod python;
+mod release;
 mod skips;
 mod suites;
 
@@ -95,6 +96,14 @@ enum Task {
     Python,
     /// Import and run the models of other programs' test suites, and compare the results with those stored there
     Suites(suites::SuitesArgs),
+    /// Do everything of a release that can be done without publishing: compare versions, build each crate
+    /// from its package, build the wheel and test it in a fresh environment, run the README, and build the
+    /// container; if the tools are installed. 30 minutes on two cores
+    Release {
+        /// Publish nothing. Only the workflow of a tag publishes
+        #[arg(long, required = true)]
+        check: bool,
+    },
     /// Run the steps of continuous integration: format, lints, packages, docs, tests, quick verification
     Ci,
 }
@@ -133,6 +142,7 @@ fn run(task: Task) -> Result<u8> {
         Task::Nightly { minutes } => nightly::nightly(&root(), minutes),
         Task::Python => python::python(&root()),
         Task::Suites(args) => suites::suites(&root(), &args),
+        Task::Release { check: _ } => release::check(&root()),
         Task::Ci => ci(),
     }
 }

@@ -20,6 +20,8 @@ use super::vary::VaryArgs;
 use crate::process::leash::LeashArgs;
 use crate::study::VerifyArgs;
 use crate::study::isolated::ExperimentArgs;
+use crate::study::jobs::status::StatusArgs;
+use crate::study::jobs::worker::JobArgs;
 use crate::study::merge::MergeArgs;
 
 /// Verification and benchmarks of soft-tissue solvers: finite elements, element-free Galerkin and
@@ -111,6 +113,9 @@ pub enum Command {
     /// Execute one run of a study in its own process
     #[command(hide = true)]
     Experiment(ExperimentArgs),
+    /// Execute the runs of one job of a study
+    #[command(hide = true)]
+    Job(JobArgs),
     /// Run another program with limits, and end it when its caller ends
     #[command(hide = true)]
     Leash(LeashArgs),
@@ -119,6 +124,10 @@ pub enum Command {
     Solve(SolveArgs),
     /// Merge parts of a study, run with --shard or on several machines, into the results of one run
     Merge(MergeArgs),
+    /// Print how many runs of a study are done, running and failed, and the time left
+    ///
+    /// The folder may be in use. Exit code 0: all runs have results; 5: some have not.
+    Status(StatusArgs),
     /// Render tables, figures and the report of stored results, and the evidence of credibility by the
     /// factors of ASME V&V 40
     Report {

@@ -5,6 +5,7 @@ use std::sync::Mutex;
 
 use crate::adapter;
 use crate::process::group;
+use crate::study::jobs::queue::Jobs;
 
 type Last = Box<dyn FnMut() + Send>;
 
@@ -42,6 +43,18 @@ pub(super) fn resumable(out: PathBuf) -> impl FnMut() + Send + 'static {
         group::end_all();
         eprintln!(
             "tissuebench: interrupted; {} is incomplete and keeps the finished runs: continue with the same command and --resume",
+            out.display()
+        );
+    }
+}
+
+/// Returns an action that cancels the jobs of a study and reports that the study can be continued.
+pub(super) fn cancelling(jobs: Jobs, out: PathBuf) -> impl FnMut() + Send + 'static {
+    move || {
+        let count = jobs.cancel_at_exit();
+        eprintln!(
+            "tissuebench: interrupted; {count} jobs are cancelled; {} is incomplete and keeps the finished runs: continue \
+             with the same command",
             out.display()
         );
     }

@@ -30,6 +30,7 @@ mod results;
 mod run;
 mod scenes;
 mod solve;
+mod status;
 mod text;
 mod vary;
 mod verify;
@@ -42,6 +43,7 @@ use schemars::schema_for;
 use crate::process::leash::leash;
 use crate::study::Line;
 use crate::study::isolated::experiment;
+use crate::study::jobs::worker::job;
 use args::SchemaOf;
 use baseline::baseline;
 use bound::bound;
@@ -58,6 +60,7 @@ use reference::reference;
 use results::report;
 use run::run;
 use solve::solve;
+use status::status;
 use vary::vary;
 use verify::verify;
 
@@ -109,10 +112,12 @@ fn act(cli: Cli) -> u8 {
         Command::Bound(args) => bound(&args),
         Command::Fields(args) => fields::run(&args),
         Command::Plan { scene, force } => plan(&scene, force),
-        Command::Verify { runs, ci } => verify(&runs, &ci),
+        Command::Verify { runs, ci } => verify(&runs, &ci, cli.threads),
         Command::Vary(args) => vary(&args),
         Command::Fit(args) => fit(&args),
         Command::Merge(args) => merge(&args),
+        Command::Status(args) => status(&args),
+        Command::Job(args) => job(&args).map_or_else(|failure| fail(&failure), |()| 0),
         Command::Leash(args) => leash(&args),
         Command::Solve(args) => solve(&args),
         Command::Experiment(args) => experiment(&args).map_or_else(|failure| fail(&failure), |()| 0),

@@ -11,11 +11,15 @@ use crate::cli::errors::{fail, refuse, unreported};
 use crate::cli::results::{close, take, write_results};
 use crate::cli::scenes::{affordable, holds_key};
 use crate::cli::{colour, interrupt, text};
+use crate::error::Failure;
 use crate::study::folder::{self, Folder};
+use crate::study::jobs::bundle;
+use crate::study::jobs::queue::Jobs;
 use crate::study::{self, Event, Events, FinishedStudy, StudyPlan, VerifyArgs};
 
 /// Runs the study, writes its results and the report, and returns the exit code.
-pub(super) fn verify(args: &VerifyArgs, ci: &CiArgs) -> u8 {
+/// `threads` is the number of threads that the user gave.
+pub(super) fn verify(args: &VerifyArgs, ci: &CiArgs, threads: Option<u16>) -> u8 {
     let path = args.path();
     let mut plan = match planned(args, &path) {
         Ok(plan) => plan,
@@ -53,6 +57,10 @@ pub(super) fn verify(args: &VerifyArgs, ci: &CiArgs) -> u8 {
     if let Some(Err(bad)) = args.history.as_deref().map(reports::commits::check) {
         return unreported(bad);
     }
+    let jobs = match args.on.on.as_ref().map(Jobs::open).transpose() {
+        Ok(jobs) => jobs,
+        Err(failure) => return fail(&failure),
+    };
     let events = match ci::begin(ci, &plan) {
         Ok(events) => events,
         Err(bad) => {
@@ -70,8 +78,10 @@ pub(super) fn verify(args: &VerifyArgs, ci: &CiArgs) -> u8 {
     if !args.quiet {
         eprintln!("{}: {} runs", path.display(), plan.len());
     }
-    interrupt::at_last(interrupt::resumable(args.out.clone()));
-    let mut finished = plan.execute_watched(args, events.as_ref());
+    let mut finished = match executed(&plan, args, jobs.as_ref(), threads, events.as_ref()) {
+        Ok(finished) => finished,
+        Err(failure) => return fail(&failure),
+    };
     finished.set.provenance.source = folder::source(&path);
     if finished.stored > 0 && !args.quiet {
         eprintln!("{} of {} runs were taken from stored results", finished.stored, finished.ran);
@@ -86,6 +96,24 @@ pub(super) fn verify(args: &VerifyArgs, ci: &CiArgs) -> u8 {
     );
     let code = ended(events, ci, &finished, code);
     close(folder, &args.out, code, || study::clean(&args.out))
+}
+
+/// Executes the runs in this process or, with `--on`, as jobs.
+fn executed(
+    plan: &StudyPlan,
+    args: &VerifyArgs,
+    jobs: Option<&Jobs>,
+    threads: Option<u16>,
+    events: Option<&Events>,
+) -> Result<FinishedStudy, Failure> {
+    let (Some(site), Some(jobs)) = (&args.on.on, jobs) else {
+        interrupt::at_last(interrupt::resumable(args.out.clone()));
+        return Ok(plan.execute_watched(args, events));
+    };
+    interrupt::at_last(interrupt::cancelling(jobs.clone(), args.out.clone()));
+    // Processes of this machine divide its processors. A cluster gives a job one, unless more are wanted.
+    let each = if site.is_local() { rayon::current_num_threads() / site.jobs() } else { 1 };
+    plan.execute_on(args, site, jobs, threads.map_or(each.max(1), usize::from), events)
 }
 
 /// Reads the study and its scenes. An error is printed, and its exit code returned.
@@ -124,10 +152,13 @@ fn counts(finished: &FinishedStudy) -> [usize; 4] {
 
 /// Claims the folder of results, or joins the processes that already work in it.
 fn enter(args: &VerifyArgs, path: &Path) -> Result<Folder, u8> {
-    if !args.join {
+    if !args.join && args.on.on.is_none() {
         return take(path, &args.out).inspect(|_| study::clean(&args.out));
     }
-    let joined = folder::join(path, &args.out, || study::sweep(args));
+    let joined = folder::join(path, &args.out, || {
+        study::sweep(args);
+        bundle::remove(&args.out);
+    });
     let begun = joined.and_then(|folder| folder.begin(path).map(|()| folder));
     begun.map_err(|failure| fail(&failure))
 }

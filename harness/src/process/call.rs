@@ -72,10 +72,20 @@ pub(crate) fn call(program: &Command, limits: Limits) -> io::Result<Call> {
 /// Runs a program for at most `time` and then kills its whole group. Returns its exit status and the
 /// beginning of its stdout and stderr.
 pub(crate) fn said_within(program: &mut Command, time: Duration) -> io::Result<(ExitStatus, [String; 2])> {
+    heard_within(program, time, FIRST_WORDS)
+}
+
+/// Same as [`said_within`], with at most `most` bytes of each output.
+pub(crate) fn heard_within(
+    program: &mut Command,
+    time: Duration,
+    most: u64,
+) -> io::Result<(ExitStatus, [String; 2])> {
     let mut started =
         Started::new(program.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped()))?;
     let child = started.child();
-    let (out, err) = (child.stdout.take().map(first_words), child.stderr.take().map(first_words));
+    let out = child.stdout.take().map(|from| first_words(from, most));
+    let err = child.stderr.take().map(|from| first_words(from, most));
     let began = Instant::now();
     while !started.has_ended()? && began.elapsed() < time {
         std::thread::sleep((began.elapsed() / 10).clamp(SHORTEST_PAUSE, LONGEST_PAUSE));
@@ -89,11 +99,11 @@ pub(crate) fn said_within(program: &mut Command, time: Duration) -> io::Result<(
 
 /// Returns the beginning of a program's output. The output is read to its end so that the program does not
 /// block.
-fn first_words(from: impl Read + Send + 'static) -> mpsc::Receiver<String> {
+fn first_words(from: impl Read + Send + 'static, most: u64) -> mpsc::Receiver<String> {
     let (send, heard) = mpsc::channel();
     std::thread::spawn(move || {
         let mut words = Vec::new();
-        let mut from = from.take(FIRST_WORDS);
+        let mut from = from.take(most);
         let read = from.read_to_end(&mut words);
         let _ = send.send(String::from_utf8_lossy(&words).into_owned());
         read.and_then(|_| io::copy(&mut from.into_inner(), &mut io::sink()))

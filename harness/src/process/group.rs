@@ -58,6 +58,12 @@ impl Started {
         kill(self.child.id());
     }
 
+    /// Sends the signal TERM to the process and its group, where the system has signals.
+    pub(crate) fn terminate(&self) {
+        #[cfg(unix)]
+        let _ = rustix::process::kill_process_group(pid(self.child.id()), rustix::process::Signal::TERM);
+    }
+
     /// Kills the process and its group, and waits for the process.
     pub(crate) fn end(mut self) -> io::Result<ExitStatus> {
         let mut running = running();

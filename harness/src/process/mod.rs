@@ -6,7 +6,17 @@ pub(crate) mod leash;
 #[cfg(target_os = "linux")]
 mod members;
 
-pub(crate) use call::{Call, End, Limits, call, said_within};
+pub(crate) use call::{Call, End, Limits, call, heard_within, said_within};
+
+/// Returns the memory of this machine, bytes; if unknown, the memory of a large machine.
+pub(crate) fn memory() -> f64 {
+    let known = || {
+        let text = std::fs::read_to_string("/proc/meminfo").ok()?;
+        let total = text.lines().find_map(|line| line.strip_prefix("MemTotal:"))?;
+        Some(1024.0 * total.split_whitespace().next()?.parse::<f64>().ok()?)
+    };
+    known().unwrap_or(256e9)
+}
 
 /// Returns the peak memory of this process, bytes, since [`forget_most_memory`] or since its start; `None` if
 /// unknown.

@@ -12,6 +12,7 @@ use material::Material as _;
 
 use super::body::{self, base};
 use super::expected::{self, narrowest};
+use crate::process::memory;
 
 /// Bytes of a mesh file per node, including cells.
 const FILE_BYTES: f64 = 250.0;
@@ -90,16 +91,6 @@ fn refuse(scene: &Scene, method: &Method, size: Option<String>, factor: f64) -> 
     };
     let help = "take a coarser mesh or a shorter run, or give --force";
     Some(scene.error(ErrorKind::Invalid, &key, &problem, Some(help)))
-}
-
-/// Returns the memory of this machine, bytes; if unknown, the memory of a large machine.
-fn memory() -> f64 {
-    let known = || {
-        let text = std::fs::read_to_string("/proc/meminfo").ok()?;
-        let total = text.lines().find_map(|line| line.strip_prefix("MemTotal:"))?;
-        Some(1024.0 * total.split_whitespace().next()?.parse::<f64>().ok()?)
-    };
-    known().unwrap_or(256e9)
 }
 
 /// Returns the scene's reference method, if the reference is computed, and the size given for it.

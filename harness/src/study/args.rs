@@ -7,6 +7,7 @@ use catalogue::Dimension;
 use clap::Args;
 
 use super::filters::Filters;
+use crate::executor::Site;
 
 /// Isolation of runs from each other.
 #[derive(Args)]
@@ -21,6 +22,28 @@ pub struct ApartArgs {
     /// Memory limit of a run, such as 500MB or "2 GiB" (Linux only)
     #[arg(long, value_name = "SIZE", requires = "isolate", value_parser = bytes)]
     pub memory_limit: Option<u64>,
+}
+
+/// Execution of a study as jobs.
+#[derive(Args, Clone, Debug)]
+pub struct OnArgs {
+    /// Execute the runs as jobs: local:N (N processes of this machine), slurm or hyperqueue, with options such
+    /// as slurm:jobs=16,partition=short, or snakemake:FOLDER, whose profile says where. Stored results are kept
+    /// as with --resume
+    #[arg(long, value_name = "SYSTEM", conflicts_with_all = ["shard", "join", "jobs"])]
+    pub on: Option<Site>,
+    /// Wanted time of a job. Runs are bundled by their stored times, or by estimates
+    #[arg(long, value_name = "TIME", requires = "on", default_value = "10 min", value_parser = duration)]
+    pub job_time: Duration,
+    /// Number of times that a run is repeated if it crashes or exceeds a time limit, each time in a job of
+    /// its own
+    #[arg(long, value_name = "N", requires = "on", default_value_t = 2)]
+    pub retries: u8,
+}
+
+impl OnArgs {
+    /// Arguments of a study that runs in this process.
+    pub(super) const HERE: OnArgs = OnArgs { on: None, job_time: Duration::from_secs(600), retries: 0 };
 }
 
 /// Arguments of `verify`.
@@ -50,6 +73,9 @@ pub struct VerifyArgs {
     /// Stored results are kept as with --resume
     #[arg(long)]
     pub join: bool,
+    /// Execution as jobs.
+    #[command(flatten)]
+    pub on: OnArgs,
     /// Isolation of runs.
     #[command(flatten)]
     pub apart: ApartArgs,
@@ -94,6 +120,7 @@ impl VerifyArgs {
             jobs: 1,
             resume: false,
             join: false,
+            on: OnArgs::HERE,
             apart: ApartArgs { isolate: false, time_limit: None, memory_limit: None },
             force: true,
             out: PathBuf::new(),

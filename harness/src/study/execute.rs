@@ -4,7 +4,6 @@
 use std::any::Any;
 use std::borrow::Cow;
 use std::collections::BTreeMap;
-use std::fs::File;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -16,7 +15,7 @@ use super::isolated::Apart;
 use super::plan::StudyPlan;
 use super::progress::{Progress, Running};
 use super::samples;
-use super::store::{Accept, Store};
+use super::store::{Accept, Claim, Store};
 use super::task::{TaskResult, failed, key};
 use super::tasks::{Task, named};
 use crate::error::Failure;
@@ -43,8 +42,8 @@ pub(super) struct Work<'a> {
 enum Turn {
     /// The task has a stored result.
     Stored(Box<TaskResult>),
-    /// The task belongs to this process. No other process may run it until the file is closed.
-    Ours(Option<File>),
+    /// The task belongs to this process. No other process may run it until the claim is dropped.
+    Ours(Option<Claim>),
     /// Another process runs the task.
     Theirs,
 }
@@ -101,7 +100,7 @@ impl Work<'_> {
                     left.extend(&members[at..]);
                     break;
                 }
-                Turn::Ours(_claim) => {
+                Turn::Ours(claim) => {
                     let running = self.running(index);
                     let result = match &self.apart {
                         Some(apart) => apart.run(self.plan, index, &key),
@@ -110,6 +109,12 @@ impl Work<'_> {
                     // An interrupted run has no result.
                     if self.plan.is_stopped() {
                         return Vec::new();
+                    }
+                    if claim.as_ref().is_some_and(|claim| !claim.is_live()) {
+                        self.progress
+                            .warn("warning: the lock of a run was lost; its result is discarded".into());
+                        left.push(index);
+                        continue;
                     }
                     if let Err(bad) = self.store.save(&key, &result) {
                         self.progress.warn(format!("warning: a result could not be stored: {bad}"));

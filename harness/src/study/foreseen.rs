@@ -2,10 +2,11 @@
 //! stored times.
 
 use std::collections::BTreeMap;
+use std::path::Path;
 
 use super::args::VerifyArgs;
 use super::plan::StudyPlan;
-use super::store::Store;
+use super::store::{Cost, Machines, Store};
 use super::tasks::Task;
 use crate::scenario::{estimate, of_reference};
 
@@ -15,6 +16,8 @@ pub(super) struct Foreseen {
     seconds: Vec<f64>,
     /// Whether each task's time is a stored measurement.
     known: Vec<bool>,
+    /// Measured peak memory of each task, bytes.
+    bytes: Vec<Option<f64>>,
     /// Number of measured runs and median ratio of measured to estimated time, by scene; and the median over
     /// all scenes.
     of_scene: BTreeMap<usize, (usize, f64)>,
@@ -24,13 +27,17 @@ pub(super) struct Foreseen {
 impl StudyPlan {
     /// Expected times of the tasks, from the times stored in the folder `--times`.
     pub(super) fn foreseen(&self, args: &VerifyArgs) -> Foreseen {
+        self.foreseen_from(args, args.times.as_deref(), Machines::This)
+    }
+
+    /// Expected times of the tasks, from the times that these machines stored in a folder.
+    pub(super) fn foreseen_from(&self, args: &VerifyArgs, folder: Option<&Path>, from: Machines) -> Foreseen {
         let estimated: Vec<f64> = self.tasks.iter().map(|task| self.estimated(task, args)).collect();
-        let stored = args
-            .times
-            .as_ref()
-            .map(|folder| Store::of(&VerifyArgs { out: folder.clone(), ..VerifyArgs::of(folder) }));
-        let took = |index: usize| stored.as_ref()?.seconds(&self.key(index, args));
-        let known: Vec<Option<f64>> = (0..self.tasks.len()).map(took).collect();
+        let stored =
+            folder.map(|folder| Store::of(&VerifyArgs { out: folder.into(), ..VerifyArgs::of(folder) }));
+        let cost = |index: usize| stored.as_ref()?.cost(&self.key(index, args), from);
+        let costs: Vec<Option<Cost>> = (0..self.tasks.len()).map(cost).collect();
+        let known: Vec<Option<f64>> = costs.iter().map(|cost| Some(cost.as_ref()?.seconds)).collect();
         let ratios = || {
             let pairs = known.iter().zip(&estimated).zip(&self.tasks);
             pairs.filter_map(|((known, estimated), task)| Some((task.scene, (*known)? / estimated)))
@@ -40,7 +47,8 @@ impl StudyPlan {
         let of_scene =
             by_scene.into_iter().map(|(scene, ratios)| (scene, (ratios.len(), median(ratios)))).collect();
         let of_all = median(ratios().map(|(_, ratio)| ratio).collect());
-        let mut foreseen = Foreseen { seconds: Vec::new(), known: Vec::new(), of_scene, of_all };
+        let bytes = costs.iter().map(|cost| cost.as_ref()?.bytes).collect();
+        let mut foreseen = Foreseen { seconds: Vec::new(), known: Vec::new(), bytes, of_scene, of_all };
         let tasks = self.tasks.iter().zip(known.iter().zip(estimated));
         foreseen.seconds = tasks
             .map(|(task, (known, estimated))| {
@@ -74,6 +82,11 @@ impl Foreseen {
     /// Expected time of a task, s.
     pub(super) fn of(&self, task: usize) -> f64 {
         self.seconds[task]
+    }
+
+    /// Measured peak memory of a task, bytes.
+    pub(super) fn bytes(&self, task: usize) -> Option<f64> {
+        self.bytes[task]
     }
 
     /// Whether a task's time is a stored measurement.

@@ -68,8 +68,24 @@ impl<'a> Apart<'a> {
         Apart { args, study: args.path(), store }
     }
 
-    /// Runs a task and returns its result, or the failure that corresponds to the end of its process.
+    /// Runs a task and returns its result, or the failure that corresponds to the last end of its process. A
+    /// run whose process gave no result is repeated as often as `--retries` allows.
     pub(super) fn run(&self, plan: &StudyPlan, index: usize, key: &str) -> TaskResult {
+        let mut retries = 0..self.args.on.retries;
+        loop {
+            match self.once(plan, index, key) {
+                Err(_) if retries.next().is_some() => {}
+                Ok(result) => return result,
+                Err(failure) => {
+                    let task = &plan.tasks[index];
+                    let case = case_name(&plan.scenes[task.scene].2);
+                    return TaskResult::failed(&case, &task.method, &failure);
+                }
+            }
+        }
+    }
+
+    fn once(&self, plan: &StudyPlan, index: usize, key: &str) -> Result<TaskResult, Failure> {
         let task = &plan.tasks[index];
         let answer = self.store.answer(key);
         let _ = disk::remove(&answer);
@@ -84,12 +100,11 @@ impl<'a> Apart<'a> {
             .ok()
             .and_then(|text| serde_json::from_str(&text).ok());
         let _ = disk::remove(&answer);
-        let failure = match (ended, result) {
-            (Ok(Ended { status: Some(_), .. }), Some(result)) => return result,
-            (Ok(ended), _) => self.failure(&ended),
-            (Err(bad), _) => Failure::Run(format!("could not be started: {bad}")),
-        };
-        TaskResult::failed(&case_name(&plan.scenes[task.scene].2), &task.method, &failure)
+        match (ended, result) {
+            (Ok(Ended { status: Some(_), .. }), Some(result)) => Ok(result),
+            (Ok(ended), _) => Err(self.failure(&ended)),
+            (Err(bad), _) => Err(Failure::Run(format!("could not be started: {bad}"))),
+        }
     }
 
     fn command(

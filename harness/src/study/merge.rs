@@ -36,12 +36,29 @@ pub struct MergeArgs {
 
 /// Selection of a study's runs, without the share.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-struct Note {
-    study: PathBuf,
+pub(super) struct Note {
+    /// Study file.
+    pub(super) study: PathBuf,
     quick: bool,
     filter: Option<String>,
     #[serde(default)]
     filters: Filters,
+}
+
+impl Note {
+    /// Selection by the arguments of the study in a file.
+    pub(super) fn new(args: &VerifyArgs, study: PathBuf) -> Note {
+        Note { study, quick: args.quick, filter: args.filter.clone(), filters: args.filters.clone() }
+    }
+
+    /// Reads the study and its selected runs, whose results are in the folder `out`.
+    pub(super) fn plan(self, out: PathBuf) -> Result<(StudyPlan, VerifyArgs), Vec<SceneError>> {
+        let Note { study, quick, filter, filters } = self;
+        let mut plan = scene::load_study(&study).and_then(StudyPlan::new)?;
+        let args = VerifyArgs { quick, filter, filters, out, ..VerifyArgs::of(&study) };
+        plan.select(&args);
+        Ok((plan, args))
+    }
 }
 
 /// Reason why shares cannot be merged.
@@ -62,12 +79,12 @@ pub(crate) struct Merged {
 /// Records in a folder of results which study the results belong to.
 pub(crate) fn note(args: &VerifyArgs, study: &Path) -> Result<(), Failure> {
     let study = study.canonicalize().unwrap_or_else(|_| study.into());
-    let note = Note { study, quick: args.quick, filter: args.filter.clone(), filters: args.filters.clone() };
+    let note = Note::new(args, study);
     let text = serde_json::to_string_pretty(&note).map_err(|bad| Failure::Run(bad.to_string()))?;
     records::write_text(&args.out.join(NOTE), text + "\n").map_err(|bad| Failure::Run(bad.to_string()))
 }
 
-fn noted(share: &Path) -> Result<Note, Failure> {
+pub(super) fn noted(share: &Path) -> Result<Note, Failure> {
     let wrong = |bad: String| {
         let path = share.join(NOTE);
         Failure::Input(format!(
@@ -104,11 +121,10 @@ pub(crate) fn plan(args: &MergeArgs) -> Result<(PathBuf, StudyPlan, VerifyArgs),
         let (a, b) = (args.shares[0].display(), args.shares[at].display());
         return Err(other(Failure::Input(format!("{a} and {b} belong to different studies or selections"))));
     }
-    let Note { study, quick, filter, filters } = notes.swap_remove(0);
-    let study = args.study.clone().unwrap_or(study);
-    let mut plan = scene::load_study(&study).and_then(StudyPlan::new).map_err(Unmerged::Scenes)?;
-    let verify = VerifyArgs { quick, filter, filters, out: args.out.clone(), ..VerifyArgs::of(&study) };
-    plan.select(&verify);
+    let mut note = notes.swap_remove(0);
+    note.study = args.study.clone().unwrap_or(note.study);
+    let study = note.study.clone();
+    let (plan, verify) = note.plan(args.out.clone()).map_err(Unmerged::Scenes)?;
     Ok((study, plan, verify))
 }
 

@@ -13,6 +13,7 @@ mod fit;
 pub(crate) mod folder;
 mod foreseen;
 pub(crate) mod isolated;
+pub(crate) mod jobs;
 mod listing;
 pub(crate) mod make_reference;
 pub(crate) mod merge;

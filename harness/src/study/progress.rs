@@ -20,6 +20,8 @@ pub(crate) struct Progress<'a> {
     bar: ProgressBar,
     /// Time of the last line; `None` on a terminal, or if progress is not printed in lines.
     last_line: Option<Mutex<Instant>>,
+    /// Whether lines describe jobs, and not runs of this process.
+    has_jobs: bool,
     loudness: Loudness,
     events: Option<&'a Events>,
 }
@@ -47,12 +49,41 @@ impl<'a> Progress<'a> {
         if let Some(events) = events {
             events.begin(runs);
         }
-        Progress { bar, last_line, loudness, events }
+        Progress { bar, last_line, has_jobs: false, loudness, events }
+    }
+
+    /// Progress of a study whose runs are executed as jobs.
+    pub(crate) fn of_jobs(runs: usize, loudness: Loudness, events: Option<&'a Events>) -> Progress<'a> {
+        let progress = Progress { has_jobs: true, ..Progress::new(runs, loudness, events) };
+        let style = ProgressStyle::with_template("{bar:30} {pos}/{len} {elapsed}; {msg}");
+        progress.bar.set_style(style.expect("a valid template"));
+        progress
+    }
+
+    /// Reports all jobs in one line.
+    pub(crate) fn jobs(&self, summary: &str) {
+        self.bar.set_message(shown(summary, false).into_owned());
+        if let Some(elapsed) = self.due() {
+            let [done, all] = [self.bar.position(), self.bar.length().unwrap_or(0)];
+            eprintln!("{done} of {all} runs in {:.0} s, {summary}", elapsed.as_secs_f64());
+        }
+    }
+
+    /// Elapsed time if a line is due.
+    fn due(&self) -> Option<Duration> {
+        let mut last = self.last_line.as_ref()?.lock().expect("no worker panicked");
+        if last.elapsed() < EVERY {
+            return None;
+        }
+        *last = Instant::now();
+        Some(self.bar.elapsed())
     }
 
     /// Reports the start of a run.
     pub(crate) fn running(&self, case: String, method: String, run: usize) -> Running {
-        self.bar.set_message(shown(&format!("{case} {method}"), false).into_owned());
+        if !self.has_jobs {
+            self.bar.set_message(shown(&format!("{case} {method}"), false).into_owned());
+        }
         if let Some(events) = self.events {
             events.send(&Event::Start { case: &case, method: &method, run });
         }
@@ -80,11 +111,10 @@ impl<'a> Progress<'a> {
             };
             self.say(format!("{case} {method}: {how}"));
         }
-        let Some(last) = &self.last_line else { return };
-        let mut last = last.lock().expect("no worker panicked");
-        if last.elapsed() >= EVERY {
-            *last = Instant::now();
-            eprintln!("{}", line(self.bar.position(), self.bar.length().unwrap_or(0), self.bar.elapsed()));
+        if !self.has_jobs
+            && let Some(elapsed) = self.due()
+        {
+            eprintln!("{}", line(self.bar.position(), self.bar.length().unwrap_or(0), elapsed));
         }
     }
 

@@ -3,10 +3,12 @@
 
 use std::collections::BTreeSet;
 use std::fs::{self, File, TryLockError};
-use std::io;
+use std::hash::{BuildHasher, RandomState};
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
+use catalogue::metric;
 use disk::Kind;
 use records::{Machine, Program, RecordError};
 use serde::{Deserialize, Serialize};
@@ -55,8 +57,50 @@ pub(super) enum Accept {
     Nothing,
     /// Results of this program on this machine that did not fail.
     Finished,
+    /// Results of this program on any machine that did not fail.
+    FinishedAnywhere,
     /// All results of this program, including those of other processes that work on the study.
     All,
+    /// All results, of any build of the program.
+    AnyBuild,
+}
+
+/// Machines whose stored times count.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Machines {
+    /// This machine with this number of threads.
+    This,
+    /// Any machine.
+    Any,
+}
+
+/// Lock of a task, held until it is dropped.
+pub(super) struct Claim {
+    /// Lock, held as long as the file is open.
+    _lock: File,
+    path: PathBuf,
+    token: String,
+}
+
+impl Claim {
+    /// Whether no other process has taken the task. A network file system may drop the lock of a process that
+    /// it has not heard of for some time; the next owner writes its own token.
+    pub(super) fn is_live(&self) -> bool {
+        match disk::read_text(&self.path, Kind::MESSAGE) {
+            Ok(token) => token == self.token,
+            // Windows refuses to read a locked file.
+            Err(bad) => bad.kind() != io::ErrorKind::NotFound,
+        }
+    }
+}
+
+/// Measured cost of a run.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Cost {
+    /// Time with all repeats, s.
+    pub(super) seconds: f64,
+    /// Peak memory, bytes, if it was recorded.
+    pub(super) bytes: Option<f64>,
 }
 
 #[derive(Serialize)]
@@ -144,22 +188,26 @@ impl Store {
         let path = self.file(key);
         let Some(text) = stored(&path)? else { return Ok(None) };
         let Read { by, result } = unsealed(&path, key, &text)?;
+        let same_build = by.program == self.by.program && by.hash == self.by.hash;
         let good = match accept {
             Accept::Nothing => false,
             Accept::Finished => by == self.by && result.failure.is_none(),
-            Accept::All => by.program == self.by.program && by.hash == self.by.hash,
+            Accept::FinishedAnywhere => same_build && result.failure.is_none(),
+            Accept::All => same_build,
+            Accept::AnyBuild => true,
         };
         Ok(good.then_some(result))
     }
 
-    /// Time of the task with this key on this machine (s), from any build of the program; `None` if the task
-    /// failed.
-    pub(super) fn seconds(&self, key: &str) -> Option<f64> {
+    /// Measured cost of the task with this key, from any build of the program; `None` if the task failed.
+    pub(super) fn cost(&self, key: &str, from: Machines) -> Option<Cost> {
         let path = self.file(key);
         let Read { by, result } = unsealed(&path, key, &stored(&path).ok()??).ok()?;
-        (by.machine == self.by.machine && result.failure.is_none())
-            .then_some(result.seconds)
-            .filter(|s| *s > 0.0)
+        let known = from == Machines::Any || by.machine == self.by.machine;
+        let memory = result.records.iter().filter(|record| record.is(&metric::MEMORY));
+        let bytes = memory.map(|record| record.value).reduce(f64::max);
+        (known && result.failure.is_none() && result.seconds > 0.0)
+            .then_some(Cost { seconds: result.seconds, bytes })
     }
 
     /// Stores a result. The file is written under another name and renamed, so that an interruption leaves no
@@ -172,28 +220,44 @@ impl Store {
         records::write_text(&path, text.map_err(|bad| unwritten(bad.into()))?)
     }
 
-    /// Locks a task for this process until the returned file is closed; `None` if another process holds the
+    /// Locks a task for this process until the claim is dropped; `None` if another process holds the
     /// lock. The system releases the locks of a process that dies.
     ///
     /// # Errors
     /// Returns an error if the lock file cannot be created or locked.
-    pub(super) fn claim(&self, key: &str) -> io::Result<Option<File>> {
+    pub(super) fn claim(&self, key: &str) -> io::Result<Option<Claim>> {
         fs::create_dir_all(&self.folder)?;
-        let path = self.folder.join(format!("{key}.claim"));
-        let file = disk::create_lock(&path)?;
-        match file.try_lock() {
-            Ok(()) => Ok(Some(file)),
-            Err(TryLockError::WouldBlock) => Ok(None),
-            Err(TryLockError::Error(bad)) => Err(bad),
+        let path = self.claim_file(key);
+        let mut lock = disk::create_lock(&path)?;
+        match lock.try_lock() {
+            Ok(()) => {}
+            Err(TryLockError::WouldBlock) => return Ok(None),
+            Err(TryLockError::Error(bad)) => return Err(bad),
         }
+        let token = format!("{} {:016x}", std::process::id(), RandomState::new().hash_one(&path));
+        lock.set_len(0)?;
+        lock.write_all(token.as_bytes())?;
+        Ok(Some(Claim { _lock: lock, path, token }))
     }
 
-    /// Removes all results except finished results of this program on this machine. From then on, all results
-    /// come from processes that work on the study together. Call it only in the first of them.
-    pub(super) fn sweep(&self) {
+    /// Whether a process holds the lock of a task.
+    pub(super) fn is_claimed(&self, key: &str) -> bool {
+        let path = self.claim_file(key);
+        path.exists()
+            && disk::create_lock(&path)
+                .is_ok_and(|file| matches!(file.try_lock_shared(), Err(TryLockError::WouldBlock)))
+    }
+
+    fn claim_file(&self, key: &str) -> PathBuf {
+        self.folder.join(format!("{key}.claim"))
+    }
+
+    /// Removes all results except the accepted ones. From then on, all results come from processes that work
+    /// on the study together. Call it only in the first of them.
+    pub(super) fn sweep(&self, accept: Accept) {
         for path in files(&self.folder, &["json"]) {
             let key = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-            if !matches!(self.load(&key, Accept::Finished), Ok(Some(_))) {
+            if !matches!(self.load(&key, accept), Ok(Some(_))) {
                 let _ = disk::remove(&path);
             }
         }
@@ -244,10 +308,12 @@ pub(super) fn keep(out: &Path, key: &str, text: &str) -> Result<(), RecordError>
     records::write_text(&folder.join(format!("{key}.json")), text)
 }
 
-/// Keeps only finished results of this program on this machine. Only the first joining process calls it.
+/// Keeps only finished results of this program: those of this machine, or with `--on` those of any machine.
+/// Only the first joining process calls it.
 pub(crate) fn sweep(args: &VerifyArgs) {
     clean(&args.out);
-    Store::of(args).sweep();
+    let anywhere = args.on.on.is_some();
+    Store::of(args).sweep(if anywhere { Accept::FinishedAnywhere } else { Accept::Finished });
 }
 
 /// Removes files that killed processes left in a folder of results. Call it only if no other process uses the
@@ -343,7 +409,11 @@ mod tests {
         let store = store(dir.path(), &Program::default(), &Machine::default());
         let free = |key| store.claim(key).unwrap();
         let claim = free("key");
-        assert!(claim.is_some() && free("key").is_none() && free("other").is_some());
+        assert!(free("key").is_none() && free("other").is_some());
+        let claim = claim.unwrap();
+        assert!(claim.is_live());
+        fs::write(store.claim_file("key"), "another process").unwrap();
+        assert!(!claim.is_live());
         drop(claim);
         assert!(free("key").is_some());
     }
@@ -363,7 +433,7 @@ mod tests {
             store.load("failed", Accept::All).unwrap().is_some()
                 && store.load("failed", Accept::Finished).unwrap().is_none()
         );
-        store.sweep();
+        store.sweep(Accept::Finished);
         clean(dir.path());
         assert_eq!(files(&store.folder, &["json", "partial", "claim"]), [store.file("finished")]);
     }

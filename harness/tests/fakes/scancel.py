@@ -1,0 +1,7 @@
+#!/usr/bin/env python3
+"""Stands for scancel: `scancel ID...`."""
+import sys
+
+import places
+
+places.cancel(sys.argv[1:])
