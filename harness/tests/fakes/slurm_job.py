@@ -20,7 +20,7 @@ job = subprocess.Popen(
 began, warned, end = time.time(), False, None
 while job.poll() is None and not end:
     took = time.time() - began
-    if not warned and took > limit - float(notice):
+    if not warned and took > max(limit - float(notice), limit / 2):
         warned = True
         os.kill(job.pid, signal.SIGTERM)
     if places.is_cancelled(state):
