@@ -3,4 +3,7 @@
 mod contact;
 mod dynamics;
 mod force;
+mod frames;
+mod iterated_frames;
+mod pressed_frames;
 mod relaxation;

@@ -75,6 +75,8 @@ pub enum Hyperelastic {
     },
     /// `mu sum (l_a - 1)^2 + lambda/2 (sum l_a - 3)^2`.
     Corotational(Elastic),
+    /// `mu/2 (I1 - 3) - mu (J - 1) + (lambda + mu)/2 (J - 1)^2`.
+    StableNeoHookean(Elastic),
     /// A law of bulk modulus 0 and `kappa/2 (ln J)^2`.
     LogarithmicVolume {
         /// The law without its volumetric energy.
@@ -152,6 +154,10 @@ impl Hyperelastic {
             Hyperelastic::Corotational(e) => {
                 let sum: f64 = stretch.iter().sum();
                 stretch.map(|l| 2.0 * e.mu() * (l - 1.0) + e.lambda() * (sum - 3.0))
+            }
+            Hyperelastic::StableNeoHookean(e) => {
+                let slope = (e.lambda() + e.mu()) * (jacobian - 1.0) - e.mu();
+                nominal(&|l| e.mu() * l * l + slope * jacobian)
             }
             Hyperelastic::LogarithmicVolume { rest, bulk } => {
                 let tau = bulk * jacobian.ln();

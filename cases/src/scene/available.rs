@@ -1,7 +1,10 @@
 //! Valid requests of a scene that no solver supports yet.
 
 use catalogue::Problem;
+use geometry::CellKind;
 
+use super::condition::LoadKind;
+use super::drive::Drive;
 use super::error::{ErrorKind, SceneError};
 use super::method::{Dilation, Essential, Family};
 use super::procedure::{Precision, Procedure, ProcedureKind};
@@ -88,6 +91,63 @@ impl Scene {
                 add(&format!("{key}.prony"), "relaxation in explicit dynamics".into(), "leave it out");
             }
         }
+        if self.procedure.has_frames() {
+            self.unavailable_in_frames(&mut add);
+        }
         errors
+    }
+
+    /// Adds the parts of the scene that frames with a fixed budget of work do not support.
+    fn unavailable_in_frames(&self, add: &mut impl FnMut(&str, String, &str)) {
+        let of = |what: &str| format!("{what} in kind = \"{}\"", self.procedure.kind().name());
+        let sweeps = self.procedure.kind() != ProcedureKind::ImplicitCg;
+        for (i, method) in self.methods.iter().enumerate() {
+            let (sound, plain) = match &method.family {
+                Family::Fem(fem) => {
+                    let plain = fem.dilation == Dilation::Standard && fem.hourglass.is_none();
+                    (plain && (!sweeps || fem.element.kind() == Some(CellKind::Tet4)), plain)
+                }
+                Family::Efg(_) | Family::External(_) => (false, false),
+            };
+            if !sound && plain {
+                let help = "take element = \"tet4\": the energy of its one point depends on one node in turn";
+                add(&format!("method[{i}].element"), of("another element than tet4"), help);
+            } else if !sound {
+                let help = "take family = \"fem\", dilation = \"standard\", and no hourglass control";
+                add(&format!("method[{i}]"), of("another method than plain elements"), help);
+            }
+        }
+        for (key, material) in self.materials() {
+            if sweeps && material.name() != "stable-neo-hookean" {
+                let what = of(&format!("the law {}", material.name()));
+                add(&format!("{key}.law"), what, "take law = \"stable-neo-hookean\"");
+            }
+            if !material.prony.is_empty() {
+                add(&format!("{key}.prony"), of("relaxation"), "leave it out");
+            }
+            if material.active != 0.0 {
+                add(&format!("{key}.active"), of("active stress"), "leave it out");
+            }
+        }
+        for (i, load) in self.loads.iter().enumerate().filter(|(_, load)| !load.dead) {
+            let key = if matches!(load.kind, LoadKind::Pressure(_)) { "pressure" } else { "traction" };
+            let what = of("a load on the deformed surface");
+            add(&format!("load[{i}].{key}"), what, "add dead = true for a load on the undeformed surface");
+        }
+        for i in 0..self.foundations.len() {
+            add(&format!("foundation[{i}]"), of("springs and dampers on a surface"), "leave them out");
+        }
+        for key in self.staged() {
+            add(&key, of("a support of a part of the loading"), "leave during out");
+        }
+        for (i, tool) in self.tools.iter().enumerate() {
+            if !matches!(tool.drive, Drive::Closure(_)) {
+                let help = "give drive = { closure = ... }";
+                add(&format!("tool[{i}].drive"), of("a tool driven by a force"), help);
+            }
+            if tool.friction.is_some() {
+                add(&format!("tool[{i}].friction"), of("friction"), "leave it out");
+            }
+        }
     }
 }

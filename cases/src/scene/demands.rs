@@ -176,18 +176,19 @@ fn met(needs: Needs, scene: &Scene) -> (bool, &'static str) {
         Needs::Axis => (false, "is a metric of a [run.axis] of a study; check the metric there"),
         Needs::Reference | Needs::Levels => (compared, "needs a [reference] in the scene"),
         Needs::Probes => (compared && probed, "needs a [reference] and output.probes in the scene"),
-        Needs::Steps => (
-            stepped,
-            "needs [procedure] kind = \"static\", \"explicit\" or \"implicit-dynamic\" in the scene",
-        ),
+        Needs::Steps => (stepped, "needs [procedure] kind = \"static\" or dynamics in the scene"),
         Needs::Dynamics => {
-            (moves, "needs [procedure] kind = \"explicit\" or \"implicit-dynamic\" in the scene")
+            (moves, "needs a [procedure] of dynamics, such as kind = \"explicit\", in the scene")
         }
         Needs::Explicit => {
             (kind == ProcedureKind::Explicit, "needs [procedure] kind = \"explicit\" in the scene")
         }
+        Needs::Frames => (
+            scene.procedure.has_frames(),
+            "needs [procedure] kind = \"vbd\", \"xpbd\" or \"implicit-cg\" in the scene",
+        ),
         Needs::Newton => (
-            stepped && kind != ProcedureKind::Explicit,
+            matches!(kind, ProcedureKind::Static | ProcedureKind::ImplicitDynamic),
             "needs [procedure] kind = \"static\" or \"implicit-dynamic\" in the scene",
         ),
         Needs::Modes => (vibrates, "needs [procedure] kind = \"modes\" in the scene"),

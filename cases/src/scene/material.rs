@@ -338,6 +338,7 @@ fn hyperelastic(law: &Law, elastic: Elastic) -> Option<Hyperelastic> {
             Some(Hyperelastic::Hyperfoam { terms: law.terms().to_vec(), kappa: law.kappa() })
         }
         Law::Corotational(_) => Some(Hyperelastic::Corotational(elastic)),
+        Law::StableNeoHookean(_) => Some(Hyperelastic::StableNeoHookean(elastic)),
         // Hencky's law takes its moduli from those of the whole law, so the volumetric part can't be taken
         // off.
         Law::WithVolumetric(law) if !matches!(law.rest(), Law::Hencky(_)) => {

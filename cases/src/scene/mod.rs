@@ -26,6 +26,7 @@ mod field;
 mod fit;
 mod fitted;
 mod foundation;
+mod frames;
 mod goal;
 mod limits;
 mod load;
@@ -36,6 +37,7 @@ mod method;
 mod output;
 mod procedure;
 mod purpose;
+mod ramp;
 mod reference;
 mod region;
 mod report;
@@ -70,6 +72,7 @@ pub use expression::{Expression, NotFinite};
 pub use field::{ScalarField, VectorField};
 pub use fit::{Fit, FitCheck, FitStatistic, FittedKey};
 pub use foundation::Foundation;
+pub use frames::{ImplicitCg, Swept};
 pub use goal::Goal;
 pub use load::{load, load_with, parse, parse_with, schema};
 pub use material::{Directions, Material, MaterialRegion, Relaxation, medium};
@@ -82,9 +85,10 @@ pub use method::{
 };
 pub use output::{Enclosed, Output, Repeated, Stretch, Target, Transfer};
 pub use procedure::{
-    Explicit, Implicit, LinearSolver, Newton, OnStall, Precision, Procedure, ProcedureKind, Ramp, Static,
+    Explicit, Implicit, LinearSolver, Newton, OnStall, Precision, Procedure, ProcedureKind, Static,
 };
 pub use purpose::{Publication, Purpose};
+pub use ramp::Ramp;
 pub use reference::Reference;
 pub use region::{Comparison, Region, Relation};
 pub use scene::Scene;

@@ -4,9 +4,11 @@ use catalogue::Problem;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
+use super::frames::{ImplicitCg, ImplicitCgKeys, Swept, SweptKeys, implicit_cg, swept};
+use super::ramp::{Ramp, RampKeys, sound_steps};
 use super::report::Report;
 use super::table::{Key, table};
-use super::units::{Length, Q, Rate, Time};
+use super::units::{Length, Q, Time};
 use super::words::words;
 
 words! {
@@ -24,6 +26,12 @@ words! {
         Explicit = "explicit",
         /// Implicit dynamics.
         ImplicitDynamic = "implicit-dynamic",
+        /// Vertex block descent.
+        Vbd = "vbd",
+        /// Extended position-based dynamics.
+        Xpbd = "xpbd",
+        /// Implicit Euler by conjugate gradients.
+        ImplicitCg = "implicit-cg",
     }
 }
 
@@ -114,6 +122,12 @@ pub(crate) enum ProcedureKeys {
     Explicit(ExplicitKeys),
     /// Implicit dynamics: generalised-alpha
     ImplicitDynamic(ImplicitKeys),
+    /// Vertex block descent: implicit Euler with a fixed number of sweeps in each frame
+    Vbd(SweptKeys),
+    /// Extended position-based dynamics: constraints relaxed by a fixed number of sweeps in each frame
+    Xpbd(SweptKeys),
+    /// Implicit Euler, linearised once in each frame, with a limited number of conjugate-gradient iterations
+    ImplicitCg(ImplicitCgKeys),
 }
 
 /// Procedure of a scene with its settings. In a static procedure, loads, prescribed displacements and tool
@@ -140,6 +154,12 @@ pub enum Procedure {
     Explicit(Explicit),
     /// Implicit dynamics.
     ImplicitDynamic(Implicit),
+    /// Vertex block descent.
+    Vbd(Swept),
+    /// Extended position-based dynamics.
+    Xpbd(Swept),
+    /// Implicit Euler by conjugate gradients.
+    ImplicitCg(ImplicitCg),
 }
 
 impl Procedure {
@@ -152,14 +172,23 @@ impl Procedure {
             Procedure::Static(_) => ProcedureKind::Static,
             Procedure::Explicit(_) => ProcedureKind::Explicit,
             Procedure::ImplicitDynamic(_) => ProcedureKind::ImplicitDynamic,
+            Procedure::Vbd(_) => ProcedureKind::Vbd,
+            Procedure::Xpbd(_) => ProcedureKind::Xpbd,
+            Procedure::ImplicitCg(_) => ProcedureKind::ImplicitCg,
         }
+    }
+
+    /// Whether the procedure advances frames with a fixed budget of work.
+    pub fn has_frames(&self) -> bool {
+        matches!(self, Procedure::Vbd(_) | Procedure::Xpbd(_) | Procedure::ImplicitCg(_))
     }
 
     /// Whether masses are accelerated: in vibrations, and in dynamics except with `inertia = false`.
     pub(crate) fn has_inertia(&self) -> bool {
         match self {
-            Procedure::Modes { .. } | Procedure::Explicit(_) => true,
+            Procedure::Modes { .. } | Procedure::Explicit(_) | Procedure::ImplicitCg(_) => true,
             Procedure::ImplicitDynamic(implicit) => implicit.inertia,
+            Procedure::Vbd(swept) | Procedure::Xpbd(swept) => swept.inertia,
             Procedure::Prepare | Procedure::Linear { .. } | Procedure::Static(_) => false,
         }
     }
@@ -169,6 +198,8 @@ impl Procedure {
         match self {
             Procedure::Explicit(explicit) => Some(explicit.ramp),
             Procedure::ImplicitDynamic(implicit) => Some(implicit.ramp),
+            Procedure::Vbd(swept) | Procedure::Xpbd(swept) => Some(swept.ramp),
+            Procedure::ImplicitCg(asked) => Some(asked.ramp),
             _ => None,
         }
     }
@@ -211,36 +242,6 @@ table! {
 impl Newton {
     /// Settings of a file without these keys.
     pub const STANDARD: Newton = Newton { tolerance: 1e-8, iterations: 25, augmentations: 0 };
-}
-
-table! {
-    /// The time axis of dynamics
-    pub struct Ramp from RampKeys {
-        /// End of the time axis
-        duration: f64 as Q<Time>,
-        /// Time over which loads and supports grow before they are constant; the duration unless given. "0 s"
-        /// applies them at once
-        over: Option<f64> as Option<Q<Time>>,
-        /// Equal intervals of time at whose ends results are reported; 1 unless given
-        steps: usize as u32 = 1,
-        /// Mass-proportional damping, in explicit dynamics also of tools that have a mass; none unless given
-        damping: f64 as Q<Rate> = 0.0,
-        /// Stiffness-proportional damping: the factor of the current tangent of the internal forces; none unless
-        /// given
-        stiffness_damping: f64 as Q<Time> = 0.0,
-    }
-}
-
-impl Ramp {
-    /// Whether the motion is damped.
-    pub fn damps(&self) -> bool {
-        self.damping > 0.0 || self.stiffness_damping > 0.0
-    }
-
-    /// Time in seconds over which loads and supports grow.
-    pub fn growth(&self) -> f64 {
-        self.over.unwrap_or(self.duration)
-    }
 }
 
 table! {
@@ -291,10 +292,6 @@ const SPECTRAL_RADIUS: f64 = 0.8;
 /// and is heavy enough for the time steps of a soft body.
 const TOOL_MASS: f64 = 0.1;
 
-/// Largest number of steps. Each step is solved, reported and stored, so a larger number is taken for a
-/// mistake.
-const MOST_STEPS: usize = 100_000;
-
 /// Largest number of iterations: a step that has not converged by then will not converge.
 const MOST_ITERATIONS: usize = 10_000;
 
@@ -324,6 +321,9 @@ impl Procedure {
             ProcedureKeys::Static(keys) => Procedure::Static(load_steps(keys, report)),
             ProcedureKeys::Explicit(keys) => Procedure::Explicit(explicit(keys, report)),
             ProcedureKeys::ImplicitDynamic(keys) => Procedure::ImplicitDynamic(implicit(keys, tools, report)),
+            ProcedureKeys::Vbd(keys) => Procedure::Vbd(swept(keys, false, report)),
+            ProcedureKeys::Xpbd(keys) => Procedure::Xpbd(swept(keys, true, report)),
+            ProcedureKeys::ImplicitCg(keys) => Procedure::ImplicitCg(implicit_cg(keys, report)),
         }
     }
 }
@@ -331,12 +331,6 @@ impl Procedure {
 /// Checks the number of steps, which is ignored by procedures without steps.
 fn check_steps(steps: Option<u32>, report: &Report) {
     sound_steps(steps.map_or(1, |n| n as usize), report);
-}
-
-fn sound_steps(steps: usize, report: &Report) {
-    report.require(steps > 0, "steps", "is zero", "give 1 or more");
-    let help = format!("give {MOST_STEPS} or less");
-    report.require(steps <= MOST_STEPS, "steps", "are too many", &help);
 }
 
 fn load_steps(keys: StaticKeys, report: &Report) -> Static {
@@ -359,19 +353,6 @@ impl Newton {
             let help = format!("give {MOST_ITERATIONS} or less");
             report.require(count <= MOST_ITERATIONS, key, "are too many", &help);
         }
-    }
-}
-
-impl Ramp {
-    fn check(&self, report: &Report) {
-        sound_steps(self.steps, report);
-        report.positive("duration", self.duration);
-        let help = "give \"0 s\" for at once, or leave it out";
-        report.require(self.over.is_none_or(|t| t >= 0.0), "over", "is negative", help);
-        let help = "give 0 /s or more, or leave it out";
-        report.require(self.damping >= 0.0, "damping", "is negative", help);
-        let help = "give \"0 s\" or more, or leave it out";
-        report.require(self.stiffness_damping >= 0.0, "stiffness_damping", "is negative", help);
     }
 }
 

@@ -73,7 +73,7 @@ fn no_two_scenes_write_out_the_same_method() {
 #[test]
 fn kinds_of_procedures_have_the_names_of_their_keys() {
     use tissuebench_cases::scene::ProcedureKind::{
-        self, Explicit, ImplicitDynamic, Linear, Modes, Prepare, Static,
+        self, Explicit, ImplicitCg, ImplicitDynamic, Linear, Modes, Prepare, Static, Vbd, Xpbd,
     };
     let schema = tissuebench_cases::scene::schema();
     let forms = &schema["properties"]["procedure"]["anyOf"][0]["oneOf"];
@@ -83,5 +83,6 @@ fn kinds_of_procedures_have_the_names_of_their_keys() {
         .iter()
         .map(|form| form["properties"]["kind"]["const"].as_str().unwrap())
         .collect();
-    assert_eq!(words, [Prepare, Linear, Modes, Static, Explicit, ImplicitDynamic].map(ProcedureKind::name));
+    let kinds = [Prepare, Linear, Modes, Static, Explicit, ImplicitDynamic, Vbd, Xpbd, ImplicitCg];
+    assert_eq!(words, kinds.map(ProcedureKind::name));
 }

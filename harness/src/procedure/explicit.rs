@@ -68,7 +68,7 @@ fn motion(problem: &Problem, asked: &Explicit, counters: &mut Counters) -> Resul
     let kernel = force.info();
     counters.mass_nodes += mass.len() as u64;
 
-    let loading = Loading::new(problem, asked)?;
+    let loading = Loading::new(problem, &asked.ramp)?;
     let mut load = |t: f64, u: &[Vector3], v: &[Vector3], f: &mut [Vector3]| {
         for (curve, forces) in &loading.loads {
             let part = curve.value(t);

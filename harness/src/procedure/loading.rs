@@ -1,8 +1,8 @@
-//! Loads and prescribed displacements of explicit dynamics over time.
+//! Loads and prescribed displacements of explicit dynamics and of frames over time.
 
 use std::collections::BTreeMap;
 
-use cases::scene::Explicit;
+use cases::scene::Ramp;
 use geometry::Vector3;
 use shape::Curve;
 use statics::{Curves, nodal_forces_by_curve};
@@ -52,9 +52,9 @@ impl Loading<'_> {
         setup.active.iter().enumerate().map(|(k, full)| full * curves.of(k).value(time)).collect()
     }
 
-    pub(super) fn new<'a>(problem: &Problem<'a>, asked: &Explicit) -> Result<Loading<'a>, Failure> {
+    pub(super) fn new<'a>(problem: &Problem<'a>, ramp: &Ramp) -> Result<Loading<'a>, Failure> {
         let Problem { prepared, .. } = *problem;
-        let over = asked.ramp.growth();
+        let over = ramp.growth();
         let growth = if over > 0.0 { Curve::growth(over) } else { Curve::at_once() };
         let curves = prepared.curves(Curves::all(growth));
         let loads = nodal_forces_by_curve(&prepared.volume.rows, &prepared.loads(), &curves.loads)?;

@@ -2,6 +2,7 @@
 
 mod explicit;
 pub(crate) mod external;
+mod frames;
 mod implicit_dynamic;
 mod linear;
 mod linear_solver;
@@ -20,6 +21,7 @@ use cases::scene::Procedure;
 
 use crate::error::Failure;
 use crate::outcome::timing::Meters;
+use frames::Sweeps;
 
 pub(crate) use plan::{Schemes, Wanted, conclude, plan};
 pub(crate) use problem::Problem;
@@ -58,5 +60,11 @@ pub(crate) fn solve(problem: &Problem, meters: &mut Meters) -> Result<Solution, 
         Procedure::Static(asked) => statics::solve(problem, asked, meters),
         Procedure::Explicit(asked) => explicit::solve(problem, asked, meters),
         Procedure::ImplicitDynamic(asked) => implicit_dynamic::solve(problem, asked, meters),
+        Procedure::Vbd(asked) => frames::solve(problem, asked, Sweeps::VertexDescent, meters),
+        Procedure::Xpbd(asked) => frames::solve(problem, asked, Sweeps::Constraints, meters),
+        Procedure::ImplicitCg(asked) => {
+            let kind = Sweeps::ConjugateGradients { tolerance: asked.tolerance };
+            frames::solve(problem, &asked.frames(), kind, meters)
+        }
     }
 }

@@ -2,9 +2,10 @@
 
 use cases::scene::{ConstraintRows, Dilation, Goal, Procedure};
 
+use super::frames::Sweeps;
 use super::solution::Solution;
 use super::stages::Stages;
-use super::{explicit, external, implicit_dynamic, linear, modes, statics};
+use super::{explicit, external, frames, implicit_dynamic, linear, modes, statics};
 use crate::discretise::enriched::NEARLY_INCOMPRESSIBLE;
 use crate::discretise::{Adapt, Discretisation, Essential};
 use crate::outcome::{Counters, Plan, StageName};
@@ -111,6 +112,12 @@ fn stages_of(method: &Discretisation, setup: &Setup) -> Stages {
         Procedure::Static(asked) => statics::stages(method, setup, asked),
         Procedure::Explicit(asked) => explicit::stages(setup, asked),
         Procedure::ImplicitDynamic(asked) => implicit_dynamic::stages(setup, asked),
+        Procedure::Vbd(asked) => frames::stages(setup, asked, Sweeps::VertexDescent),
+        Procedure::Xpbd(asked) => frames::stages(setup, asked, Sweeps::Constraints),
+        Procedure::ImplicitCg(asked) => {
+            let kind = Sweeps::ConjugateGradients { tolerance: asked.tolerance };
+            frames::stages(setup, &asked.frames(), kind)
+        }
     }
 }
 

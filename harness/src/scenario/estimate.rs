@@ -24,6 +24,8 @@ const CLOUD: f64 = 8.0;
 /// step.
 const FACTOR: f64 = 1e-7;
 const EXPLICIT: f64 = 1e-7;
+/// Time, s, per node and sweep of vertex block descent.
+const SWEEP: f64 = 2e-6;
 /// Longest run that is accepted, s, and most explicit steps; another check refuses more steps.
 const MOST_SECONDS: f64 = 12.0 * 3600.0;
 const MOST_STEPS: f64 = 1e7;
@@ -84,7 +86,13 @@ fn refuse(scene: &Scene, method: &Method, size: Option<String>, factor: f64) -> 
     let at = scene.methods.iter().position(|other| other.id == method.id).unwrap_or_default();
     let key = match &scene.procedure {
         Procedure::Static(_) if found.steps > 1e3 => "procedure.steps".into(),
-        Procedure::Explicit(_) | Procedure::ImplicitDynamic(_) if found.steps > 1e3 => {
+        Procedure::Explicit(_)
+        | Procedure::ImplicitDynamic(_)
+        | Procedure::Vbd(_)
+        | Procedure::Xpbd(_)
+        | Procedure::ImplicitCg(_)
+            if found.steps > 1e3 =>
+        {
             "procedure.duration".into()
         }
         _ => size.unwrap_or_else(|| format!("method[{at}].size")),
@@ -117,8 +125,15 @@ pub fn estimate(scene: &Scene, family: &Family) -> Estimate {
     let (bytes, seconds) = match &scene.procedure {
         Procedure::Prepare => (1e3 * nodes, 1e-5 * nodes),
         Procedure::Explicit(_) => (1e3 * nodes, EXPLICIT * nodes * steps),
+        Procedure::Vbd(swept) | Procedure::Xpbd(swept) => {
+            (3e3 * nodes, SWEEP * nodes * steps * swept.sweeps as f64)
+        }
         // Multigrid is used above a few tens of thousands of unknowns; its memory is proportional to their
         // number.
+        Procedure::ImplicitCg(asked) => {
+            let iterations = steps * asked.iterations as f64;
+            (6e3 * nodes, SWEEP * nodes * iterations)
+        }
         Procedure::Linear { .. } => (factor(unknowns).min(4e3 * unknowns), solve),
         Procedure::Modes { .. } => (factor(unknowns), 10.0 * solve),
         Procedure::Static(_) | Procedure::ImplicitDynamic(_) => {
@@ -198,6 +213,8 @@ fn steps(scene: &Scene, across: f64) -> f64 {
         Procedure::Prepare | Procedure::Linear { .. } | Procedure::Modes { .. } => 1.0,
         Procedure::Static(path) => path.steps as f64,
         Procedure::ImplicitDynamic(implicit) => implicit.ramp.steps as f64,
+        Procedure::ImplicitCg(asked) => (asked.frames().time_steps().1 * asked.ramp.steps) as f64,
+        Procedure::Vbd(swept) | Procedure::Xpbd(swept) => (swept.time_steps().1 * swept.ramp.steps) as f64,
         Procedure::Explicit(explicit) => {
             let law = scene.material.law();
             let density = scene.material.density.unwrap_or(1e3);

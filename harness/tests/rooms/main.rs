@@ -89,6 +89,8 @@ const SCENE: House<'_> = House {
         "field",
         "body",
         "procedure",
+        "frames",
+        "ramp",
         "selection",
         "mesh_file",
         "purpose",
@@ -207,7 +209,7 @@ fn an_arrow_back_would_be_seen() {
     assert_eq!(used("use super::{Method, common::{Size, Mass}};"), [20, 29].into());
     assert_eq!(
         used("use crate::exact::Exact; use crate::scene::{tool::Tool, words::words};"),
-        [31, 56].into()
+        [31, 58].into()
     );
 }
 

@@ -38,6 +38,26 @@ pub enum ExplicitError {
     /// Forces in single precision were requested for a body that only other kernels evaluate.
     #[error("no kernel in single precision evaluates this element with this dilation and law")]
     NoSinglePrecision,
+    /// Sweeps were requested for another table than that of linear tetrahedra.
+    #[error("is for tetrahedra with four nodes and standard dilation only")]
+    NotTetrahedra,
+    /// Conjugate gradients were requested for a body with a projection of the dilation or hourglass control.
+    #[error("is for standard dilation without hourglass control only")]
+    NotStandard,
+    /// Sweeps were requested for another law than the stable neo-Hookean one.
+    #[error("region {region} has the law {law}; sweeps are for stable-neo-hookean only")]
+    OtherLaw {
+        /// The region.
+        region: usize,
+        /// Name of the law.
+        law: &'static str,
+    },
+    /// Sweeps were requested with a tool that has friction.
+    #[error("tool {tool} has friction, which sweeps do not support")]
+    Friction {
+        /// Index of the tool.
+        tool: usize,
+    },
     /// A parameter is out of its range.
     #[error("{what} is {value}; it must be {allowed}")]
     BadParameter {

@@ -24,7 +24,7 @@ pub fn deviator(P: &Matrix3, H: &Matrix3) -> Matrix3 {
 ///
 /// with the elastic stress `P0` of the law. The tangent is symmetric for laws in which `p` depends on `J`
 /// alone and unsymmetric for the others: Saint Venant-Kirchhoff, compressible neo-Hookean, Blatz-Ko,
-/// hyperfoam and corotational.
+/// hyperfoam, corotational and stable neo-Hookean.
 pub fn relaxed_stress_and_tangent(
     law: &impl Material,
     H: &Matrix3,

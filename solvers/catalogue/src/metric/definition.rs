@@ -84,6 +84,8 @@ pub enum Needs {
     Dynamics,
     /// Explicit dynamics.
     Explicit,
+    /// Frames with a fixed budget of work.
+    Frames,
     /// An axis of a study.
     Axis,
     /// A tool.

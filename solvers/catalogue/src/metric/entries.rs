@@ -257,6 +257,10 @@ metrics! {
         "number of time steps";
     TIME_REACHED: "time-reached", "time reached", Time, Value, Dynamics,
         "time up to which the motion was computed";
+    SWEEPS: "sweeps", "sweeps", None, Count, Frames,
+        "number of sweeps over the body in all time steps";
+    SWEEP_RESIDUAL: "sweep-residual", "relative residual after the sweeps", None, Error, Frames,
+        "largest out-of-balance force that the sweeps of the last time step left, divided by the largest force";
     CRITICAL_STEP: "critical-step", "critical time step", Time, Value, Explicit,
         "smallest estimated critical time step; for vibrations, 2 / omega of the highest mode";
     STEP_ERROR: "step-error", "error of a time step", Length, Error, Dynamics,

@@ -181,6 +181,7 @@ laws! {
     blatz_ko::BlatzKo,
     hyperfoam::Hyperfoam,
     corotational::Corotational,
+    stable_neo_hookean::StableNeoHookean,
     guccione::Guccione,
     holzapfel_ogden::HolzapfelOgden,
     holzapfel_gasser_ogden::HolzapfelGasserOgden,
