@@ -40,14 +40,8 @@ impl Scene {
             let help = "take \"double\", or finite elements only: tet4, hex8, tet10 or hex20";
             add("procedure.precision", "precision = \"single\" with clouds".into(), help);
         }
-        let ramp = |tool: &Tool| tool.over.or(self.procedure.duration());
-        let mut ramped = self.tools.iter().enumerate().filter(|(_, tool)| implicit && tool.curve.is_none());
-        if let Some((_, first)) = ramped.next() {
-            for (i, _) in ramped.filter(|(_, tool)| ramp(tool) != ramp(first)) {
-                let help = "give all tools the same, or take kind = \"explicit\"";
-                let what = "a ramp other than the first tool's in implicit dynamics".into();
-                add(&format!("tool[{i}].drive.over"), what, help);
-            }
+        if implicit {
+            self.unavailable_ramps(&mut add);
         }
         for (i, method) in self.methods.iter().enumerate() {
             let at = |key: &str| format!("method[{i}].{key}");
@@ -95,6 +89,19 @@ impl Scene {
             self.unavailable_in_frames(&mut add);
         }
         errors
+    }
+
+    /// Adds the ramps of tools that differ from the first tool's, in implicit dynamics.
+    fn unavailable_ramps(&self, add: &mut impl FnMut(&str, String, &str)) {
+        let ramp = |tool: &Tool| tool.over.or(self.procedure.duration());
+        let mut ramped = self.tools.iter().enumerate().filter(|(_, tool)| tool.curve.is_none());
+        if let Some((_, first)) = ramped.next() {
+            for (i, _) in ramped.filter(|(_, tool)| ramp(tool) != ramp(first)) {
+                let help = "give all tools the same, or take kind = \"explicit\"";
+                let what = "a ramp other than the first tool's in implicit dynamics".into();
+                add(&format!("tool[{i}].drive.over"), what, help);
+            }
+        }
     }
 
     /// Adds the parts of the scene that frames with a fixed budget of work do not support.
