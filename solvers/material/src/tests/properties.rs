@@ -180,7 +180,8 @@ fn beyond_inversion_the_laws_with_a_logarithm_are_not_finite() {
     let H = Matrix3::from_diagonal(&Vector3::new(-2.5, 0.1, 0.2));
     for law in nonlinear(0.3) {
         let finite = law.energy(&H).is_finite() || law.stress(&H).iter().any(|p| p.is_finite());
-        assert_eq!(finite, law.name() == "saint-venant-kirchhoff", "{}", law.name());
+        let polynomial = ["saint-venant-kirchhoff", "stable-neo-hookean"].contains(&law.name());
+        assert_eq!(finite, polynomial, "{}", law.name());
     }
 }
 
