@@ -75,7 +75,7 @@ fn an_influence_is_the_difference_of_solutions() {
         assert_eq!(path.steps.len(), 1);
         let pushed = -path.steps.last().unwrap().tools[0].force.dot(&along);
         let moved: f64 = path.u.iter().zip(&weights).map(|(u, w)| u.dot(w)).sum();
-        // That of the start: the path has one step.
+        // The direction at the start: the path has one step.
         let mut history = ContactHistory::new(&tool, surface.rows().weights().len());
         history.commit_all(None, &surface, &tool, 0.0, &vec![Vector3::zeros(); nodes]);
         let history = [history];
