@@ -10,6 +10,7 @@ use rayon::prelude::*;
 
 use shape::Vector3;
 
+use super::lists::Lists;
 use super::scalar::{Scalar, Slot};
 
 /// Nodes per task of the sum over copies.
@@ -35,20 +36,8 @@ impl Border {
         for chunk in chunks {
             offsets.push(offsets.last().unwrap() + chunk.len());
         }
-        let mut copy_offsets = vec![0u32; node_count + 1];
-        for &node in &nodes {
-            copy_offsets[node as usize + 1] += 1;
-        }
-        for i in 0..node_count {
-            copy_offsets[i + 1] += copy_offsets[i];
-        }
-        let mut next = copy_offsets.clone();
-        let mut copies = vec![0; nodes.len()];
-        for (slot, &node) in nodes.iter().enumerate() {
-            let at = &mut next[node as usize];
-            copies[*at as usize] = slot as u32;
-            *at += 1;
-        }
+        let slots = nodes.iter().zip(0u32..).map(|(&node, slot)| (node, slot));
+        let Lists { offsets: copy_offsets, items: copies } = Lists::new(node_count, slots);
         Border { offsets, nodes, copy_offsets, copies }
     }
 

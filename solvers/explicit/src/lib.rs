@@ -38,6 +38,7 @@ mod error;
 mod force;
 mod frames;
 mod kernel;
+mod lists;
 mod mass;
 mod moduli;
 mod motion;

@@ -1,34 +1,5 @@
 //! Groups of items that can be processed at the same time.
 
-/// Lists by number, in compressed rows.
-pub(super) struct Lists {
-    offsets: Vec<u32>,
-    items: Vec<u32>,
-}
-
-impl Lists {
-    /// Turns pairs of a list's number, below `count`, and an item into lists; each keeps the order of its
-    /// pairs.
-    pub fn new(count: usize, pairs: impl Iterator<Item = (u32, u32)> + Clone) -> Lists {
-        let mut offsets = vec![0u32; count + 1];
-        pairs.clone().for_each(|(list, _)| offsets[list as usize + 1] += 1);
-        for k in 0..count {
-            offsets[k + 1] += offsets[k];
-        }
-        let (mut next, mut items) = (offsets.clone(), vec![0; offsets[count] as usize]);
-        for (list, item) in pairs {
-            items[next[list as usize] as usize] = item;
-            next[list as usize] += 1;
-        }
-        Lists { offsets, items }
-    }
-
-    /// Items of a list.
-    pub fn of(&self, list: usize) -> &[u32] {
-        &self.items[self.offsets[list] as usize..self.offsets[list + 1] as usize]
-    }
-}
-
 /// Distributes items over colours so that neighbours have different ones: each item in turn takes the first
 /// colour that none of its neighbours has. Returns the items of each colour, ascending.
 pub(super) fn colours(count: usize, mut neighbours: impl FnMut(u32, &mut dyn FnMut(u32))) -> Vec<Vec<u32>> {

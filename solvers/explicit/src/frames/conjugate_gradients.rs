@@ -4,12 +4,12 @@
 use material::{Material as _, Tangent};
 use shape::{Matrix3, Vector3};
 
-use super::colours::Lists;
 use super::equations::{Equations, Sweeper};
 use super::parallel::fill;
 use super::touch::Spring;
 use crate::body::ExplicitBody;
 use crate::error::ExplicitError;
+use crate::lists::Lists;
 
 /// Points or nodes per task.
 const CHUNK: usize = 256;

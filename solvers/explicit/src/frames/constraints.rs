@@ -2,10 +2,11 @@
 
 use shape::Vector3;
 
-use super::colours::{Lists, colours};
+use super::colours::colours;
 use super::equations::{Equations, Sweeper};
 use super::parallel::fill;
 use super::tetrahedra::{Tetrahedron, cofactor};
+use crate::lists::Lists;
 
 /// Tetrahedra per task.
 const CHUNK: usize = 128;

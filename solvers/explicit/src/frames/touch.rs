@@ -3,8 +3,8 @@
 use contact::{ContactCounts, ContactError, ContactHistory, ContactSurface, Pose, Stand, Tool, ToolState};
 use shape::{Matrix3, Point3, Vector3};
 
-use super::colours::Lists;
 use crate::error::ExplicitError;
+use crate::lists::Lists;
 
 /// Tool without friction, with a prescribed displacement.
 pub struct FrameTool<'a> {
