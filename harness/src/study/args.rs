@@ -36,14 +36,19 @@ pub struct OnArgs {
     #[arg(long, value_name = "TIME", requires = "on", default_value = "10 min", value_parser = duration)]
     pub job_time: Duration,
     /// Number of times that a run is repeated if it crashes or exceeds a time limit, each time in a job of
-    /// its own
-    #[arg(long, value_name = "N", requires = "on", default_value_t = 2)]
-    pub retries: u8,
+    /// its own (default: 2)
+    #[arg(long, value_name = "N", requires = "on")]
+    pub retries: Option<u8>,
 }
 
 impl OnArgs {
     /// Arguments of a study that runs in this process.
-    pub(super) const HERE: OnArgs = OnArgs { on: None, job_time: Duration::from_secs(600), retries: 0 };
+    pub(super) const HERE: OnArgs = OnArgs { on: None, job_time: Duration::from_secs(600), retries: None };
+
+    /// Repetitions of a run of a job.
+    pub(super) fn retries(&self) -> u8 {
+        self.retries.unwrap_or(2)
+    }
 }
 
 /// Arguments of `verify`.

@@ -69,9 +69,9 @@ impl<'a> Apart<'a> {
     }
 
     /// Runs a task and returns its result, or the failure that corresponds to the last end of its process. A
-    /// run whose process gave no result is repeated as often as `--retries` allows.
+    /// run of a job whose process gave no result is repeated as often as `--retries` allows.
     pub(super) fn run(&self, plan: &StudyPlan, index: usize, key: &str) -> TaskResult {
-        let mut retries = 0..self.args.on.retries;
+        let mut retries = 0..self.args.on.retries.unwrap_or(0);
         loop {
             match self.once(plan, index, key) {
                 Err(_) if retries.next().is_some() => {}

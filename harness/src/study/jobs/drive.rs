@@ -194,7 +194,7 @@ impl Drive<'_> {
             isolate: apart.isolate,
             time_limit: apart.time_limit,
             memory_limit: apart.memory_limit,
-            retries: self.args.on.retries,
+            retries: self.args.on.retries(),
         }
     }
 
@@ -319,7 +319,7 @@ impl Drive<'_> {
     fn is_last_attempt(&mut self, run: usize) -> bool {
         let attempts = self.attempts.entry(run).or_default();
         *attempts += 1;
-        *attempts > self.args.on.retries
+        *attempts > self.args.on.retries()
     }
 
     /// Records the failure of a run, unless another process has it.

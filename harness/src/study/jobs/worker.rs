@@ -59,7 +59,7 @@ fn planned(bundle: Bundle, out: PathBuf) -> Result<(StudyPlan, VerifyArgs), Fail
         .retain(|_| index.next().is_some_and(|index| runs.binary_search_by_key(&index, |r| r.index).is_ok()));
     verify.join = true;
     verify.quiet = true;
-    verify.on.retries = retries;
+    verify.on.retries = Some(retries);
     verify.apart = ApartArgs { isolate, time_limit, memory_limit };
     Ok((plan, verify))
 }
