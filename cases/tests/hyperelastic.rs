@@ -224,6 +224,19 @@ fn a_pressure_beyond_the_limit_point_has_no_equilibrium() {
 }
 
 #[test]
+fn a_wall_that_collapses_under_the_pressure_is_refused() {
+    // The radial stress of Saint-Venant and Kirchhoff's law has a maximum under compression: this sphere carries
+    // 3.66 kPa, and its equations have other, spurious roots above it.
+    let law = Hyperelastic::SaintVenantKirchhoff(Elastic::new(30e3, 0.3).unwrap());
+    let at = |pressure: f64| Inflation::new(&law, true, [0.01, 0.02], pressure);
+    let moved = at(3500.0).unwrap().radius(0.01) - 0.01;
+    assert!((1.26e-3..1.29e-3).contains(&moved), "{moved}");
+    for pressure in [3700.0, 4000.0, 6000.0] {
+        assert!(at(pressure).unwrap_err().to_string().contains("below the "), "{pressure}");
+    }
+}
+
+#[test]
 fn a_pressed_strip_bends_as_a_beam_and_then_curls() {
     let strip = |pressure: f64| PressedStrip { young: 1e6, length: 0.1, thickness: 0.004, pressure };
     let bending = 1e6 * 0.004f64.powi(3) / 12.0;

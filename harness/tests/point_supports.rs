@@ -62,6 +62,8 @@ const DECK: &str = "*NODE
 1, 4
 *NSET, NSET=foot
 1, 4, 7, 10, 3
+*NSET, NSET=end
+3, 9
 ";
 
 fn of_file(file: &str, element: &str, supports: &str) -> String {
@@ -102,6 +104,36 @@ fn sets_of_nodes_of_files_hold_a_bar_without_force() {
             }
         }
     }
+}
+
+#[test]
+fn a_force_on_a_set_of_nodes_is_spread_evenly_over_them() {
+    let held = "{ where = \"x == 0 mm\", fix = \"xyz\" }";
+    let at = |load: &str| {
+        let dir = tempfile::tempdir().unwrap();
+        write(&dir, "bar.inp", DECK);
+        let text = of_file("bar.inp", "hex8", held)
+            .lines()
+            .filter(|line| !line.starts_with("load"))
+            .fold(String::new(), |text, line| text + line + "\n");
+        let scene = write(&dir, "scene.toml", &format!("{text}load = [{load}]\n"));
+        tissuebench(&["run", &scene, "--once", "--format", "json"])
+    };
+    let probe = |load: &str| {
+        let done = at(load);
+        assert_eq!(done.code, 0, "{}", done.stderr);
+        objects(&done.stdout)[0]["metrics"]["probe-z"]["value"].as_f64().unwrap()
+    };
+    // The nodes of `end` are those at x = 20 mm, y = 0.
+    let set = probe("{ on = \"end\", force = [\"0 N\", \"0 N\", \"2 mN\"] }");
+    let points = "at = [[\"20 mm\", \"0 mm\", \"0 mm\"], [\"20 mm\", \"0 mm\", \"10 mm\"]]";
+    let points = probe(&format!("{{ {points}, force = [\"0 N\", \"0 N\", \"1 mN\"] }}"));
+    assert!(set > 0.0 && (set - points).abs() < 1e-12 * points, "{set} {points}");
+    assert_fails(
+        &at("{ on = \"end\", traction = [\"0 kPa\", \"0 kPa\", \"1 kPa\"] }"),
+        2,
+        "names 'end', a set of nodes without faces; name a surface; only a force acts on the nodes of a set",
+    );
 }
 
 #[test]

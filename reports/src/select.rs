@@ -58,6 +58,19 @@ impl<'a> Run<'a> {
         }
     }
 
+    /// Rates of the loop in real time, frames per second, in the order of the scene.
+    pub(crate) fn rates(&self) -> Vec<u64> {
+        let mut rates = Vec::new();
+        for record in self.records() {
+            if let Some(Ok(rate)) = record.phase.strip_prefix("loop-").map(str::parse)
+                && !rates.contains(&rate)
+            {
+                rates.push(rate);
+            }
+        }
+        rates
+    }
+
     /// Wall time of the first pass, s, if it was discarded because it used its memory for the first time.
     pub(crate) fn first_use(&self) -> Option<f64> {
         self.timed(&metric::TIME, "first-use", "value")

@@ -37,7 +37,7 @@ impl FiniteBending {
     ///
     /// # Errors
     ///
-    /// Values outside of `0 < k h <= 1`.
+    /// Values outside of `0 < k h <= 1`, and a bend that the law can't carry.
     pub fn new(law: &Hyperelastic, thickness: f64, curvature: f64) -> Result<FiniteBending, ExactError> {
         let bend = thickness * curvature;
         if !(thickness > 0.0 && thickness.is_finite() && bend > 0.0 && bend <= 1.0) {
@@ -59,9 +59,17 @@ impl FiniteBending {
         };
         for _ in 0..60 {
             let middle = 0.5 * (low + high);
-            if shoot(middle).1 < 0.0 { low = middle } else { high = middle }
+            if shoot(middle).is_none_or(|(_, pressed)| pressed < 0.0) { low = middle } else { high = middle }
         }
-        Ok(FiniteBending { law: law.clone(), curvature, wall: shoot(0.5 * (low + high)).0 })
+        match shoot(0.5 * (low + high)) {
+            Some((wall, _)) => Ok(FiniteBending { law: law.clone(), curvature, wall }),
+            None => Err(ExactError::BadParameter {
+                solution: ENTRY.name,
+                name: "curvature",
+                value: curvature,
+                need: "so small that the law can carry the stress at the inner face".into(),
+            }),
+        }
     }
 
     /// Deformed radius of the fibre at `X`, m.

@@ -29,6 +29,8 @@ use super::vectors::{Matrix3, Point3, Vector3};
 /// Ratios of the deformed to the undeformed inner radius that are searched for the equilibrium.
 const STRETCHES: std::ops::Range<u32> = 0..300;
 const STRETCH: f64 = 0.01;
+/// Largest stress at the free outer wall, relative to the pressure.
+const BALANCED: f64 = 1e-6;
 
 /// An inflated sphere about the origin, or a tube about the z axis.
 #[derive(Clone, Debug, PartialEq)]
@@ -44,7 +46,8 @@ impl Inflation {
     ///
     /// # Errors
     ///
-    /// Radii out of order, or a pressure that is not positive or exceeds the limit point.
+    /// Radii out of order, or a pressure that is not positive, exceeds the limit point, or compresses the wall
+    /// more than the law can carry.
     pub fn new(
         law: &Hyperelastic,
         sphere: bool,
@@ -73,7 +76,7 @@ impl Inflation {
         let mut bracket = None;
         for step in STRETCHES {
             let low = 1.0 + STRETCH * f64::from(step);
-            if shoot(low + STRETCH).1 >= 0.0 {
+            if shoot(low + STRETCH).is_some_and(|(_, pressed)| pressed >= 0.0) {
                 bracket = Some([low, low + STRETCH]);
                 break;
             }
@@ -83,9 +86,13 @@ impl Inflation {
         };
         for _ in 0..50 {
             let middle = 0.5 * (low + high);
-            if shoot(middle).1 < 0.0 { low = middle } else { high = middle }
+            if shoot(middle).is_none_or(|(_, pressed)| pressed < 0.0) { low = middle } else { high = middle }
         }
-        Ok(Inflation { law: law.clone(), sphere, wall: shoot(0.5 * (low + high)).0 })
+        let balanced = shoot(0.5 * (low + high)).filter(|(_, left)| left.abs() < BALANCED * pressure);
+        match balanced {
+            Some((wall, _)) => Ok(Inflation { law: law.clone(), sphere, wall }),
+            None => bad("pressure", pressure, "below the largest that the law can carry across the wall".into()),
+        }
     }
 
     /// Deformed radius of the undeformed radius (m), m.

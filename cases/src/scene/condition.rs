@@ -108,7 +108,8 @@ pub(crate) struct LoadKeys {
     /// Whether a pressure acts along the normals and on the areas of the undeformed surface; false unless given.
     /// With a traction: whether it is per area of the undeformed surface; true unless given
     dead: Option<bool>,
-    /// Force as a vector: at each point of 'at', or in total, evenly on the faces of 'on' or 'where'
+    /// Force as a vector: at each point of 'at', or in total, evenly on the faces of 'on' or 'where' or on the
+    /// nodes of sets of the mesh file
     force: Option<[Q<Force>; 3]>,
     /// Points of the body at which a force acts: [["5 mm", "0 mm", "0 mm"]]
     at: Option<Vec<[Q<Length>; 3]>>,
@@ -171,7 +172,8 @@ pub enum LoadKind {
     Pressure(ScalarField),
     /// Force per volume, in newtons per cubic metre.
     Body(VectorField),
-    /// Force on the loaded part of the surface in total, evenly per undeformed area, in newtons.
+    /// Force on the loaded part of the surface in total, evenly per undeformed area, in newtons; on a set of
+    /// nodes, evenly per node.
     Force([f64; 3]),
     /// Force at each of some points of the body.
     Points {

@@ -1,5 +1,6 @@
 //! Curves of a scene: factors of loads, motions, drives and active stress over time.
 
+use std::cell::Cell;
 use std::sync::Arc;
 
 use catalogue::Problem;
@@ -38,7 +39,7 @@ pub struct NamedCurve {
 }
 
 impl CurveKeys {
-    pub fn read(self, report: &Report) -> Option<NamedCurve> {
+    fn read(self, report: &Report) -> Option<NamedCurve> {
         let CurveKeys { name, part, time, factor, smooth } = self;
         let (key, times) = match (part, time) {
             (Some(part), None) => ("part", part),
@@ -71,6 +72,22 @@ impl CurveKeys {
             }
         }
     }
+}
+
+/// Reads the curves of a scene, and returns whether all are sound. A curve that is not has a constant factor, so
+/// that conditions can name it.
+pub(crate) fn curves(keys: Vec<CurveKeys>, report: &Report) -> (Vec<NamedCurve>, bool) {
+    let sound = Cell::new(true);
+    let read = |keys: CurveKeys, report: &Report| {
+        let (name, in_time) = (keys.name.clone(), keys.time.is_some());
+        let constant = || {
+            sound.set(false);
+            NamedCurve { name, curve: Arc::new(Curve::at_once()), in_time }
+        };
+        Some(keys.read(report).unwrap_or_else(constant))
+    };
+    let curves = report.each("curve", keys, read);
+    (curves, sound.get())
 }
 
 /// Returns the curve that a key names.

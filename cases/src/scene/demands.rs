@@ -39,6 +39,9 @@ pub(crate) fn scene(scene: &Scene, report: &Report) {
     let regions = scene.regions.iter().map(|region| region.name.as_str());
     scene.output.check_regions(std::iter::once("body").chain(regions), &report.at("output"));
     scene.output.demands(kind, reference, &report.at("output"));
+    if let Some(real_time) = &scene.real_time {
+        real_time.demands(scene, &report.at("loop"));
+    }
     if scene.output.bounds {
         bounds(scene, report);
     }
@@ -187,6 +190,12 @@ fn met(needs: Needs, scene: &Scene) -> (bool, &'static str) {
             scene.procedure.has_frames(),
             "needs [procedure] kind = \"vbd\", \"xpbd\" or \"implicit-cg\" in the scene",
         ),
+        Needs::ToolLoop => {
+            (touched && scene.real_time.is_some(), "needs a [[tool]] and a [loop] in the scene")
+        }
+        Needs::PointLoop => {
+            (probed && scene.real_time.is_some(), "needs output.probes and a [loop] in the scene")
+        }
         Needs::Newton => (
             matches!(kind, ProcedureKind::Static | ProcedureKind::ImplicitDynamic),
             "needs [procedure] kind = \"static\" or \"implicit-dynamic\" in the scene",
@@ -372,6 +381,9 @@ fn numbered(needs: Needs, scene: &Scene) -> (usize, &'static str) {
         Needs::Stretch => (scene.output.stretches.len(), "entry of output.stretches"),
         Needs::RegionEnergy => (scene.output.energies.len(), "region in output.energies"),
         Needs::Enclosed => (scene.output.volumes.len(), "surface in output.volumes"),
+        Needs::ToolLoop | Needs::PointLoop => {
+            (scene.real_time.as_ref().map_or(0, |of| of.rates.len()), "rate in loop.rates")
+        }
         _ => (scene.tools.len(), "tool"),
     }
 }

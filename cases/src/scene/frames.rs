@@ -77,6 +77,12 @@ impl Swept {
         report.require(sound, "damping", "is of a motion, and inertia = false has none", "leave it out");
     }
 
+    /// The same budget in each of `count` frames of equal length, with a result after each.
+    pub fn in_frames(&self, count: usize) -> Swept {
+        let frame = self.ramp.duration / count as f64;
+        Swept { ramp: Ramp { steps: count, ..self.ramp }, frame, ..*self }
+    }
+
     /// Length of a time step up to the next result (s), and the number of time steps up to it.
     pub fn time_steps(&self) -> (f64, usize) {
         let interval = self.ramp.duration / self.ramp.steps as f64;

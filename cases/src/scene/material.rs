@@ -38,7 +38,7 @@ struct BesideLaw {
     #[serde(default)]
     prony: Vec<PronyKeys>,
     /// Direction of the fibres in the undeformed body, of any length: [1, 0, 0], expressions in x, y and z
-    /// (metres) such as ["-y", "x", "0"], or a rule; for laws that depend on directions
+    /// (metres) such as ["-y", "x", "0"], or a rule; for laws that depend on directions, and for active
     fibers: Option<DirectionKeys>,
     /// Active stress of contracting muscle along the fibres, which grows with the loading or along active_curve: the second
     /// Piola-Kirchhoff stress T f x f beside the passive law; none unless given
@@ -163,10 +163,11 @@ impl MaterialKeys {
         let volumetric = self.beside.volumetric.map(VolumetricForm::from);
         let law = with_volumetric(law, volumetric).map_err(|bad| report.add("volumetric", bad)).ok()?;
         let given = [("fibers", self.beside.fibers), ("sheets", self.beside.sheets)];
-        let directions = directions(&law, given, report);
         let active = self.beside.active.map_or(0.0, |active| active.0);
-        let help = "take a law with fibres, such as law = \"guccione\"";
-        report.require(active == 0.0 || law.has_axes(), "active", "has no fibre to act along", help);
+        let directions = directions(&law, active != 0.0, given, report);
+        let help = "take a law of large strain, such as law = \"neo-hookean\"";
+        let sound = active == 0.0 || !law.is_small_strain();
+        report.require(sound, "active", "turns with the fibre, and the law does not", help);
         let active_curve = named(self.beside.active_curve.as_ref(), curves, "active_curve", report);
         let help = "give active = \"60 kPa\", the stress at the factor 1";
         report.require(active != 0.0 || active_curve.is_none(), "active_curve", "has no active stress", help);
@@ -184,13 +185,20 @@ fn with_volumetric(law: Law, form: Option<VolumetricForm>) -> Result<Law, Proble
     })
 }
 
-/// Checks that directions are given for a law that depends on them, and for no other.
-fn directions(law: &Law, given: [(&str, Option<DirectionKeys>); 2], report: &Report) -> Option<Directions> {
-    if !law.has_axes() {
-        for (key, given) in &given {
-            let problem = format!("has no effect: the law {} is the same in all directions", law.name());
-            report.require(given.is_none(), key, &problem, "leave it out, or take a law with fibres");
-        }
+/// Checks that directions are given for a law that depends on them and for an active stress, and for no
+/// other.
+fn directions(
+    law: &Law,
+    contracts: bool,
+    given: [(&str, Option<DirectionKeys>); 2],
+    report: &Report,
+) -> Option<Directions> {
+    let used = [contracts || law.has_axes(), law.has_axes()];
+    for ((key, given), used) in given.iter().zip(used) {
+        let problem = format!("has no effect: the law {} is the same in all directions", law.name());
+        report.require(used || given.is_none(), key, &problem, "leave it out, or take a law with fibres");
+    }
+    if !used[0] {
         return None;
     }
     let [fibers, sheets] = given.map(|(key, keys)| keys.map(|keys| keys.read(key, report)));

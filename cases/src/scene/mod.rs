@@ -38,6 +38,7 @@ mod output;
 mod procedure;
 mod purpose;
 mod ramp;
+mod real_time;
 mod reference;
 mod region;
 mod report;
@@ -89,6 +90,7 @@ pub use procedure::{
 };
 pub use purpose::{Publication, Purpose};
 pub use ramp::Ramp;
+pub use real_time::RealTime;
 pub use reference::Reference;
 pub use region::{Comparison, Region, Relation};
 pub use scene::Scene;

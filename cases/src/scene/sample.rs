@@ -15,7 +15,7 @@ use super::vary::Vary;
 /// Name of the samples where runs are named by the setting in which they differ.
 const SAMPLE: &str = "sample";
 /// Requests for output that a sample does not need, with the metrics that need them.
-const LEFT_OUT: [(&str, &[Needs]); 6] = [
+const LEFT_OUT: [(&str, &[Needs]); 7] = [
     (
         "output.estimate",
         &[
@@ -31,6 +31,7 @@ const LEFT_OUT: [(&str, &[Needs]); 6] = [
     ("output.beside", &[Needs::Transfer]),
     ("output.pictures", &[]),
     ("output.repeated", &[]),
+    ("loop", &[]),
 ];
 
 impl Scene {

@@ -11,7 +11,7 @@ use shape::Curve;
 use super::body::{Body, BodyKeys};
 use super::check::{Check, CheckKeys};
 use super::condition::{Load, LoadKeys, Support, SupportKeys};
-use super::curve::{CurveKeys, NamedCurve};
+use super::curve::{CurveKeys, NamedCurve, curves};
 use super::document::Origin;
 use super::error::{ErrorKind, SceneError};
 use super::fit::{Fit, FitKeys};
@@ -21,6 +21,7 @@ use super::method::{Method, MethodKeys};
 use super::output::{Output, OutputKeys};
 use super::procedure::{Procedure, ProcedureKeys};
 use super::purpose::{Publication, Purpose};
+use super::real_time::{RealTime, RealTimeKeys};
 use super::reference::{Reference, ReferenceKeys};
 use super::report::Report;
 use super::tool::{Tool, ToolKeys};
@@ -61,6 +62,8 @@ pub(crate) struct SceneKeys {
     #[serde(default)]
     method: Vec<MethodKeys>,
     output: Option<OutputKeys>,
+    #[serde(rename = "loop")]
+    real_time: Option<RealTimeKeys>,
     reference: Option<ReferenceKeys>,
     #[serde(default)]
     check: Vec<CheckKeys>,
@@ -101,6 +104,8 @@ pub struct Scene {
     pub methods: Vec<Method>,
     /// Requested output.
     pub output: Output,
+    /// Simulator's loop in real time.
+    pub real_time: Option<RealTime>,
     /// Reference that results are compared with.
     pub reference: Option<Reference>,
     /// Bounds on the results.
@@ -142,14 +147,15 @@ impl Scene {
         self.methods.iter().find(|method| method.id == id)
     }
 
-    /// Whether the body moves: by a load, a tool, or a support with a prescribed displacement other than
-    /// zero. Also true for free vibrations and for scenes that only prepare, which need no load.
+    /// Whether the body moves: by a load, a tool, an active stress, or a support with a prescribed
+    /// displacement other than zero. Also true for free vibrations and for scenes that only prepare, which need no load.
     pub fn is_moved(&self) -> bool {
         let unsolved = matches!(self.procedure, Procedure::Modes { .. } | Procedure::Prepare);
         unsolved
             || !self.loads.is_empty()
             || !self.tools.is_empty()
             || self.supports.iter().any(Support::moves)
+            || self.materials().any(|(_, material)| material.active != 0.0)
     }
 
     /// Key and curve of every condition that has one.
@@ -198,8 +204,7 @@ impl SceneKeys {
         let sound = !self.title.trim().is_empty();
         report.require(sound, "title", "is empty", "describe the scene in one line");
         let body = self.body.read(&report.at("body"));
-        let given = self.curve.len();
-        let curves = report.each("curve", self.curve, CurveKeys::read);
+        let (curves, sound_curves) = curves(self.curve, report);
         let material = self.material.read(&curves, &report.at("material"));
         let count = self.region.len();
         let region = |keys: RegionKeys, report: &Report| keys.read(&curves, report);
@@ -211,12 +216,13 @@ impl SceneKeys {
         let tools = report.each("tool", self.tool, |keys, report| keys.read(body.as_ref(), &curves, report));
         let methods = report.each("method", self.method, MethodKeys::read);
         let output = self.output.unwrap_or_default().read(&report.at("output"));
+        let real_time = self.real_time.map(|keys| keys.read(&report.at("loop")));
         let reference = self.reference.and_then(|keys| keys.read(&report.at("reference")));
         let checks = report.each("check", self.check, CheckKeys::read);
         let vary = self.vary.map(|keys| keys.read(&report.at("vary")));
         let fit = self.fit.and_then(|keys| keys.read(&report.at("fit")));
         let (body, material) = (body?, material?);
-        (regions.len() == count && curves.len() == given).then(|| Scene {
+        (regions.len() == count && sound_curves).then(|| Scene {
             title: self.title,
             source: self.source,
             purpose: self.purpose.unwrap_or(Purpose::Smooth),
@@ -232,6 +238,7 @@ impl SceneKeys {
             procedure,
             methods,
             output,
+            real_time,
             reference,
             checks,
             vary,
@@ -273,7 +280,7 @@ impl SoundParts {
     /// Reports errors in these parts, so that an error in one part does not hide errors in another.
     pub fn check(self, report: &Report) {
         let body = self.body.and_then(|keys| keys.read(&report.at("body")));
-        let curves = report.each("curve", self.curve, CurveKeys::read);
+        let (curves, _) = curves(self.curve, report);
         self.material.map(|keys| keys.read(&curves, &report.at("material")));
         conditions(body.as_ref(), &curves, self.support, self.load, report);
     }

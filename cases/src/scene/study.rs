@@ -168,7 +168,7 @@ pub(crate) struct RunKeys {
     /// Whether the run belongs to the quick tier
     #[serde(default)]
     pub quick: bool,
-    /// Whether the quick tier also runs the scene's loops (`output.repeated`), which it omits otherwise
+    /// Whether the quick tier also runs the scene's loops (`loop` and `output.repeated`), which it omits otherwise
     #[serde(default)]
     pub loops: bool,
     /// Words by which the run can be selected (`tissuebench verify --tag WORD`) or left out (`--not WORD`)

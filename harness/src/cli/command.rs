@@ -14,6 +14,7 @@ use super::ci::CiArgs;
 use super::fit::FitArgs;
 use super::history::HistoryAction;
 use super::init::InitArgs;
+use super::paced::LoopArgs;
 use super::pick::PickArgs;
 use super::solve::SolveArgs;
 use super::vary::VaryArgs;
@@ -78,6 +79,12 @@ pub enum Command {
     /// wrong. Exit code 0: done; 1: the reference of the scene lies outside; 2: the scene has no bounds, with
     /// the reason.
     Bound(BoundArgs),
+    /// Play a scene in real time with each method, and print how many frames miss their deadline and how far off
+    /// they are
+    ///
+    /// The scene has `[loop]` with the rates of its frames. The scene is solved as written first. Exit code 0:
+    /// done, whether or not frames are in time; 3: a method could not run.
+    Loop(LoopArgs),
     /// Run methods of a scene and write every recorded state of the body, as .vtu files and a .pvd series for
     /// ParaView
     Fields(FieldsArgs),

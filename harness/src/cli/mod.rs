@@ -23,6 +23,7 @@ mod like;
 mod list;
 mod merge;
 mod mesh;
+mod paced;
 mod pick;
 mod plan;
 mod reference;
@@ -110,6 +111,7 @@ fn act(cli: Cli) -> u8 {
         Command::Run(args) => run(&args),
         Command::Pick(args) => pick::pick(&args),
         Command::Bound(args) => bound(&args),
+        Command::Loop(args) => paced::played(&args),
         Command::Fields(args) => fields::run(&args),
         Command::Plan { scene, force } => plan(&scene, force),
         Command::Verify { runs, ci } => verify(&runs, &ci, cli.threads),

@@ -184,8 +184,18 @@ pub fn places(outcomes: &[Outcome]) -> String {
     section(&mut text, &["displacement of a point [mm]", "point", "at", "x", "y", "z"], probes.collect());
     for (numbers, head, scale) in [
         (
+            metric::POSITION.components().to_vec(),
+            &["position of a point [mm]", "point", "x", "y", "z"][..],
+            1e3,
+        ),
+        (
+            metric::PROBE_STRESS.tensor().to_vec(),
+            &["stress of a point [kPa]", "point", "xx", "yy", "zz", "xy", "yz", "zx"],
+            1e-3,
+        ),
+        (
             metric::REACTION_MOMENT.components().to_vec(),
-            &["moment of a support [N mm]", "support", "x", "y", "z"][..],
+            &["moment of a support [N mm]", "support", "x", "y", "z"],
             1e3,
         ),
         (

@@ -159,9 +159,12 @@ impl Volume {
         region_at(&self.region, q)
     }
 
-    /// Returns the law at a point, of those of the regions.
-    pub fn law<'a>(&'a self, laws: &'a [Law], q: usize) -> AtPoint<'a> {
-        AtPoint::new(&laws[self.region(q)], self.axes.get(q))
+    /// Returns the law at a point, of those of the regions, with the active stress of its region (Pa); none if
+    /// `active` is empty.
+    pub fn law<'a>(&'a self, laws: &'a [Law], active: &[f64], q: usize) -> AtPoint<'a> {
+        let region = self.region(q);
+        let law = AtPoint::new(&laws[region], self.axes.get(q));
+        active.get(region).map_or(law, |active| law.contracting(*active))
     }
 }
 

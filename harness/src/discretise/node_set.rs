@@ -74,6 +74,14 @@ pub(crate) fn known(key: &str, place: &Place, mesh: &Mesh) -> Result<Vec<u32>, F
     }
 }
 
+/// Returns the sorted nodes of a place that names only sets of nodes without faces; `None` for other places.
+pub(crate) fn alone(place: &Place, mesh: &Mesh) -> Option<Vec<u32>> {
+    let Place::On(names) = place else { return None };
+    let set = |name: &String| mesh.node_group(name).filter(|_| mesh.group(name).is_none());
+    let sets: Option<Vec<&[u32]>> = names.iter().map(set).collect();
+    sets.map(|sets| sorted(sets.concat())).filter(|nodes| !nodes.is_empty())
+}
+
 /// Refuses names without faces for a load or a mean at `key`.
 ///
 /// # Errors
@@ -83,7 +91,7 @@ pub(crate) fn refuse(key: &str, place: &Place, mesh: &Mesh) -> Result<(), Failur
     let bare = |name: &&String| mesh.group(name).is_none() && mesh.node_group(name).is_some();
     let Some(name) = names.iter().find(bare) else { return Ok(()) };
     let problem = format!("names '{name}', a set of nodes without faces");
-    let help = "name a surface; a force acts at points: at = [[\"0 mm\", \"0 mm\", \"0 mm\"]]";
+    let help = "name a surface; only a force acts on the nodes of a set";
     Err(Failure::input(place::key(place, key), problem, help))
 }
 

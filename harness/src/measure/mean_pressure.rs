@@ -20,9 +20,14 @@ pub fn cauchy(law: &impl Material, h: &Matrix3) -> Matrix3 {
 
 /// Mean pressure at every quadrature point of a volume, Pa, positive in compression. `gradients` are the
 /// displacement gradients (3, 3) at the points. `parameters` (Pa, tension positive) are those of the method's
-/// pressure field, if it has one.
-pub fn at_points(laws: &[Law], volume: &Volume, gradients: &[Matrix3], parameters: &[f64]) -> Vec<f64> {
-    let law = |q: usize| volume.law(laws, q);
+/// pressure field, if it has one; `active` is the active stress by region, Pa.
+pub fn at_points(
+    (laws, active): (&[Law], &[f64]),
+    volume: &Volume,
+    gradients: &[Matrix3],
+    parameters: &[f64],
+) -> Vec<f64> {
+    let law = |q: usize| volume.law(laws, active, q);
     if let Some(rows) = &volume.pressure {
         let at = |q| {
             let (nodes, values) = rows.row(q);

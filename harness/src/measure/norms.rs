@@ -96,7 +96,7 @@ fn energy(run: &Solved, fine: &VolumeRows, fine_region: &[u16], exact: &dyn Exac
     let (rows, region) = if own { (&volume.rows, &volume.region[..]) } else { (fine, fine_region) };
     let law = |q: usize| &setup.materials[region_at(region, q)];
     let stress = match own {
-        true => own_stress(run, &solution.u, &solution.pressure),
+        true => own_stress(run, &solution.u, &solution.pressure, solution.time()),
         false => {
             let gradients = fine.at().displacement_gradients(&solution.u);
             gradients.iter().enumerate().map(|(q, h)| law(q).stress(h)).collect()

@@ -89,7 +89,9 @@ fn section(tool: &PlacedTool, run: &Solved, of_mesh: &[Vector3]) -> Option<Secti
     let normal = right.cross(&up);
     let from = tool.tool.place(0.0);
     let gradients = prepared.volume.rows.at().displacement_gradients(&solution.u);
-    let pressure = mean_pressure::at_points(&setup.laws, &prepared.volume, &gradients, &solution.pressure);
+    let active = prepared.active(setup, solution.time());
+    let pressure =
+        mean_pressure::at_points((&setup.laws, &active), &prepared.volume, &gradients, &solution.pressure);
     let side: Vec<f64> = mesh.points().iter().map(|x| normal.dot(&(x - from))).collect();
     let cells = (0..mesh.cell_count()).filter_map(|cell| {
         let corners = cut(mesh, cell, &side, of_mesh, (&right, &up))?;

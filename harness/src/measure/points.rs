@@ -94,11 +94,6 @@ pub(crate) fn points(outcome: &mut Outcome, run: &Solved, probes: &[Point3]) -> 
         metrics
     };
     let mut metrics = of_probes(&outcome.probes);
-    for (index, probe) in outcome.probes.iter().enumerate() {
-        for (axis, of) in metric::POSITION.components().into_iter().enumerate() {
-            push(&mut metrics, of.at(index), probe.x[axis] + probe.u[axis]);
-        }
-    }
     metrics.extend(others(&run.solution.u));
     if let Some(about) = about {
         let supports: Vec<Resultant> = outcome.supports.iter().map(|support| support.resultant).collect();
@@ -109,7 +104,8 @@ pub(crate) fn points(outcome: &mut Outcome, run: &Solved, probes: &[Point3]) -> 
     if run.solution.history.is_some() {
         for (step, state) in outcome.steps.iter_mut().zip(recorded(run, usize::MAX)) {
             let recovered = state.parameters.filter(|_| !probes.is_empty());
-            let recovered = recovered.and_then(|parameters| Recovered::new(run, state.u, parameters));
+            let recovered =
+                recovered.and_then(|parameters| Recovered::new(run, state.u, parameters, state.time));
             step.points.extend(of_probes(&probes.at(state.u, recovered.as_ref())));
             step.points.extend(others(state.u));
             if let Some(about) = about {
@@ -160,7 +156,7 @@ fn moments(about: &Point3, tools: &[ToolStep], supports: &[Resultant]) -> Vec<Me
     metrics
 }
 
-/// Displacement and stress of each probe.
+/// Displacement, position and stress of each probe.
 fn of_probes(probes: &[Probe]) -> Vec<Metric> {
     let mut metrics = Vec::new();
     for (index, probe) in probes.iter().enumerate() {
@@ -168,6 +164,9 @@ fn of_probes(probes: &[Probe]) -> Vec<Metric> {
             push(&mut metrics, of.at(index), probe.u[axis]);
         }
         push(&mut metrics, metric::PROBE.at(index), probe.u.norm());
+        for (axis, of) in metric::POSITION.components().into_iter().enumerate() {
+            push(&mut metrics, of.at(index), probe.x[axis] + probe.u[axis]);
+        }
         let Some(stress) = probe.stress else { continue };
         for (of, value) in metric::PROBE_STRESS.tensor().into_iter().zip(Probe::components(&stress)) {
             push(&mut metrics, of.at(index), value);

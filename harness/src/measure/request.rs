@@ -1,6 +1,6 @@
 //! Requested outputs and comparisons of a run, and the reference.
 
-use cases::scene::Repeated;
+use cases::scene::{RealTime, Repeated};
 use geometry::{Point3, Vector3};
 use interp::Scheme;
 
@@ -92,6 +92,8 @@ pub(crate) struct Request<'a> {
     pub(crate) integrated: Option<&'a Reference>,
     /// Simulator's loop after the first solution, if the loop is to run.
     pub(crate) repeated: Option<&'a Repeated>,
+    /// Loop in real time after the first solution, if it is to run.
+    pub(crate) real_time: Option<&'a RealTime>,
     /// Observer of the run.
     pub(crate) watch: Option<&'a Watch>,
 }
@@ -110,6 +112,7 @@ impl<'a> Request<'a> {
             beside: None,
             integrated: None,
             repeated: None,
+            real_time: None,
             watch: None,
         }
     }

@@ -14,7 +14,7 @@ use crate::scenario::PlacedTool;
 /// A recorded state of a run.
 pub(super) struct Recorded<'a> {
     /// Time (s) in dynamics, fraction of the load in statics, 1 for a linear solution, or number of a mode.
-    time: f64,
+    pub(super) time: f64,
     /// Nodal parameters, m.
     pub(super) u: &'a [Vector3],
     /// Parameters of a pressure field, Pa; `None` if the stress is unknown.
@@ -88,7 +88,7 @@ pub(crate) fn states(run: &Solved, most: usize) -> Result<States, Failure> {
             tensors: cells
                 .as_ref()
                 .zip(parameters)
-                .map(|(cells, parameters)| tensors(run, cells, u, parameters)),
+                .map(|(cells, parameters)| tensors(run, cells, u, parameters, time)),
             touching: tools()
                 .flat_map(|(tool, closure)| contact.iter().flat_map(|at| at.within(tool, *closure, u)))
                 .collect(),
@@ -141,9 +141,9 @@ fn skin(set: &PlacedTool, mesh: &Mesh) -> ToolSkin {
     }
 }
 
-fn tensors(run: &Solved, cells: &Averages, u: &[Vector3], parameters: &[f64]) -> Tensors {
+fn tensors(run: &Solved, cells: &Averages, u: &[Vector3], parameters: &[f64], time: f64) -> Tensors {
     let gradients = run.prepared.volume.rows.at().displacement_gradients(u);
-    let of_points = own_stress(run, u, parameters);
+    let of_points = own_stress(run, u, parameters, time);
     let j: Vec<f64> = gradients.iter().map(|h| (Matrix3::identity() + h).determinant()).collect();
     Tensors {
         stress: cells.of(|q| of_points[q]),

@@ -127,7 +127,7 @@ fn values(
     rows: Option<&PointRows>,
 ) -> Option<Values> {
     let mesh = run.method.mesh();
-    let recovered = Recovered::new(run, at.u, at.parameters?)?;
+    let recovered = Recovered::new(run, at.u, at.parameters?, at.time)?;
     let j = at_points(mesh, points, &state.tensors.as_ref()?.det_f);
     let value = |(&(node, region), j): (&(u32, u16), f32)| {
         let x = &mesh.points()[node as usize];

@@ -15,6 +15,7 @@ use crate::adapter;
 use crate::discretise::{Essential, place};
 use crate::error::Failure;
 use crate::outcome::{LoadStep, Metric, Probe, Warning};
+use crate::scenario::setup::Applied;
 
 /// Smallest stress jump that is reported, relative to the norm of the stress. In cases with an exact solution
 /// the jump is 0.5 to 0.95 of the energy error if a mesh is fine enough for its order, and at least 0.2 if
@@ -68,6 +69,7 @@ pub(crate) fn warnings(
     found.extend(probes.iter().enumerate().filter_map(|(index, probe)| outside(index, probe)));
     found.extend(blended(run));
     found.extend(few_points(run));
+    found.extend(point_force(run)?);
     found.extend(unbalanced(run));
     found.extend(another_problem(run));
     let value = |entry: &metric::Metric| metrics.iter().find(|m| m.of.metric == entry).map(|m| m.value);
@@ -145,6 +147,27 @@ fn few_points(run: &Solved) -> Option<Warning> {
         );
         Warning::new(&warning::FEW_POINTS, each, "", message)
     })
+}
+
+/// Smoothing by one point on each face takes the mean gradient of cells. At a corner of a block, under a force
+/// at a point, clouds of 225 nodes gave 15 to 25 times the displacement of clouds with Gauss points.
+fn point_force(run: &Solved) -> Result<Option<Warning>, Failure> {
+    let source = &run.prepared.source;
+    if run.method.interpolates || source.face_points() != 1 || source.trace(&[])?.is_none() {
+        return Ok(None);
+    }
+    let each = run.setup.loads.iter().find_map(|load| match &load.applied {
+        Applied::Points { at, .. } => Some((load, at.len())),
+        _ => None,
+    });
+    let found = each.map(|(load, count)| {
+        let message = format!(
+            "acts at {count} points of a cloud whose gradients are smoothed by one point on each face, which hardly resist \
+             it at edges and corners: take rule = \"gauss\" or order = 2, or spread the force over a face"
+        );
+        Warning::new(&warning::POINT_FORCE, count as f64, format!("{}.force", load.key), message)
+    });
+    Ok(found)
 }
 
 fn spurious_motion(part: f64) -> Option<Warning> {

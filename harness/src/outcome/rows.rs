@@ -21,7 +21,7 @@ impl Outcome {
             ..number(&own, &Metric::new(&metric::TIME, seconds))
         }));
         for latency in &self.latencies {
-            let phase = Record { phase: latency.phase.into(), ..own.clone() }.with(&metric::TIME);
+            let phase = Record { phase: latency.phase.to_string(), ..own.clone() }.with(&metric::TIME);
             rows.extend(latency.statistics().into_iter().map(|(statistic, unit, value)| Record {
                 unit: unit.into(),
                 statistic: statistic.into(),

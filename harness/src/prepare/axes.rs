@@ -12,7 +12,8 @@ use crate::scenario::setup::{Direction, Directions, Setup};
 /// Length of a direction, relative to the given vector, below which two directions are the same.
 const PARALLEL: f64 = 1e-6;
 
-/// Returns the axes of the material at every point of a volume; none if no law depends on them.
+/// Returns the axes of the material at every point of a volume; none if no law depends on them and nothing
+/// contracts.
 ///
 /// # Errors
 /// Returns an error, with the position, if a direction is zero or not finite, or if a sheet lies along its
@@ -23,7 +24,7 @@ pub(super) fn axes(
     volume: &Volume,
     setup: &Setup,
 ) -> Result<Vec<Matrix3>, Failure> {
-    if setup.laws.iter().all(|law| !law.has_axes()) {
+    if setup.active.is_empty() && setup.laws.iter().all(|law| !law.has_axes()) {
         return Ok(Vec::new());
     }
     let mut walls = Walls::new(method, source, &volume.rows);

@@ -1,7 +1,7 @@
 //! Loads at the integration points of their surfaces.
 
 use fem::SurfaceRule;
-use geometry::{Facet, Vector3};
+use geometry::{Facet, Point3, Vector3};
 use shape::{FixedDof, FluxRows, RowSource, SurfaceRows};
 use statics::{FollowingLoad, Load};
 
@@ -9,8 +9,8 @@ use super::Prepared;
 use super::region_check::loaded;
 use super::surfaces::{cut_surface, flux};
 use super::values::{Values, not_finite};
-use crate::discretise::Discretisation;
 use crate::discretise::place::Patch;
+use crate::discretise::{Discretisation, node_set};
 use crate::error::Failure;
 use crate::scenario::setup::{self, Applied, SurfaceLoad};
 
@@ -69,23 +69,33 @@ impl Prepared {
     /// Evaluates a load at its points.
     pub(super) fn load(&mut self, method: &Discretisation, load: &setup::Load) -> Result<(), Failure> {
         match &load.applied {
-            Applied::Surface(field) => self.load_on_surface(method, load, field),
-            Applied::Points { at, force } => {
-                let (rows, _) = self.source.at_points(at)?;
-                let added = rows.rows().apply_transposed(&vec![*force; at.len()]);
-                let same = self.own_curves.nodal.iter().position(|curve| *curve == load.curve);
-                match same.map(|index| &mut self.nodal[index]) {
-                    Some(forces) => forces.iter_mut().zip(added).for_each(|(force, added)| *force += added),
-                    None => self.nodal.push(added),
+            Applied::Surface(field) => match (field, node_set::alone(&load.place, method.mesh())) {
+                (SurfaceLoad::Force(force), Some(nodes)) => {
+                    let at: Vec<Point3> =
+                        nodes.iter().map(|&node| method.mesh().points()[node as usize]).collect();
+                    self.load_at_points(&at, force / at.len() as f64, load)
                 }
-                Ok(())
-            }
+                _ => self.load_on_surface(method, load, field),
+            },
+            Applied::Points { at, force } => self.load_at_points(at, *force, load),
             Applied::Body(field) => {
                 let values = self.volume.rows.points().iter().map(field).collect::<Result<_, _>>();
                 self.body_force.push(values.map_err(not_finite(&load.key, "body"))?);
                 Ok(())
             }
         }
+    }
+
+    /// Adds a force (N) at each of some points (m).
+    fn load_at_points(&mut self, at: &[Point3], force: Vector3, load: &setup::Load) -> Result<(), Failure> {
+        let (rows, _) = self.source.at_points(at)?;
+        let added = rows.rows().apply_transposed(&vec![force; at.len()]);
+        let same = self.own_curves.nodal.iter().position(|curve| *curve == load.curve);
+        match same.map(|index| &mut self.nodal[index]) {
+            Some(forces) => forces.iter_mut().zip(added).for_each(|(force, added)| *force += added),
+            None => self.nodal.push(added),
+        }
+        Ok(())
     }
 
     fn load_on_surface(

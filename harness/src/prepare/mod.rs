@@ -454,7 +454,7 @@ impl Prepared {
             return Err(Failure::unavailable(
                 Key::Method("essential"),
                 "imposes supports weakly, which is not available for clouds on a body of several regions",
-                "take one region, or essential = \"multipliers\"",
+                "take one region, or essential = \"coupling\"",
             ));
         } else {
             Vec::new()

@@ -8,15 +8,17 @@ use geometry::{Mesh, Point3, quadrature};
 use crate::discretise::place::{Patch, tolerance};
 use crate::discretise::{Discretisation, Essential, node_set, place};
 use crate::error::Failure;
-use crate::scenario::setup::{Applied, Foundation, Load, Setup, Support};
+use crate::scenario::setup::{Applied, Foundation, Load, Setup, Support, SurfaceLoad};
 
 /// Fails, as a run would, on the first support or load whose place is empty or names a surface that the mesh
 /// does not have. A plan calls only this check: filling the tables costs a thousand times as much.
 pub fn check(method: &Discretisation, setup: &Setup) -> Result<(), Failure> {
     let mesh = method.mesh();
     for load in &setup.loads {
-        if let Applied::Surface(_) = load.applied {
-            loaded(load, mesh)?;
+        match &load.applied {
+            Applied::Surface(SurfaceLoad::Force(_)) if node_set::alone(&load.place, mesh).is_some() => {}
+            Applied::Surface(_) => drop(loaded(load, mesh)?),
+            Applied::Points { .. } | Applied::Body(_) => {}
         }
     }
     for foundation in &setup.foundations {

@@ -1,5 +1,6 @@
 //! Gives the prepared conditions the curves of the scene.
 
+use shape::Curve;
 use statics::{Curves, Timing};
 
 use super::Prepared;
@@ -53,6 +54,18 @@ impl Prepared {
             end: setup.procedure.duration().unwrap_or(1.0),
             ..OwnCurves::default()
         };
+    }
+
+    /// Active stress of each region (Pa) at a time: in dynamics in seconds, otherwise the fraction of the loading.
+    /// Empty if nothing contracts.
+    pub fn active(&self, setup: &Setup, time: f64) -> Vec<f64> {
+        let usual = match setup.procedure.ramp().map(|ramp| ramp.growth()) {
+            Some(over) if over > 0.0 => Curves::all(Curve::growth(over)),
+            Some(_) => Curves::all(Curve::at_once()),
+            None => Curves::proportional(),
+        };
+        let curves = self.curves(usual).active;
+        setup.active.iter().enumerate().map(|(k, full)| full * curves.of(k).value(time)).collect()
     }
 
     /// Returns the curves of all conditions; `usual` gives those of the conditions without their own.

@@ -3,7 +3,9 @@
 use cases::scene::Swept;
 use catalogue::metric;
 use contact::{ContactSurface, Drive};
-use explicit::{ExplicitError, FrameParams, FrameState, FrameTool, Frames, Lumping, Prescribed, lumped_mass};
+use explicit::{
+    ExplicitError, FrameLoad, FrameParams, FrameState, FrameTool, Frames, Lumping, Prescribed, lumped_mass,
+};
 use geometry::Vector3;
 
 use super::explicit::{body, smallest_j};
@@ -83,16 +85,48 @@ fn motion(
     kind: Sweeps,
     counters: &mut Counters,
 ) -> Result<Solution, Failure> {
-    let Problem { setup, prepared, .. } = *problem;
-    let (volume, rows) = (&prepared.volume, &prepared.volume.rows);
-    let n = rows.rows().node_count();
-    let mass = match asked.inertia {
-        true => lumped_mass(rows, &setup.density()?, &volume.region, Lumping::for_table(rows))?,
-        false => vec![0.0; n],
-    };
+    let mass = mass(problem, asked)?;
     if asked.inertia {
-        counters.mass_nodes += n as u64;
+        counters.mass_nodes += mass.len() as u64;
     }
+    let (_, count) = asked.time_steps();
+    with_frames(problem, asked, kind, &mass, |frames, load, free| {
+        let mut states = States::default();
+        let failure = states.march(frames, load, count, problem, asked).err();
+        let made = frames.steps() as u64;
+        counters.time_steps += made;
+        counters.contact_evaluations += frames.contact_counts().evaluations;
+        counters.contact_skips += frames.contact_counts().skipped;
+        let u = states.fields.last().cloned();
+        Solution {
+            dofs: free,
+            u: u.unwrap_or_else(|| vec![Vector3::zeros(); mass.len()]),
+            history: Some(states.history(problem, asked, made, mass.iter().sum(), failure)),
+            ..Solution::default()
+        }
+    })
+}
+
+/// Mass of each node, kg; zero without inertia.
+pub(super) fn mass(problem: &Problem, asked: &Swept) -> Result<Vec<f64>, Failure> {
+    let (setup, volume) = (problem.setup, &problem.prepared.volume);
+    Ok(match asked.inertia {
+        true => {
+            lumped_mass(&volume.rows, &setup.density()?, &volume.region, Lumping::for_table(&volume.rows))?
+        }
+        false => vec![0.0; volume.rows.rows().node_count()],
+    })
+}
+
+/// Calls `work` with frames at the start, their loads, and the number of free degrees of freedom.
+pub(super) fn with_frames<T>(
+    problem: &Problem,
+    asked: &Swept,
+    kind: Sweeps,
+    mass: &[f64],
+    work: impl FnOnce(&mut Frames, &mut FrameLoad, usize) -> T,
+) -> Result<T, Failure> {
+    let Problem { setup, prepared, .. } = *problem;
     let loading = Loading::new(problem, &asked.ramp)?;
     let mut load = |t: f64, f: &mut [Vector3]| {
         for (curve, forces) in &loading.loads {
@@ -104,18 +138,18 @@ fn motion(
     let prescribed: Vec<Prescribed> = (loading.led.keys().zip(&motions))
         .map(|(&(node, axis), motion)| Prescribed { node, axis, motion: motion.as_ref() })
         .collect();
-    let (dt, count) = asked.time_steps();
+    let (dt, _) = asked.time_steps();
     let params =
         FrameParams { dt, damping: asked.ramp.damping, inertia: asked.inertia, sweeps: asked.sweeps };
     let surface = prepared.contact();
     let closures: Vec<_> = setup.tools.iter().map(|of| closure(of, asked)).collect::<Result<_, _>>()?;
     let body = body(setup, prepared);
     let frames = match kind {
-        Sweeps::VertexDescent => Frames::vertex_descent(body, &mass, &prescribed, params),
-        Sweeps::Constraints => Frames::constraints(body, &mass, &prescribed, params),
+        Sweeps::VertexDescent => Frames::vertex_descent(body, mass, &prescribed, params),
+        Sweeps::Constraints => Frames::constraints(body, mass, &prescribed, params),
         Sweeps::ConjugateGradients { tolerance } => {
             let more = [tolerance, asked.ramp.stiffness_damping];
-            Frames::conjugate_gradients(body, &mass, &prescribed, params, more)
+            Frames::conjugate_gradients(body, mass, &prescribed, params, more)
         }
     };
     let mut frames = frames.map_err(|error| unavailable(error, problem))?;
@@ -123,19 +157,7 @@ fn motion(
         frames =
             with_tools(frames, surface, setup, &closures).map_err(|error| unavailable(error, problem))?;
     }
-    let mut states = States::default();
-    let failure = states.march(&mut frames, &mut load, count, problem, asked).err();
-    let made = frames.steps() as u64;
-    counters.time_steps += made;
-    counters.contact_evaluations += frames.contact_counts().evaluations;
-    counters.contact_skips += frames.contact_counts().skipped;
-    let u = states.fields.last().cloned();
-    Ok(Solution {
-        dofs: 3 * n - loading.led.len(),
-        u: u.unwrap_or_else(|| vec![Vector3::zeros(); n]),
-        history: Some(states.history(problem, asked, made, mass.iter().sum(), failure)),
-        ..Solution::default()
-    })
+    Ok(work(&mut frames, &mut load, 3 * mass.len() - loading.led.len()))
 }
 
 /// Displacement of a tool (m) over time (s).
@@ -202,7 +224,7 @@ impl States {
     fn march(
         &mut self,
         frames: &mut Frames,
-        load: &mut impl FnMut(f64, &mut [Vector3]),
+        load: &mut FrameLoad,
         count: usize,
         problem: &Problem,
         asked: &Swept,

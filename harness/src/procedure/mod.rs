@@ -8,6 +8,7 @@ mod linear;
 mod linear_solver;
 mod loading;
 mod modes;
+mod paced;
 mod plan;
 mod problem;
 mod refine;
@@ -23,11 +24,12 @@ use crate::error::Failure;
 use crate::outcome::timing::Meters;
 use frames::Sweeps;
 
+pub(crate) use paced::{Advance, FrameEnd, Loop};
 pub(crate) use plan::{Schemes, Wanted, conclude, plan};
 pub(crate) use problem::Problem;
 pub(crate) use refine::refined;
 pub(crate) use solution::{Carried, Solution, StepHistory, Vibration};
-pub(crate) use statics::{solves, static_params, with_static_problem};
+pub(crate) use statics::{in_frames, solves, with_static_problem};
 pub(crate) use traced::{traced, unbalanced};
 
 /// Predicts the modes of another method.

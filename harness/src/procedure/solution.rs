@@ -103,6 +103,11 @@ impl Solution {
         self.history.as_ref().map_or(&self.supports, |history| &history.last.supports)
     }
 
+    /// Time at the end: in dynamics in seconds, otherwise the fraction of the loading.
+    pub(crate) fn time(&self) -> f64 {
+        self.history.as_ref().map_or(1.0, |history| history.last.time().unwrap_or(history.last.load))
+    }
+
     /// Whether the whole load was reached, which is always true for a linear procedure.
     pub(crate) fn is_whole(&self) -> bool {
         self.history.as_ref().is_none_or(|history| history.failure.is_none())

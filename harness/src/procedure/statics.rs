@@ -8,8 +8,8 @@ use contact::{ContactHistory, ContactSurface, DrivenTool};
 use material::Material as _;
 use shape::{Coarser, Resultant};
 use statics::{
-    Active, Curves, LinearSystems, Nearby, NewtonParams, Predicted, Rest, Solid, SolidDilation, StaticError,
-    StaticParams, StaticPath, StaticProblem, Step, predict, solve_static,
+    Active, Curves, Frames, LinearSystems, Nearby, NewtonParams, Predicted, Rest, Solid, SolidDilation,
+    StaticError, StaticParams, StaticPath, StaticProblem, Step, predict, solve_static,
 };
 
 use super::linear_solver::tangents;
@@ -31,7 +31,7 @@ pub(super) const SMALLEST: f64 = 1.0 / 64.0;
 const PREDICTED: f64 = 1e-3;
 
 /// Parameters of the static solver.
-pub(crate) fn static_params(asked: &Static) -> StaticParams {
+fn static_params(asked: &Static) -> StaticParams {
     StaticParams {
         steps: asked.steps,
         smallest: SMALLEST,
@@ -39,6 +39,28 @@ pub(crate) fn static_params(asked: &Static) -> StaticParams {
         augmentations: asked.newton.augmentations,
         limit_within: asked.limit_within,
     }
+}
+
+/// Calls `work` with the frames of a load path from its start. `tolerance` is the relative residual of a
+/// frame; `None` for that of the path.
+pub(crate) fn in_frames<T>(
+    problem: &Problem,
+    asked: &Static,
+    tolerance: Option<f64>,
+    work: impl FnOnce(&mut Frames) -> T,
+) -> Result<T, Failure> {
+    let Problem { method, setup, prepared, .. } = *problem;
+    let params = static_params(asked);
+    let tolerance = tolerance.unwrap_or(params.newton.tolerance);
+    // Factors are reused only for elements, as on a load path.
+    let keeps = if method.interpolates { NewtonParams::KEEPS_FRAMES } else { params.newton.keeps };
+    let newton = NewtonParams { tolerance, keeps, loosest: Some(NewtonParams::LOOSEST), ..params.newton };
+    let params = StaticParams { newton, ..params };
+    let contact = prepared.contact();
+    let usual = Curves::proportional();
+    with_static_problem(method, setup, prepared, contact.as_ref(), usual, |problem| {
+        Ok(work(&mut Frames::new(problem, &params)?))
+    })
 }
 
 /// Parameters of Newton's method that factor every tangent.

@@ -347,6 +347,7 @@ impl<'a> Group<'a> {
             repeats: self.repeats,
             integrated: integrated.as_ref(),
             repeated: self.scene.output.repeated.as_ref().filter(|_| options.frames),
+            real_time: self.scene.real_time.as_ref().filter(|_| options.frames),
             ..self.request()
         };
         let mut identity = scenario.identity();

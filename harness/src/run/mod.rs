@@ -12,6 +12,7 @@ mod group;
 mod levels;
 mod memory;
 mod pass;
+mod real_time;
 mod repeated;
 mod richer;
 pub(crate) mod stored_reference;
@@ -44,6 +45,7 @@ use contributions::add_trace;
 use estimate::{estimate, estimate_modes};
 use memory::Baseline;
 use pass::{Pass, pass};
+use real_time::real_time;
 use repeated::repeated;
 
 pub use crate::measure::Repeats;
@@ -239,7 +241,7 @@ fn loaded(
         outcome.identity.lane_path = forces.path.map(|path| path.name().into());
     }
     conclude(&mut outcome.plan, solution, counters);
-    let recovered = Recovered::new(run, &solution.u, &solution.pressure);
+    let recovered = Recovered::new(run, &solution.u, &solution.pressure, solution.time());
     compare(outcome, run, &displaced, recovered.as_ref(), request)?;
     outcome.tools = setup.tools.iter().map(|t| t.name.clone()).collect();
     places(outcome, run)?;
@@ -277,9 +279,8 @@ fn loaded(
     if outcome.plan.runs(StageName::Bounds) {
         timings.time("bounds", || add_bounds(outcome, run, counters))?;
     }
-    if let Some(ask) = request.repeated.filter(|_| whole && run.method.outside.is_none()) {
-        outcome.latencies =
-            timings.time("loop", || repeated(ask, run, request.probes, &mut outcome.metrics))?;
+    if whole && run.method.outside.is_none() && (request.repeated.is_some() || request.real_time.is_some()) {
+        timings.time("loop", || loops(outcome, run, request))?;
     }
     if request.picture {
         let mut field = picture(&outcome.identity, run, outcome.last.as_ref())?;
@@ -287,6 +288,17 @@ fn loaded(
         outcome.field = Some(field);
     }
     Ok(())
+}
+
+/// Runs the loops that are requested.
+fn loops(outcome: &mut Outcome, run: &measure::Solved, request: &Request) -> Result<(), Failure> {
+    if let Some(ask) = request.repeated {
+        outcome.latencies = repeated(ask, run, &outcome.plan, request.probes, &mut outcome.metrics)?;
+    }
+    match request.real_time {
+        Some(ask) => real_time(outcome, run, ask, request),
+        None => Ok(()),
+    }
 }
 
 /// Adds the errors at the end and at every step, and the status of the run.

@@ -4,18 +4,18 @@
 use std::hint::black_box;
 use std::time::Instant;
 
-use cases::scene::{Procedure, Repeated};
+use cases::scene::{Procedure, Repeated, Static};
 use catalogue::metric;
 use geometry::{Point3, Vector3};
 use shape::{Rows, Unity};
-use statics::{Curves, Factored, Frames, Load, NewtonParams, StaticParams, assemble, nodal_forces};
+use statics::{Factored, Load, assemble, nodal_forces};
 
 use crate::discretise::Discretisation;
 use crate::error::Failure;
 use crate::measure::Solved;
-use crate::outcome::{FOR_P99, Latency, Metric, push};
+use crate::outcome::{FOR_P99, Latency, Metric, Plan, push};
 use crate::prepare::Prepared;
-use crate::procedure::{solves, static_params, with_static_problem};
+use crate::procedure::{Problem, in_frames, solves};
 
 /// Fraction of the loading in a frame. It rises from `2 / cycle` to 1 in half a cycle and falls again. It
 /// never reaches zero, because a force-controlled tool would then have no force.
@@ -31,11 +31,12 @@ fn part(frame: usize, cycle: usize) -> f64 {
 pub(super) fn repeated(
     ask: &Repeated,
     run: &Solved,
+    plan: &Plan,
     probes: &[Point3],
     metrics: &mut Vec<Metric>,
 ) -> Result<Vec<Latency>, Failure> {
     match &run.setup.procedure {
-        Procedure::Static(asked) => nonlinear(ask, run, &static_params(asked)),
+        Procedure::Static(asked) => nonlinear(ask, run, asked, plan),
         _ => linear(ask, run, probes, metrics),
     }
 }
@@ -62,13 +63,7 @@ fn linear(
             .filter(|&node| unit.iter().any(|f| f[node as usize] != Vector3::zeros()))
             .collect();
         let condensed = factored.condense(&outputs, &loaded)?;
-        latencies.push(Latency {
-            phase: "condense",
-            seconds: vec![start.elapsed().as_secs_f64()],
-            iterations: 0,
-            broke_off: None,
-            deviation: None,
-        });
+        latencies.push(Latency::new("condense", vec![start.elapsed().as_secs_f64()]));
         let unit: Vec<Vec<Vector3>> =
             unit.iter().map(|f| loaded.iter().map(|&node| f[node as usize]).collect()).collect();
         let mut forces = vec![Vector3::zeros(); loaded.len()];
@@ -151,18 +146,11 @@ fn outputs(
     Ok(Rows::new(method.nodes().len(), offsets, nodes, values, Unity::NotPromised)?)
 }
 
-fn nonlinear(ask: &Repeated, run: &Solved, params: &StaticParams) -> Result<Vec<Latency>, Failure> {
+fn nonlinear(ask: &Repeated, run: &Solved, asked: &Static, plan: &Plan) -> Result<Vec<Latency>, Failure> {
     let Solved { method, setup, prepared, solution } = *run;
+    let problem = Problem { method, setup, prepared, plan, watch: None, probes: &[] };
     let end = solution.history.as_ref().and_then(|history| history.last.tools.first());
-    let contact = prepared.contact();
-    let usual = Curves::proportional();
-    with_static_problem(method, setup, prepared, contact.as_ref(), usual, |problem| {
-        let tolerance = ask.tolerance.unwrap_or(params.newton.tolerance);
-        // Factors are reused only for elements, as on a load path.
-        let keeps = if method.interpolates { NewtonParams::KEEPS_FRAMES } else { params.newton.keeps };
-        let newton = NewtonParams { tolerance, keeps, loosest: Some(NewtonParams::LOOSEST), ..params.newton };
-        let params = StaticParams { newton, ..*params };
-        let mut frames = Frames::new(problem, &params)?;
+    in_frames(&problem, asked, ask.tolerance, |frames| {
         let (mut at, mut deviation) = (0, None);
         let mut latency = timed("repeated", ask, |k| {
             at = k;
@@ -181,14 +169,8 @@ fn nonlinear(ask: &Repeated, run: &Solved, params: &StaticParams) -> Result<Vec<
         if let Ok(latency) = &mut latency {
             latency.deviation = deviation;
         }
-        let broke_off = Latency {
-            phase: "repeated",
-            seconds: Vec::new(),
-            iterations: 0,
-            broke_off: Some(at),
-            deviation: None,
-        };
-        Ok(vec![latency.unwrap_or(broke_off)])
+        let broke_off = || Latency { broke_off: Some(at), ..Latency::new("repeated", Vec::new()) };
+        vec![latency.unwrap_or_else(|_| broke_off())]
     })
 }
 
@@ -209,7 +191,7 @@ fn timed(
         iterations += frame(k)?;
         seconds.push(before.elapsed().as_secs_f64());
     }
-    Ok(Latency { phase, seconds, iterations, broke_off: None, deviation: None })
+    Ok(Latency { iterations, ..Latency::new(phase, seconds) })
 }
 
 #[cfg(test)]

@@ -102,7 +102,9 @@ fn pressure(run: &Solved, tables: &Prepared) -> Result<Vec<f64>, Failure> {
     let Prepared { source, volume, .. } = run.prepared;
     if let (Some(cells), Some(parts)) = (source.cell_dilation()?, tables.source.cell_dilation()?) {
         let gradients = volume.rows.at().displacement_gradients(&run.solution.u);
-        let at = mean_pressure::at_points(&run.setup.laws, volume, &gradients, &run.solution.pressure);
+        let active = run.prepared.active(run.setup, run.solution.time());
+        let at =
+            mean_pressure::at_points((&run.setup.laws, &active), volume, &gradients, &run.solution.pressure);
         let per_cell = parts.len() / cells.len();
         for part in 0..parts.len() {
             let points = cells.group(part / per_cell).0;

@@ -78,7 +78,7 @@ impl Problem {
             }
         }
         // Descriptions and checks are not part of the problem.
-        for words in ["title", "source", "purpose", "published", "check"] {
+        for words in ["title", "source", "purpose", "published", "check", "loop"] {
             table.remove(words);
         }
         Problem { problem: provenance::hash(&toml::to_string(&table).expect("a table of TOML")), methods }

@@ -17,6 +17,7 @@ mod over_commits;
 mod pdf;
 mod pixels;
 mod profile;
+mod real_time;
 mod section;
 mod silhouette;
 mod stability;
@@ -40,6 +41,7 @@ use crate::uncertain::Uncertain;
 pub(crate) fn all(set: &RunSet, runs: &[Run], uncertain: &[Uncertain], trends: &[Trend]) -> Vec<Figure> {
     let solved = solved(runs);
     let mut figures = efficiency::figures(&solved);
+    figures.extend(real_time::figures(&solved));
     figures.extend(profile::figure(&solved));
     figures.extend(stability::maps(&set.axes));
     figures.extend(uncertainty::bands(uncertain));

@@ -15,6 +15,7 @@ mod over_commits;
 mod peers;
 mod placement;
 mod published;
+mod real_time;
 mod repeated;
 mod solvers;
 mod stability;
@@ -67,6 +68,7 @@ pub(crate) fn all(
         face_results::frequencies(runs),
         timing::phases(runs, &set.provenance.machine),
         repeated::repeated(runs),
+        real_time::real_time(runs),
         cost::cost(runs),
         transfer::schemes(runs),
         error_split::error_split(runs),

@@ -37,6 +37,8 @@ macro_rules! warnings {
 warnings! {
     NOTHING_MOVES: "nothing-moves", None,
         "the scene has no load, no tool and no moving support, so every displacement is 0; no value";
+    LOOP_ENDED: "loop-ended", None,
+        "a loop in real time ended before the whole loading had passed; value: the number of its frames";
     NO_ESTIMATE: "no-estimate", None,
         "the error of a run cannot be estimated; no value";
     ROUGH_ESTIMATE: "rough-estimate", None,
@@ -71,6 +73,9 @@ warnings! {
     FEW_POINTS: "few-points", None,
         "a cloud has too few integration points to resist every nodal motion; value: the number of \
          integration points per node";
+    POINT_FORCE: "point-force", None,
+        "a force acts at a point of a cloud that smooths its gradients by one point on each face, and the displacement \
+         there can be 20 times too large; value: the number of such points";
     PATCH_TEST: "patch-test", None,
         "the integration of a cloud fails the patch test, so constant stress is not in equilibrium; value: \
          the resulting relative error in the gradient of a linear field";

@@ -17,6 +17,8 @@ pub struct AtPoint<'a> {
     law: &'a Law,
     /// Axes of a law that depends on them.
     axes: Option<&'a Matrix3>,
+    /// Axes of the material, whose first is the fibre of the active stress.
+    fibre: Option<&'a Matrix3>,
     /// Active stress along the fibre, Pa.
     active: f64,
 }
@@ -25,7 +27,7 @@ impl<'a> AtPoint<'a> {
     /// Builds the law at a point. The columns of `axes` are the orthonormal directions of fibre, sheet and
     /// normal; `None` stands for the coordinate axes.
     pub fn new(law: &'a Law, axes: Option<&'a Matrix3>) -> AtPoint<'a> {
-        AtPoint { law, axes: axes.filter(|_| law.has_axes()), active: 0.0 }
+        AtPoint { law, axes: axes.filter(|_| law.has_axes()), fibre: axes, active: 0.0 }
     }
 
     /// Adds an active stress `T` (Pa) along the fibre: the second Piola-Kirchhoff stress `T f x f`, with the energy
@@ -36,7 +38,7 @@ impl<'a> AtPoint<'a> {
 
     /// Direction of the fibre.
     fn fibre(&self) -> Vector3 {
-        self.axes.map_or_else(Vector3::x, |axes| axes.column(0).into())
+        self.fibre.map_or_else(Vector3::x, |axes| axes.column(0).into())
     }
 
     /// Active stress `T F f x f` alone, Pa: the first Piola-Kirchhoff stress.

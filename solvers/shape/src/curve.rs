@@ -30,7 +30,7 @@ pub enum CurveError {
         index: usize,
     },
     /// A time is not after the one before it.
-    #[error("goes back in time at index {index}: {time} after {before}")]
+    #[error("has {time} after {before} at index {index}")]
     NotIncreasing {
         /// Index of the point.
         index: usize,

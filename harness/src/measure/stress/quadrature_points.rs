@@ -8,11 +8,12 @@ use shape::{Matrix3, Vector3};
 use super::super::mean_pressure::{self, cauchy, dilated, mean};
 use crate::measure::solved::Solved;
 
-/// Cauchy stress (Pa) at every quadrature point from nodal parameters `u` (m) and, if there is a pressure
-/// field, its parameters (Pa).
-pub(crate) fn own_stress(run: &Solved, u: &[Vector3], parameters: &[f64]) -> Vec<Matrix3> {
+/// Cauchy stress (Pa) at every quadrature point, active stress included, from nodal parameters `u` (m) and, if there
+/// is a pressure field, its parameters (Pa), at a time of [`Prepared::active`](crate::prepare::Prepared::active).
+pub(crate) fn own_stress(run: &Solved, u: &[Vector3], parameters: &[f64], time: f64) -> Vec<Matrix3> {
     let (laws, volume) = (&run.setup.laws, &run.prepared.volume);
-    let law = |q: usize| volume.law(laws, q);
+    let active = run.prepared.active(run.setup, time);
+    let law = |q: usize| volume.law(laws, &active, q);
     let at = volume.rows.at();
     if volume.groups.is_none() && volume.pressure.is_none() {
         return (0..at.rows().len()).map(|q| cauchy(&law(q), &at.displacement_gradient(q, u))).collect();
@@ -35,7 +36,7 @@ pub(crate) fn own_stress(run: &Solved, u: &[Vector3], parameters: &[f64]) -> Vec
             stress
         }
     };
-    let pressure = mean_pressure::at_points(laws, volume, &gradients, parameters);
+    let pressure = mean_pressure::at_points((laws, &active), volume, &gradients, parameters);
     for (stress, pressure) in stress.iter_mut().zip(pressure) {
         *stress -= Matrix3::identity() * (stress.trace() / 3.0 + pressure);
     }

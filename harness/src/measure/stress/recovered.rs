@@ -69,13 +69,13 @@ struct Patch {
 
 impl<'a> Recovered<'a> {
     /// Fits the stress of a state with nodal parameters `u` (m) and, if there is a pressure field, its
-    /// parameters (Pa). `None` for viscoelastic tissue, whose stress depends on its history, which is
+    /// parameters (Pa), at a time of [`own_stress`]. `None` for viscoelastic tissue, whose stress depends on its history, which is
     /// followed at quadrature points only.
-    pub fn new(run: &Solved<'a>, u: &'a [Vector3], parameters: &[f64]) -> Option<Recovered<'a>> {
+    pub fn new(run: &Solved<'a>, u: &'a [Vector3], parameters: &[f64], time: f64) -> Option<Recovered<'a>> {
         if run.setup.relaxes() {
             return None;
         }
-        let own = own_stress(run, u, parameters);
+        let own = own_stress(run, u, parameters, time);
         let alike = run.setup.alike();
         let mut recovered = Recovered { run: *run, u, own, alike, patches: Vec::new() };
         recovered.patches =

@@ -86,6 +86,10 @@ pub enum Needs {
     Explicit,
     /// Frames with a fixed budget of work.
     Frames,
+    /// A loop in real time, and a tool.
+    ToolLoop,
+    /// A loop in real time, and probes.
+    PointLoop,
     /// An axis of a study.
     Axis,
     /// A tool.
@@ -149,7 +153,7 @@ impl Metric {
         matches!(self.kind, Kind::Error | Kind::Cost | Kind::Phase(_))
     }
 
-    /// Whether a run has a number for each of its tools, supports, faces or points.
+    /// Whether a run has a number for each of its tools, supports, faces, points or rates.
     pub const fn is_numbered(&self) -> bool {
         matches!(self.kind, Kind::Tool | Kind::Place)
     }

@@ -250,6 +250,12 @@ metrics! {
     REPEATED_ERROR: "repeated-error", "relative error of a repeated frame", None, Error, Run,
         "largest difference at the probes between a frame of the repeated loading and the direct solution, \
          divided by the largest displacement at the probes";
+    LOOP_FORCE_ERROR: "loop-force-error", "force error in a loop", None, Place, ToolLoop,
+        "difference of a tool's force in a frame of the loop from the reference's path, or from the run's own without a \
+         reference that has one, over the largest force of this path; 99 % of the frames are below it, for each rate of \
+         the loop";
+    LOOP_PROBE_ERROR: "loop-probe-error", "displacement error in a loop", None, Place, PointLoop,
+        "the same for the displacement of the points of output.probes, the worst of them";
     // Dynamics.
     TIME: "time", "time", Time, Cost, Run,
         "duration of a phase; for a recorded state in dynamics, the time of the model";

@@ -248,6 +248,25 @@ impl<'a> Frames<'a> {
         Ok(())
     }
 
+    /// Evaluates the tools at the end of the last time step.
+    ///
+    /// # Errors
+    ///
+    /// [`ExplicitError::ContactAt`] if a tool has passed through the surface.
+    pub fn tools(&mut self) -> Result<Vec<ToolState>, ExplicitError> {
+        self.pushed(&mut vec![Vector3::zeros(); self.u.len()])
+    }
+
+    /// Evaluates the tools, and adds their forces on the nodes (N).
+    fn pushed(&mut self, forces: &mut [Vector3]) -> Result<Vec<ToolState>, ExplicitError> {
+        let (step, time) = (self.steps, self.time());
+        match &mut self.touch {
+            Some(touch) => (touch.settle(&self.u, forces))
+                .map_err(|(tool, cause)| ExplicitError::ContactAt { step, time, tool, cause }),
+            None => Ok(Vec::new()),
+        }
+    }
+
     /// Evaluates the state at the end of the last time step.
     ///
     /// # Errors
@@ -260,11 +279,7 @@ impl<'a> Frames<'a> {
         let zeros = vec![Vector3::zeros(); self.u.len()];
         let (mut internal, mut pushed) = (zeros.clone(), zeros);
         self.force.evaluate(&self.u, &mut internal).map_err(inverted)?;
-        let tools = match &mut self.touch {
-            Some(touch) => (touch.settle(&self.u, &mut pushed))
-                .map_err(|(tool, cause)| ExplicitError::ContactAt { step, time, tool, cause })?,
-            None => Vec::new(),
-        };
+        let tools = self.pushed(&mut pushed)?;
         let mut reaction = vec![Vector3::zeros(); self.u.len()];
         let (mut out, mut largest) = (0.0f64, 0.0f64);
         for i in 0..self.u.len() {

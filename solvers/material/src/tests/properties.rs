@@ -41,7 +41,7 @@ pub(super) fn finite() -> impl Strategy<Value = Matrix3> {
 pub(super) const POISSON: std::ops::Range<f64> = -0.4..0.49;
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(64))]
+    #![proptest_config(ProptestConfig::with_cases(200))]
 
     // Central differences with step d have the truncation error d^2 W'''/6 and the rounding error 1e-16 W/d.
     // For d = 1e-5 both are about 1e-10 of lambda + 2 mu times the largest higher derivative, about 100 at a
@@ -195,7 +195,7 @@ fn same(a: &dyn Material, b: &dyn Material, H: &Matrix3) -> Result<(), TestCaseE
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(64))]
+    #![proptest_config(ProptestConfig::with_cases(200))]
     #[test]
     fn ogden_holds_the_laws_of_exponent_two(H in finite(), poisson in POISSON) {
         let hooke = LinearElastic::new(20e3, poisson).unwrap();

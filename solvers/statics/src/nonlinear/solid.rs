@@ -55,7 +55,7 @@ pub struct Solid<'a> {
     /// Region of each point; empty if all points are in region 0.
     pub region: &'a [u16],
     /// Axes of the material at each point, as columns: fibre, sheet and normal directions. Empty if no law
-    /// depends on directions.
+    /// depends on directions and nothing contracts.
     pub axes: &'a [Matrix3],
     /// Active stress along the fibre.
     pub active: Active<'a>,

@@ -21,6 +21,10 @@ use crate::support::prescribed;
 /// Rounding error of a nodal force, relative to the force due to the node's own displacement.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
+/// Rounding error of the forces, relative to the largest of the path. When tools have lifted off, all forces
+/// are rounding errors: 4e-15 of the largest where a plate lets a block go.
+const UNLOADED: f64 = 1e-13;
+
 /// Returns the work `x . r`.
 pub(super) fn work(x: &[f64], r: &[f64]) -> f64 {
     x.iter().zip(r).map(|(x, r)| x * r).sum()
@@ -83,6 +87,8 @@ pub(super) struct Equations<'a> {
     /// Largest forces so far in implicit dynamics and in loops, N: an oscillation passes through states
     /// without forces.
     pub peak: f64,
+    /// Largest forces at the end of a step so far, N.
+    pub largest: f64,
     /// Counters of the contact search.
     pub counts: ContactCounts,
     /// Number of evaluated states.
@@ -125,6 +131,7 @@ impl<'a> Equations<'a> {
             terms: None,
             displacement_driven: vec![false; problem.tools.len()],
             peak: 0.0,
+            largest: 0.0,
             counts: ContactCounts::default(),
             evaluations: 0,
             own_loads: loads.len(),
@@ -190,14 +197,15 @@ impl<'a> Equations<'a> {
     /// Returns the relative residual at displacement `u`: the largest of the forces on free degrees of
     /// freedom, the volume residuals of the pressures, and the missing forces of force-driven tools.
     ///
-    /// The scale of forces is at least the rounding error of the displacement's forces over the tolerance,
-    /// because a body that moves as a whole has no other forces.
+    /// The scale of forces is at least their rounding error over the tolerance: that of the displacement's
+    /// forces, because a body that moves as a whole has no others, and that of the largest forces of the path,
+    /// because a body that is let go has none.
     pub fn residual(&self, balance: &Balance, u: &[Vector3], time: f64, tolerance: f64) -> f64 {
         let unknowns = self.system.gather(&balance.out, &balance.pressure);
         let (forces, volumes) = unknowns.split_at(self.system.free);
         let norm = |x: &[f64]| x.iter().map(|v| v * v).sum::<f64>().sqrt();
         let squares = self.stiffness.iter().zip(u).map(|(k, u)| k * k * u.norm_squared());
-        let rounding = ROUNDING * squares.sum::<f64>().sqrt();
+        let rounding = (ROUNDING * squares.sum::<f64>().sqrt()).max(UNLOADED * self.largest);
         let scale = balance.scale.max(rounding / tolerance);
         let scale = if scale > 0.0 { scale } else { 1.0 };
         let mut residual = norm(forces) / scale;

@@ -64,6 +64,8 @@ pub(crate) struct Totals {
     pub solver: Option<SolverPath>,
     /// Largest forces so far, N.
     peak: f64,
+    /// Largest forces at the end of a step so far, N.
+    largest: f64,
 }
 
 impl<'a> Newton<'a> {
@@ -104,6 +106,7 @@ impl<'a> Newton<'a> {
         self.equations.counts = before.counts;
         self.equations.evaluations = before.work.forces;
         self.equations.peak = before.peak;
+        self.equations.largest = before.largest;
         self.factors.work = before.work;
         self.factors.levels.path = before.solver;
         self
@@ -116,6 +119,7 @@ impl<'a> Newton<'a> {
             work: StaticWork { forces: self.equations.evaluations, ..self.factors.work },
             solver: self.factors.levels.path,
             peak: self.equations.peak,
+            largest: self.equations.largest,
         }
     }
 
@@ -221,6 +225,7 @@ impl<'a> Newton<'a> {
             }
         }
         self.reached = balance.scale;
+        self.equations.largest = self.equations.largest.max(balance.scale);
         self.reaction = self.equations.held_back(&balance.out);
         self.ended = balance.ended;
         let tools = (balance.contacts.iter().zip(&state.closures))

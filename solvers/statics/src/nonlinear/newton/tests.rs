@@ -1,15 +1,16 @@
-//! Steps past a limit point.
+//! Steps past a limit point, and the convergence of Newton's method.
 
-use fem::VolumeRule;
+use fem::{SurfaceRule, VolumeRule};
 use geometry::CellKind;
 use geometry::generate::box_mesh;
-use material::{Law, SaintVenantKirchhoff};
+use material::{Law, NeoHookean, SaintVenantKirchhoff};
 use shape::{FixedDof, Point3, Vector3};
 
 use super::Newton;
 use super::policy::{Descent, Iteration, NewtonParams, patience};
 use super::state::State;
 use crate::nonlinear::curves::Curves;
+use crate::nonlinear::following::FollowingLoad;
 use crate::nonlinear::problem::{LinearSystems, StaticProblem};
 use crate::nonlinear::solid::{Active, Solid, SolidDilation};
 
@@ -85,6 +86,60 @@ fn column(systems: LinearSystems) {
     assert!((buckled - 2.3).abs() < 0.1 && stable, "sway {buckled}");
     assert!(longest > 1.0 && longest <= 64.0, "length {longest}");
     assert!(below < 0.5 * above, "{below} J under {above} J");
+}
+
+/// A pressure that follows a face with a free rim has an unsymmetric tangent. Without any part of it the residuals
+/// would fall by a factor; with all of it each is bounded by the square of the one before.
+#[test]
+fn residuals_under_a_pressure_that_follows_fall_quadratically() {
+    let size = Point3::new(0.02, 0.01, 0.01);
+    for kind in [CellKind::Hex8, CellKind::Tet10] {
+        let mesh = box_mesh(kind, Point3::origin(), size, [4, 2, 2], [1.0; 3], None).unwrap();
+        let volume = fem::volume_rows(&mesh, &VolumeRule::STANDARD).unwrap();
+        let held = (0..).zip(mesh.points()).filter(|(_, p)| p.x == 0.0);
+        let fixed: Vec<FixedDof> =
+            held.flat_map(|(node, _)| (0..3).map(move |axis| FixedDof { node, axis, value: 0.0 })).collect();
+        let surface = fem::flux_rows(&mesh, mesh.group("z-max").unwrap(), &SurfaceRule::FINE).unwrap();
+        let values: Vec<f64> = surface.points().iter().map(|x| 150.0 + 1e4 * x.x).collect();
+        let following = [FollowingLoad::pressure(&surface, &values).unwrap()];
+        let laws = [Law::NeoHookean(NeoHookean::new(20e3, 0.3).unwrap())];
+        let problem = StaticProblem {
+            nodes: mesh.points(),
+            solid: Solid {
+                volume: &volume,
+                laws: &laws,
+                region: &[],
+                axes: &[],
+                active: Active::default(),
+                dilation: SolidDilation::Standard,
+            },
+            loads: &[],
+            following: &following,
+            fixed: &fixed,
+            curves: Curves::proportional(),
+            penalties: &[],
+            contact: None,
+            tools: &[],
+            systems: LinearSystems::Factored,
+        };
+        let params = NewtonParams {
+            tolerance: 1e-11,
+            iterations: 25,
+            chords: false,
+            keeps: f64::INFINITY,
+            loosest: None,
+        };
+        let mut newton = Newton::new(&problem, &params).unwrap();
+        let start = State::start(&problem);
+        let (_, step) = newton.step(&start, None, 1.0, 0, Descent::Nearest).unwrap();
+        let residuals: Vec<f64> = step.iterations.iter().map(|i| i.residual).collect();
+        let last: Vec<&[f64]> =
+            residuals.windows(2).filter(|pair| pair[0] < 0.05 && pair[1] > 1e-10).collect();
+        assert!(!last.is_empty(), "{kind:?}: {residuals:?}");
+        for pair in last {
+            assert!(pair[1] < 20.0 * pair[0] * pair[0], "{kind:?}: {residuals:?}");
+        }
+    }
 }
 
 #[test]
