@@ -94,13 +94,19 @@ fn content<'a>(case: &str, lines: &'a [Line], styles: &'a [Style]) -> Content<'a
                 let at = |beat: &Beat| (1e3 * beat.seconds, beat.error);
                 chart.draw_series(line.beats.iter().filter(|beat| beat.misses > 0.0).map(|beat| {
                     let disc = ring(CIRCLE, 0.0, 40.0 + 110.0 * (beat.misses / 1e3).sqrt());
-                    EmptyElement::at(at(beat)) + Polygon::new(disc, style.look.colour.mix(0.2))
+                    EmptyElement::at(at(beat)) + Polygon::new(disc, pale(style.look.colour))
                 }))?;
                 style.curve(chart, &line.beats.iter().map(at).collect::<Vec<_>>(), 1)?;
             }
             Ok(())
         }),
     }
+}
+
+/// A quarter of a colour on white.
+fn pale(RGBColor(red, green, blue): RGBColor) -> RGBColor {
+    let part = |of: u8| 191 + of / 4;
+    RGBColor(part(red), part(green), part(blue))
 }
 
 /// Draws the time between two frames of a rate as a vertical line.
