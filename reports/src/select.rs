@@ -58,7 +58,7 @@ impl<'a> Run<'a> {
         }
     }
 
-    /// Rates of the loop in real time, frames per second, in the order of the scene.
+    /// Rates of the loop in real time, frames per second, ascending as in the scene.
     pub(crate) fn rates(&self) -> Vec<u64> {
         let mut rates = Vec::new();
         for record in self.records() {
@@ -68,6 +68,7 @@ impl<'a> Run<'a> {
                 rates.push(rate);
             }
         }
+        rates.sort_unstable();
         rates
     }
 

@@ -40,7 +40,7 @@ pub(crate) fn scene(scene: &Scene, report: &Report) {
     scene.output.check_regions(std::iter::once("body").chain(regions), &report.at("output"));
     scene.output.demands(kind, reference, &report.at("output"));
     if let Some(real_time) = &scene.real_time {
-        real_time.demands(scene, &report.at("loop"));
+        real_time.demands(procedure, scene.staged().next(), &report.at("loop"));
     }
     if scene.output.bounds {
         bounds(scene, report);

@@ -6,7 +6,6 @@ use serde::Deserialize;
 
 use super::procedure::Procedure;
 use super::report::Report;
-use super::scene::Scene;
 use super::units::{Q, Time};
 
 /// The loading in real time: frames come at a fixed rate, and each is timed against its deadline
@@ -28,7 +27,7 @@ pub(crate) struct RealTimeKeys {
 pub struct RealTime {
     /// Time in which the loading passes, s; 0 if it is that of the procedure.
     pub duration: f64,
-    /// Frames per second, at least one rate.
+    /// Frames per second, at least one rate, ascending.
     pub rates: Vec<usize>,
     /// Computing time of one rate after which no further frame starts, s.
     pub within: f64,
@@ -49,7 +48,13 @@ impl RealTimeKeys {
         for (index, rate) in rates.iter().enumerate() {
             let key = format!("rates[{index}]");
             report.require(*rate > 0, &key, "is zero", help);
-            report.require(!rates[..index].contains(rate), &key, "occurs twice", "leave it out");
+            let sound = index == 0 || rates[index - 1] < *rate;
+            report.require(
+                sound,
+                &key,
+                "is not above the rate before it",
+                "give each rate once, the lowest first",
+            );
         }
         if let Some(duration) = &self.duration {
             report.positive("duration", duration.0);
@@ -77,9 +82,8 @@ impl RealTime {
         (self.duration(procedure) * rate as f64).round().max(1.0) as usize
     }
 
-    /// Reports contradictions with the rest of the scene.
-    pub(crate) fn demands(&self, scene: &Scene, report: &Report) {
-        let procedure = &scene.procedure;
+    /// Reports contradictions with the procedure, and with a support of a part of the loading at the key `staged`.
+    pub(crate) fn demands(&self, procedure: &Procedure, staged: Option<String>, report: &Report) {
         let swept = match procedure {
             Procedure::Static(_) => false,
             Procedure::Vbd(_) | Procedure::Xpbd(_) | Procedure::ImplicitCg(_) => true,
@@ -106,7 +110,7 @@ impl RealTime {
             let problem = format!("gives {count} frames in {duration} s");
             report.require(sound, &format!("rates[{index}]"), &problem, "give 1 to 1000000 frames");
         }
-        if let Some(key) = scene.staged().next() {
+        if let Some(key) = staged {
             let problem = format!("is not available with supports of a part of the loading, as {key}");
             report.add("", Problem::new(problem).help("leave one of them out"));
         }

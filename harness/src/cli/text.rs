@@ -182,7 +182,40 @@ pub fn places(outcomes: &[Outcome]) -> String {
         })
     });
     section(&mut text, &["displacement of a point [mm]", "point", "at", "x", "y", "z"], probes.collect());
-    for (numbers, head, scale) in [
+    for (numbers, head, scale) in numbered() {
+        let rows = outcomes.iter().flat_map(|outcome| {
+            let at = |place: usize| {
+                numbers.iter().map(|of| outcome.value(of.at(place))).collect::<Option<Vec<f64>>>()
+            };
+            (1..).zip((0..).map_while(at)).map(|(place, values): (usize, _)| {
+                let values = values.iter().map(|value| digits(scale * value));
+                row(&outcome.identity.method, std::iter::once(place.to_string()).chain(values).collect())
+            })
+        });
+        section(&mut text, head, rows.collect());
+    }
+    let head = ["estimated error", "of", "value", "unit", "error [%]", "saturation", "predicted"];
+    section(&mut text, &head, outcomes.iter().flat_map(estimates).collect());
+    let head = ["mesh", "solved", "remaining error [%]", "half of the error in [%]"];
+    section(&mut text, &head, outcomes.iter().filter_map(refined).collect());
+    let head = ["strict bounds", "of", "lower", "upper", "unit", "half-width [%]"];
+    section(&mut text, &head, outcomes.iter().flat_map(bounds).collect());
+    let modes = outcomes.iter().flat_map(|outcome| {
+        (1..).zip(&outcome.modes).map(|(number, mode): (usize, _)| {
+            let of = |metric: &Metric| {
+                mode.iter().find(|m| m.of.metric == metric).map_or("-".into(), |m| digits(m.value))
+            };
+            let [hertz, omega, ratio] = [&metric::FREQUENCY, &metric::OMEGA, &metric::OMEGA_RATIO].map(of);
+            row(&outcome.identity.method, vec![number.to_string(), hertz, omega, ratio])
+        })
+    });
+    section(&mut text, &["modes of vibration", "mode", "[Hz]", "[rad/s]", "/ exact"], modes.collect());
+    text
+}
+
+/// Numbers of places: the metrics of a row, the head of the table, and the factor from SI to its units.
+fn numbered() -> Vec<(Vec<Address>, &'static [&'static str], f64)> {
+    vec![
         (
             metric::POSITION.components().to_vec(),
             &["position of a point [mm]", "point", "x", "y", "z"][..],
@@ -212,35 +245,7 @@ pub fn places(outcomes: &[Outcome]) -> String {
         (vec![metric::STRETCH.whole()], &["stretch", "point", "[1]"], 1.0),
         (vec![metric::REGION_ENERGY.whole()], &["strain energy of a region", "region", "[mJ]"], 1e3),
         (vec![metric::ENCLOSED_VOLUME.whole()], &["enclosed volume", "surface", "[mL]"], 1e6),
-    ] {
-        let rows = outcomes.iter().flat_map(|outcome| {
-            let at = |place: usize| {
-                numbers.iter().map(|of| outcome.value(of.at(place))).collect::<Option<Vec<f64>>>()
-            };
-            (1..).zip((0..).map_while(at)).map(|(place, values): (usize, _)| {
-                let values = values.iter().map(|value| digits(scale * value));
-                row(&outcome.identity.method, std::iter::once(place.to_string()).chain(values).collect())
-            })
-        });
-        section(&mut text, head, rows.collect());
-    }
-    let head = ["estimated error", "of", "value", "unit", "error [%]", "saturation", "predicted"];
-    section(&mut text, &head, outcomes.iter().flat_map(estimates).collect());
-    let head = ["mesh", "solved", "remaining error [%]", "half of the error in [%]"];
-    section(&mut text, &head, outcomes.iter().filter_map(refined).collect());
-    let head = ["strict bounds", "of", "lower", "upper", "unit", "half-width [%]"];
-    section(&mut text, &head, outcomes.iter().flat_map(bounds).collect());
-    let modes = outcomes.iter().flat_map(|outcome| {
-        (1..).zip(&outcome.modes).map(|(number, mode): (usize, _)| {
-            let of = |metric: &Metric| {
-                mode.iter().find(|m| m.of.metric == metric).map_or("-".into(), |m| digits(m.value))
-            };
-            let [hertz, omega, ratio] = [&metric::FREQUENCY, &metric::OMEGA, &metric::OMEGA_RATIO].map(of);
-            row(&outcome.identity.method, vec![number.to_string(), hertz, omega, ratio])
-        })
-    });
-    section(&mut text, &["modes of vibration", "mode", "[Hz]", "[rad/s]", "/ exact"], modes.collect());
-    text
+    ]
 }
 
 /// Rows of the estimated errors of a run.

@@ -27,8 +27,9 @@ proptest! {
         let variance: f64 = sds.iter().zip(slopes).map(|(s, a)| f64::powi(s * a, 2)).sum();
         let sd = variance.sqrt();
         prop_assert!((found.mean.value - mean).abs() < 1e-9 && (found.sd.value - sd).abs() < 1e-9);
-        // The quantiles are those of 16,384 samples of the polynomial.
-        prop_assert!((found.quantiles[2].value - mean - 1.644_854 * sd).abs() < 5e-3 * sd);
+        // The quantiles are those of 16,384 samples of the polynomial. Of random samples their standard error is
+        // 0.017 sd; of Sobol's it was above 0.005 sd once in some thousand cases.
+        prop_assert!((found.quantiles[2].value - mean - 1.644_854 * sd).abs() < 1e-2 * sd);
         for ((index, s), a) in found.indices.iter().zip(sds).zip(slopes) {
             let share = f64::powi(s * a, 2) / variance;
             prop_assert!((index.first.value - share).abs() < 1e-9 && (index.total.value - share).abs() < 1e-9);

@@ -134,10 +134,10 @@ fn residuals_under_a_pressure_that_follows_fall_quadratically() {
         let (_, step) = newton.step(&start, None, 1.0, 0, Descent::Nearest).unwrap();
         let residuals: Vec<f64> = step.iterations.iter().map(|i| i.residual).collect();
         let last: Vec<&[f64]> =
-            residuals.windows(2).filter(|pair| pair[0] < 0.05 && pair[1] > 1e-10).collect();
+            residuals.windows(2).filter(|pair| pair[0] < 0.02 && pair[1] > 1e-10).collect();
         assert!(!last.is_empty(), "{kind:?}: {residuals:?}");
         for pair in last {
-            assert!(pair[1] < 20.0 * pair[0] * pair[0], "{kind:?}: {residuals:?}");
+            assert!(pair[1] < 50.0 * pair[0] * pair[0], "{kind:?}: {residuals:?}");
         }
     }
 }
