@@ -190,12 +190,7 @@ fn met(needs: Needs, scene: &Scene) -> (bool, &'static str) {
             scene.procedure.has_frames(),
             "needs [procedure] kind = \"vbd\", \"xpbd\" or \"implicit-cg\" in the scene",
         ),
-        Needs::ToolLoop => {
-            (touched && scene.real_time.is_some(), "needs a [[tool]] and a [loop] in the scene")
-        }
-        Needs::PointLoop => {
-            (probed && scene.real_time.is_some(), "needs output.probes and a [loop] in the scene")
-        }
+        Needs::ToolLoop | Needs::PointLoop => in_real_time(needs, scene),
         Needs::Newton => (
             matches!(kind, ProcedureKind::Static | ProcedureKind::ImplicitDynamic),
             "needs [procedure] kind = \"static\" or \"implicit-dynamic\" in the scene",
@@ -249,6 +244,15 @@ fn met(needs: Needs, scene: &Scene) -> (bool, &'static str) {
         | Needs::Mean
         | Needs::Bounds
         | Needs::MeanBounds => of_output(needs, scene),
+    }
+}
+
+/// Whether the scene has what a metric of its loop in real time needs, and what that is.
+fn in_real_time(needs: Needs, scene: &Scene) -> (bool, &'static str) {
+    let plays = scene.real_time.is_some();
+    match needs {
+        Needs::ToolLoop => (plays && !scene.tools.is_empty(), "needs a [[tool]] and a [loop] in the scene"),
+        _ => (plays && !scene.output.probes.is_empty(), "needs output.probes and a [loop] in the scene"),
     }
 }
 
