@@ -148,7 +148,8 @@ impl Scene {
     }
 
     /// Whether the body moves: by a load, a tool, an active stress, or a support with a prescribed
-    /// displacement other than zero. Also true for free vibrations and for scenes that only prepare, which need no load.
+    /// displacement other than zero. Also true for free vibrations and for scenes that only prepare, which
+    /// need no load.
     pub fn is_moved(&self) -> bool {
         let unsolved = matches!(self.procedure, Procedure::Modes { .. } | Procedure::Prepare);
         unsolved

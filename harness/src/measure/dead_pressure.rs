@@ -68,7 +68,8 @@ fn is_exact(run: &Solved, load: &Load, pressure: &ScalarField) -> Result<bool, F
         all += w * given.norm_squared();
         off += w * (exact.traction(x, n) - given).norm_squared();
     }
-    Ok(off <= STRETCH * STRETCH * all)
+    // A place that only cuts faces has none to compare.
+    Ok(all > 0.0 && off <= STRETCH * STRETCH * all)
 }
 
 fn dead(run: &Solved, load: &Load, pressure: &ScalarField) -> Result<Dead, Failure> {

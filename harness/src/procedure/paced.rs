@@ -11,7 +11,7 @@ use super::statics;
 use crate::error::Failure;
 use crate::outcome::ToolStep;
 
-/// What a frame gives.
+/// Results of a frame.
 pub(crate) struct FrameEnd {
     /// States of the tools.
     pub(crate) tools: Vec<ToolStep>,
