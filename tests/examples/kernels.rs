@@ -10,11 +10,14 @@ use explicit::{ExplicitBody, InternalForce, Precision};
 use fem::{SurfaceRule, VolumeRule};
 use geometry::generate::{box_mesh, kidney_mesh};
 use geometry::{CellKind, Cloud, Kidney, Mesh, cloud};
+use integration::model::{Model, Projection, solve, steps};
 use interp::Scheme;
 use lanes::LanePath;
-use material::{Law, LinearElastic, NeoHookean};
+use material::{HolzapfelOgden, Law, LinearElastic, NeoHookean};
 use shape::{DilationGroups, FixedDof, HourglassModulus, Matrix3, Point3, RowBlocks, Vector3, VolumeRows};
-use statics::{Assembled, LinearBody, LinearProblem, assemble};
+use statics::{
+    Assembled, FollowingLoad, LinearBody, LinearProblem, Load, PenaltySurface, StaticProblem, assemble,
+};
 
 type Kernels = Vec<(&'static str, fn(usize))>;
 
@@ -40,6 +43,10 @@ fn main() -> ExitCode {
         ("explicit-tet10", |times| force(CellKind::Tet10, false, times)),
         ("contact-jaw", jaw),
         ("transfer-apply", transfer),
+        ("newton-dead-pressure", |times| newton(Condition::DeadPressure, times)),
+        ("newton-following-pressure", |times| newton(Condition::FollowingPressure, times)),
+        ("newton-fibers", |times| newton(Condition::Fibers, times)),
+        ("newton-springs", |times| newton(Condition::Springs, times)),
     ];
     let args: Vec<String> = std::env::args().skip(1).collect();
     match &args[..] {
@@ -238,5 +245,56 @@ fn transfer(times: usize) {
     let mut out = vec![Vector3::zeros(); targets.len()];
     for _ in 0..100 * times {
         blocks.apply_into(black_box(&field), &mut out);
+    }
+}
+
+/// Differences between steps at large strain.
+#[derive(Clone, Copy, PartialEq)]
+enum Condition {
+    DeadPressure,
+    FollowingPressure,
+    /// A law with fibres in place of the neo-Hookean law.
+    Fibers,
+    /// Springs under the bottom in place of constrained nodes.
+    Springs,
+}
+
+/// Solves one step of a block of hex8 that is pressed from above, in eight tangents or fewer.
+fn newton(condition: Condition, times: usize) {
+    let model = Model::block((CellKind::Hex8, Projection::Standard), [6, 6, 6]);
+    let law = match condition {
+        Condition::Fibers => {
+            let law = HolzapfelOgden::new([2e3, 5.0], [4e3, 5.0], [1e3, 5.0], [5e2, 5.0], 2e5);
+            Law::HolzapfelOgden(law.unwrap())
+        }
+        _ => Law::NeoHookean(NeoHookean::new(20e3, 0.45).unwrap()),
+    };
+    let axes = vec![Matrix3::identity(); model.volume.weights().len()];
+    let (top, bottom) = (model.facets(&["z-max"]), model.facets(&["z-min"]));
+    let rows = fem::surface_rows(&model.mesh, &top, &SurfaceRule::STANDARD).unwrap();
+    let flux = fem::flux_rows(&model.mesh, &top, &SurfaceRule::STANDARD).unwrap();
+    let ground = fem::surface_rows(&model.mesh, &bottom, &SurfaceRule::STANDARD).unwrap();
+    let values = vec![1e3; rows.weights().len()];
+    let following = [FollowingLoad::pressure(&flux, &values).unwrap()];
+    let loads = [Load::Pressure { surface: &rows, values }];
+    let fixed = model.hold(&["z-min"], &[0, 1, 2], |_| Vector3::zeros());
+    let springs = [PenaltySurface {
+        axes: [true; 3],
+        along_normal: false,
+        values: vec![Vector3::zeros(); ground.weights().len()],
+        from: Vec::new(),
+        beta: 1e6,
+        damping: 0.0,
+        surface: &ground,
+    }];
+    let mut problem = StaticProblem { loads: &loads, fixed: &fixed, ..model.problem(&law) };
+    match condition {
+        Condition::DeadPressure => {}
+        Condition::FollowingPressure => (problem.loads, problem.following) = (&[], &following),
+        Condition::Fibers => problem.solid.axes = &axes,
+        Condition::Springs => (problem.fixed, problem.penalties) = (&[], &springs),
+    }
+    for _ in 0..times {
+        black_box(solve("kernel", black_box(&problem), &steps(1)));
     }
 }

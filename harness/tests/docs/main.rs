@@ -19,6 +19,7 @@ mod reference;
 use std::path::{Path, PathBuf};
 
 use markdown::Page;
+use rayon::prelude::*;
 
 /// Root of the workspace.
 fn root() -> &'static Path {
@@ -49,10 +50,12 @@ fn pages() -> Vec<Page> {
 
 #[test]
 fn commands_do_what_the_pages_say() {
-    let mut wrong = Vec::new();
-    for page in pages().iter().filter(|page| page.has_commands()) {
-        wrong.extend(command::failures(page));
-    }
+    let wrong: Vec<String> = pages()
+        .par_iter()
+        .with_max_len(1)
+        .filter(|page| page.has_commands())
+        .flat_map_iter(command::failures)
+        .collect();
     assert!(wrong.is_empty(), "{}", wrong.join("\n\n"));
 }
 

@@ -103,7 +103,7 @@ fn more_nodes_wanted_are_never_fewer_made() {
         ("strip", surface(common::block([80.0, 10.0, 1.0]))),
         ("bumpy", surface(bumpy(4))),
     ];
-    let wanted = [20, 50, 100, 200, 400, 401, 800, 810, 1600, 3000, 3200, 5000];
+    let wanted = [20, 100, 400, 401, 800, 810, 3000];
     for (name, surface) in &bodies {
         let [mut last, mut quadratic] = [0; 2];
         for nodes in wanted {
