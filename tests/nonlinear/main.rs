@@ -11,6 +11,7 @@ mod iterated;
 mod kept;
 mod locking;
 mod manufactured;
+mod modal;
 mod quadratic;
 mod snap;
 mod tunnels;

@@ -16,7 +16,7 @@ use super::purpose::Purpose;
 use super::reference::Reference;
 use super::report::{Report, which};
 use super::scene::Scene;
-use super::{condition, foundation, material as materials, method, timing, tool};
+use super::{condition, foundation, material as materials, method, timing, tool, training};
 use crate::exact::{Exact, SolutionEntry};
 
 /// Reports every contradiction.
@@ -46,6 +46,7 @@ pub(crate) fn scene(scene: &Scene, report: &Report) {
         bounds(scene, report);
     }
     goals(scene, report);
+    training::demands(scene, report);
     if let Some(reference) = reference {
         self::reference(reference, scene, report);
     }
@@ -189,6 +190,10 @@ fn met(needs: Needs, scene: &Scene) -> (bool, &'static str) {
         Needs::Frames => (
             scene.procedure.has_frames(),
             "needs [procedure] kind = \"vbd\", \"xpbd\" or \"implicit-cg\" in the scene",
+        ),
+        Needs::Reduced => (
+            scene.methods.iter().any(|method| method.pod.is_some()),
+            "needs a method with pod = { modes = ... } in the scene",
         ),
         Needs::ToolLoop | Needs::PointLoop => in_real_time(needs, scene),
         Needs::Newton => (

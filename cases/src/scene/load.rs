@@ -7,7 +7,7 @@ use super::document;
 use super::error::{ErrorKind, SceneError, unread};
 use super::scene::{Scene, SceneKeys};
 use super::set::Override;
-use super::{fitted, sample, shared, tissue};
+use super::{fitted, sample, shared, tissue, training};
 
 /// Reads the scene in a file. Messages name the file by `path` as given.
 pub fn load(path: &Path) -> Result<Scene, Vec<SceneError>> {
@@ -31,6 +31,7 @@ pub fn parse_with(text: &str, file: &str, overrides: &[Override]) -> Result<Scen
     let scene = resolved(keys, origin)?;
     sample::driven(&scene)?;
     fitted::driven(&scene)?;
+    training::trainable(&scene)?;
     Ok(scene)
 }
 

@@ -55,6 +55,7 @@ mod timing;
 mod tissue;
 mod tool;
 mod touch;
+mod training;
 mod units;
 mod vary;
 mod vocabulary;
@@ -81,8 +82,8 @@ pub use measured::Measured;
 pub use mesh_file::MeshFile;
 pub use method::{
     Adapt, Basis, Cloud, ConstraintRows, Dilation, Efg, Element, Essential, EssentialKind, External, Family,
-    Fem, Functions, Hourglass, HourglassModulus, Integration, Jitter, Mass, Method, Refine, Regions, Setting,
-    Size, SupportRule, SupportShape,
+    Fem, Functions, Hourglass, HourglassModulus, Integration, Jitter, Mass, Method, Pod, Refine, Regions,
+    Setting, Size, SupportRule, SupportShape,
 };
 pub use output::{Enclosed, Output, Repeated, Stretch, Target, Transfer};
 pub use procedure::{
@@ -98,4 +99,5 @@ pub use selection::Place;
 pub use set::Override;
 pub use study::{Run, Study, load_study, load_study_for, parse_study, study_schema};
 pub use tool::{Friction, Tool};
+pub use training::Training;
 pub use vary::{Statistic, StatisticCheck, VariedKey, Vary};

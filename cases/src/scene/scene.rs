@@ -25,6 +25,7 @@ use super::real_time::{RealTime, RealTimeKeys};
 use super::reference::{Reference, ReferenceKeys};
 use super::report::Report;
 use super::tool::{Tool, ToolKeys};
+use super::training::{Training, TrainingKeys};
 use super::vary::{Vary, VaryKeys};
 
 /// A scene: a body, its material, supports and loads, the methods to run, the reference, and the checks.
@@ -69,6 +70,8 @@ pub(crate) struct SceneKeys {
     check: Vec<CheckKeys>,
     vary: Option<VaryKeys>,
     fit: Option<FitKeys>,
+    #[serde(default)]
+    training: Vec<TrainingKeys>,
 }
 
 /// A checked scene.
@@ -114,6 +117,8 @@ pub struct Scene {
     pub vary: Option<Vary>,
     /// Constants that are fitted to a measured curve.
     pub fit: Option<Fit>,
+    /// Runs from whose states reduced models take their deformations.
+    pub training: Vec<Training>,
     /// Whether the scene stands for the fit of its constants, which is one task.
     pub is_fit: bool,
     /// Number of the sample of its uncertain inputs, from 0; `None` for the scene of the file.
@@ -222,6 +227,7 @@ impl SceneKeys {
         let checks = report.each("check", self.check, CheckKeys::read);
         let vary = self.vary.map(|keys| keys.read(&report.at("vary")));
         let fit = self.fit.and_then(|keys| keys.read(&report.at("fit")));
+        let training = report.each("training", self.training, TrainingKeys::read);
         let (body, material) = (body?, material?);
         (regions.len() == count && sound_curves).then(|| Scene {
             title: self.title,
@@ -244,6 +250,7 @@ impl SceneKeys {
             checks,
             vary,
             fit,
+            training,
             is_fit: false,
             sample: None,
             varied: None,

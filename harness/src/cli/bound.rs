@@ -150,7 +150,13 @@ fn meshed(
             jitter: None,
             adapt: None,
         });
-        return Ok(scene::Method { id: "bounds".into(), series: "bounds".into(), family, mass: None });
+        return Ok(scene::Method {
+            id: "bounds".into(),
+            series: "bounds".into(),
+            family,
+            mass: None,
+            pod: None,
+        });
     }
     let mut best: Option<(bool, usize, &scene::Method)> = None;
     for &index in chosen {

@@ -130,6 +130,8 @@ fn setup(text: &Text) -> Result<Setup, String> {
         mass: None,
         contact: None,
         exact: None,
+        pod: None,
+        training: Vec::new(),
     })
 }
 

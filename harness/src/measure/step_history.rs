@@ -20,6 +20,11 @@ pub(crate) fn report(
     let mut steps = steps.clone();
     push(metrics, &metric::LOAD_CARRIED, last.load);
     push(metrics, &metric::SMALLEST_J, last.smallest_j);
+    if let Some(reduced) = &run.prepared.reduced {
+        push(metrics, &metric::TRAINING_DISTANCE, reduced.distance(&history.fields));
+        push(metrics, &metric::SAMPLED_CELLS, reduced.cells);
+        push(metrics, &metric::SAMPLING_ERROR, reduced.error);
+    }
     push(metrics, &metric::LOAD_STEPS, steps.len() as f64);
     metrics.extend(of_procedure);
     for (index, tool) in last.tools.iter().enumerate() {

@@ -46,6 +46,8 @@ pub struct Counters {
     pub time_steps: u64,
     /// Steps of dynamic relaxation.
     pub relaxation_steps: u64,
+    /// States of training runs from which a reduced model was learnt.
+    pub training_states: u64,
     /// Linear systems that Newton's method solved in converged steps.
     pub newton_iterations: u64,
     /// Assembled stiffness matrices; in a static procedure, those of failed steps included.
@@ -85,6 +87,7 @@ impl Counters {
             StageName::Elimination => self.fixed_dofs + self.eliminated_rows,
             StageName::WeakSupports => self.flux_rows + self.multiplier_rows,
             StageName::Factorisation => self.factorisations,
+            StageName::Training => self.training_states,
             StageName::Newton => self.newton_iterations,
             StageName::Relaxation => self.relaxation_steps,
             StageName::Contact => self.contact_evaluations,
@@ -118,6 +121,7 @@ impl AddAssign for Counters {
         self.mass_nodes += other.mass_nodes;
         self.time_steps += other.time_steps;
         self.relaxation_steps += other.relaxation_steps;
+        self.training_states += other.training_states;
         self.newton_iterations += other.newton_iterations;
         self.assemblies += other.assemblies;
         self.factorisations += other.factorisations;

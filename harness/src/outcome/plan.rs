@@ -60,6 +60,8 @@ stages! {
     WeakSupports = "weak supports",
     /// Factorisation of a matrix.
     Factorisation = "factorisation",
+    /// Runs of the full method from which a reduced model is learnt.
+    Training = "training",
     /// Iterations of Newton's method.
     Newton = "Newton iterations",
     /// Dynamic relaxation beyond a limit point.

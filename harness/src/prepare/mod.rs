@@ -11,6 +11,7 @@ mod means;
 mod nodal_patch;
 mod own_curves;
 mod penalty_points;
+mod reduced;
 pub(crate) mod region_check;
 mod sharp;
 mod support_forces;
@@ -46,6 +47,7 @@ use surfaces::values_of;
 use values::{Values, at, not_finite};
 
 pub use means::check_means;
+pub use reduced::{Reduced, chosen};
 pub use support_forces::ConditionForces;
 
 /// A weakly constrained surface with its tables.
@@ -95,6 +97,8 @@ pub struct Prepared {
     /// Contact tables; `None` without tools.
     touch: Option<Touch>,
     own_curves: OwnCurves,
+    /// The reduced model, if the method has one.
+    pub reduced: Option<Reduced>,
 }
 
 /// Fills all tables in the plan.
@@ -128,6 +132,7 @@ pub fn prepare(
         held: Vec::new(),
         touch: None,
         own_curves: OwnCurves::default(),
+        reduced: None,
     };
     for load in &setup.loads {
         prepared.load(method, load)?;

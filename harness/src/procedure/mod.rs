@@ -17,6 +17,7 @@ mod solution;
 mod stages;
 mod statics;
 mod traced;
+mod training;
 
 use cases::scene::Procedure;
 
@@ -31,6 +32,7 @@ pub(crate) use refine::refined;
 pub(crate) use solution::{Carried, Solution, StepHistory, Vibration};
 pub(crate) use statics::{in_frames, solves, with_static_problem};
 pub(crate) use traced::{traced, unbalanced};
+pub(crate) use training::reduced;
 
 /// Predicts the modes of another method.
 pub(crate) fn predict_modes(problem: &Problem, meters: &mut Meters) -> Result<Solution, Failure> {

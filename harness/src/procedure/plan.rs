@@ -1,6 +1,6 @@
 //! The plan of a run: the stages that it needs, the stages that it skips, and why.
 
-use cases::scene::{ConstraintRows, Dilation, Goal, Procedure};
+use cases::scene::{ConstraintRows, Dilation, Goal, Pod, Procedure};
 
 use super::frames::Sweeps;
 use super::solution::Solution;
@@ -48,6 +48,9 @@ pub(crate) fn plan(method: &Discretisation, setup: &Setup, wanted: Wanted) -> Pl
     add(StageName::Elimination, elimination(method, setup));
     add(StageName::WeakSupports, weak_supports(method, setup));
     add(StageName::Factorisation, stages.factorisation);
+    if let Some(pod) = &setup.pod {
+        add(StageName::Training, training(setup, pod));
+    }
     add(StageName::Newton, stages.newton);
     add(StageName::Relaxation, stages.relaxation);
     add(StageName::Contact, contact(setup));
@@ -216,6 +219,12 @@ fn estimate(method: &Discretisation) -> (bool, String) {
         None => (true, "a linear system of quadratic elements on the same body".into()),
         Some(_) => (false, "the equilibrium is that of another program".into()),
     }
+}
+
+fn training(setup: &Setup, pod: &Pod) -> (bool, String) {
+    let cells =
+        pod.cells.map_or("all cells".into(), |part| format!("at most {} % of the cells", 100.0 * part));
+    (true, format!("{} deformations from {} runs, forces in {cells}", pod.modes, setup.training.len()))
 }
 
 fn trace(method: &Discretisation, goal: &Goal) -> (bool, String) {

@@ -62,6 +62,9 @@ pub struct Relaxed {
 /// Whether a method can continue by relaxation after its static path stalls, with the reason.
 pub(super) fn possible(method: &Discretisation, setup: &Setup) -> (bool, &'static str) {
     match method.dilation {
+        _ if setup.pod.is_some() => {
+            (false, "not available with a reduced model; the load path ends if the solver stalls")
+        }
         _ if !setup.curved().is_empty() => {
             (false, "not available with curves over time; the load path ends if the solver stalls")
         }

@@ -5,6 +5,7 @@ use std::time::Instant;
 use cases::scene::{Newton, OnStall, Static};
 use catalogue::metric;
 use contact::{ContactHistory, ContactSurface, DrivenTool};
+use geometry::Vector3;
 use material::Material as _;
 use shape::{Coarser, Resultant};
 use statics::{
@@ -17,7 +18,7 @@ use super::problem::Problem;
 use super::relaxation::{self, Relaxed, Start};
 use super::solution::{Carried, Solution, StepHistory};
 use super::stages::Stages;
-use crate::discretise::Discretisation;
+use crate::discretise::{Discretisation, Volume};
 use crate::error::Failure;
 use crate::outcome::timing::Meters;
 use crate::outcome::{Counters, LoadStep, Metric, StageName, ToolStep, push};
@@ -119,8 +120,10 @@ fn path(problem: &Problem, asked: &Static, counters: &mut Counters) -> Result<(S
     let tangents = Tangents::new(problem)?;
     let usual = Curves::proportional();
     let path = with_static_problem(method, setup, prepared, contact.as_ref(), usual, |problem| {
-        let systems = tangents.systems();
+        let systems = tangents.systems().unwrap_or(problem.systems);
         solve_static(&StaticProblem { systems, ..problem.clone() }, &params, |step, rest| {
+            let whole = whole_reaction(setup, prepared, &rest);
+            let rest = Rest { reaction: whole.as_deref().unwrap_or(rest.reaction), ..rest };
             supports = support_forces(method, prepared, &rest, step.time);
             reaction = rest.reaction.to_vec();
             points = prepared.foundation_forces(rest.u, &[]);
@@ -210,7 +213,8 @@ pub(super) fn near<T>(
     params.keeps = NewtonParams::KEEPS;
     let usual = Curves::proportional();
     Ok(with_static_problem(method, setup, prepared, contact.as_ref(), usual, |problem| {
-        work(&StaticProblem { systems: tangents.systems(), ..problem.clone() }, &params, near)
+        let systems = tangents.systems().unwrap_or(problem.systems);
+        work(&StaticProblem { systems, ..problem.clone() }, &params, near)
     }))
 }
 
@@ -238,6 +242,20 @@ pub(super) fn predicted(problem: &Problem, carried: &Carried) -> Result<Solution
         linearised: linear,
         ..Solution::default()
     })
+}
+
+/// Returns the reaction of the nodal supports, N, from the forces in all cells, if the model evaluates forces in
+/// some cells only. A cell that is not chosen gives its part of a support's force, too.
+fn whole_reaction(setup: &Setup, prepared: &Prepared, rest: &Rest) -> Option<Vec<Vector3>> {
+    let chosen = prepared.reduced.as_ref()?.volume.as_ref()?;
+    let forces = |volume| solid(setup, volume).nodal_forces(rest.u).ok();
+    let (all, part) = (forces(&prepared.volume)?, forces(chosen)?);
+    let mut reaction = rest.reaction.to_vec();
+    for held in prepared.fixed() {
+        let (node, axis) = (held.node as usize, held.axis as usize);
+        reaction[node][axis] += all[node][axis] - part[node][axis];
+    }
+    Some(reaction)
 }
 
 /// Forces of the supports on the body at an equilibrium.
@@ -271,10 +289,11 @@ impl Tangents {
         Ok(Tangents::Iterated(problem.prepared.source.coarser()?))
     }
 
-    fn systems(&self) -> LinearSystems<'_> {
+    /// The solver of the plan; `None` for that of the problem.
+    fn systems(&self) -> Option<LinearSystems<'_>> {
         match self {
-            Tangents::Factored => LinearSystems::Factored,
-            Tangents::Iterated(linear) => LinearSystems::Iterated { linear: linear.as_ref() },
+            Tangents::Factored => None,
+            Tangents::Iterated(linear) => Some(LinearSystems::Iterated { linear: linear.as_ref() }),
         }
     }
 }
@@ -341,24 +360,13 @@ pub(crate) fn with_static_problem<T>(
     usual: Curves<'static>,
     solve: impl FnOnce(&StaticProblem) -> T,
 ) -> T {
-    let volume = &prepared.volume;
-    let dilation = match (&volume.groups, &volume.pressure) {
-        (_, Some(rows)) => SolidDilation::Mixed(rows),
-        (Some(groups), None) => SolidDilation::Groups(groups),
-        (None, None) => SolidDilation::Standard,
-    };
+    let reduced = prepared.reduced.as_ref();
+    let volume = reduced.and_then(|reduced| reduced.volume.as_ref()).unwrap_or(&prepared.volume);
     let tools: Vec<DrivenTool> =
         setup.tools.iter().map(|t| DrivenTool { tool: &t.tool, drive: t.drive }).collect();
     solve(&StaticProblem {
         nodes: method.nodes(),
-        solid: Solid {
-            volume: &volume.rows,
-            laws: &setup.laws,
-            region: &volume.region,
-            axes: &volume.axes,
-            active: Active::new(&setup.active),
-            dilation,
-        },
+        solid: solid(setup, volume),
         loads: &prepared.loads(),
         following: prepared.following(),
         fixed: prepared.fixed(),
@@ -366,8 +374,25 @@ pub(crate) fn with_static_problem<T>(
         contact,
         tools: &tools,
         curves: prepared.curves(usual),
-        systems: LinearSystems::Factored,
+        systems: reduced.map_or(LinearSystems::Factored, |reduced| LinearSystems::Modal(&reduced.basis)),
     })
+}
+
+/// The body as a quadrature with laws.
+pub(super) fn solid<'a>(setup: &'a Setup, volume: &'a Volume) -> Solid<'a> {
+    let dilation = match (&volume.groups, &volume.pressure) {
+        (_, Some(rows)) => SolidDilation::Mixed(rows),
+        (Some(groups), None) => SolidDilation::Groups(groups),
+        (None, None) => SolidDilation::Standard,
+    };
+    Solid {
+        volume: &volume.rows,
+        laws: &setup.laws,
+        region: &volume.region,
+        axes: &volume.axes,
+        active: Active::new(&setup.active),
+        dilation,
+    }
 }
 
 /// Number of linear systems solved in a step. An iteration of zero length only confirmed convergence.

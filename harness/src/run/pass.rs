@@ -28,7 +28,11 @@ pub(super) fn pass(
     let Meters { timings, counters, .. } = meters;
     // The tables that an external solver is compared with do not count as its preparation time.
     let phase = if current.outside.is_some() { "tables" } else { "prepare" };
-    let prepared = timings.time(phase, || prepare(current, setup, plan, counters))?;
+    let mut prepared = timings.time(phase, || prepare(current, setup, plan, counters))?;
+    if let Some(pod) = &setup.pod {
+        let reduced = timings.time("train", || procedure::reduced(current, setup, pod, plan, counters))?;
+        prepared.reduced = Some(reduced);
+    }
     let Request { watch, probes, .. } = *request;
     let problem = Problem { method: current, setup, prepared: &prepared, plan, watch, probes };
     let solution = procedure::solve(&problem, meters)?;

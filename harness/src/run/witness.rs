@@ -77,7 +77,7 @@ fn witnesses(reference: &Method, nodes: usize) -> Result<Vec<Method>, String> {
         };
         let id = element.name().to_string();
         let family = Family::Fem(fem);
-        Method { series: id.clone(), id, family, mass: reference.mass }
+        Method { series: id.clone(), id, family, mass: reference.mass, pod: None }
     };
     if let Size::File(file) = &size {
         let name = file.path.file_name().unwrap_or_default().to_string_lossy();

@@ -101,7 +101,22 @@ impl Scenario<'_> {
             mass: self.method.mass,
             contact: exact.as_ref().and_then(|exact| exact.contact()),
             exact: exact.filter(|exact| exact.contact().is_none()),
+            pod: self.method.pod,
+            training: if self.method.pod.is_some() { self.training()? } else { Vec::new() },
         })
+    }
+
+    /// Builds the problems of the training runs.
+    fn training(&self) -> Result<Vec<Setup>, Failure> {
+        let setup = |index: usize| {
+            let scene = self
+                .scene
+                .at_training(&self.method.id, index)
+                .map_err(|errors| Failure::Scene(errors[0].clone().into()))?;
+            let method = scene::Method { pod: None, ..self.method.clone() };
+            Scenario { scene: &scene, method, ..self.clone() }.setup()
+        };
+        (0..self.scene.training.len()).map(setup).collect()
     }
 
     fn supports(&self, e: &Medium) -> Result<Vec<Support>, Failure> {

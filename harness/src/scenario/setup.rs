@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use cases::exact::{Contact, Exact};
-use cases::scene::{Mass, Output, Place, Procedure, WallRule};
+use cases::scene::{Mass, Output, Place, Pod, Procedure, WallRule};
 use geometry::{Point3, Vector3};
 use material::{Law, LinearElastic, Prony};
 use shape::Curve;
@@ -147,6 +147,10 @@ pub struct Setup {
     pub contact: Option<Contact>,
     /// The exact field, if the scene names one.
     pub exact: Option<Box<dyn Exact>>,
+    /// Reduction of the method to a few deformations.
+    pub pod: Option<Pod>,
+    /// The problems from whose solutions the deformations are learnt.
+    pub training: Vec<Setup>,
 }
 
 impl Setup {

@@ -28,6 +28,7 @@
 mod error;
 mod linear_solver;
 mod multigrid;
+mod nonnegative;
 mod pattern;
 mod row_parts;
 mod stiffness;
@@ -40,5 +41,6 @@ pub use linear_solver::{
     Symbolic, Symmetric, Unsymmetric, analyse, factor, factor_as, factor_roughly, reserve_workspaces,
 };
 pub use multigrid::{Iterations, Multigrid, PressureGroup, TangentLevels};
+pub use nonnegative::nonnegative_weights;
 pub use pattern::{BlockPattern, Connectivity, Incidence};
 pub use stiffness::Stiffness;

@@ -96,9 +96,10 @@ pub use laplace::{LaplaceProblem, solve_laplace};
 pub use load::{Load, nodal_forces, nodal_forces_by_curve};
 pub use modes::{ALL_MODES_LIMIT, Modes, lowest_modes, modes};
 pub use nonlinear::{
-    Active, Curves, FollowingLoad, Frames, Goal, Inverted, Iteration, LinearSystems, Nearby, NewtonParams,
-    PenaltySurface, Predicted, Rest, Solid, SolidDilation, StaticError, StaticParams, StaticPath,
-    StaticProblem, StaticWork, Step, Timing, Traced, Worst, predict, solve_static, trace, unbalanced,
+    Active, Basis, Curves, FollowingLoad, Frames, Goal, Inverted, Iteration, LinearSystems, Nearby,
+    NewtonParams, PenaltySurface, Predicted, Rest, Solid, SolidDilation, StaticError, StaticParams,
+    StaticPath, StaticProblem, StaticWork, Step, Timing, Traced, Worst, predict, solve_static, trace,
+    unbalanced,
 };
 pub use problem::{Assembled, LinearProblem, assemble};
 pub use recover::{body_stress, mean_pressure, strain_energy, stress};

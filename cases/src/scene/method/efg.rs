@@ -8,6 +8,7 @@ use super::common::{Dilation, Mass, Size, SizeKeys};
 use super::essential::{Essential, EssentialKeys};
 use super::functions::{FunctionKeys, Functions};
 use super::integration::{Integration, IntegrationKeys};
+use super::pod::PodKeys;
 use crate::scene::procedure::ProcedureKind;
 use crate::scene::report::Report;
 use crate::scene::words::words;
@@ -28,6 +29,7 @@ pub(crate) struct EfgKeys {
     background: Option<SizeKeys>,
     /// Mass matrix for vibrations; kind = "modes" only
     pub mass: Option<Mass>,
+    pub pod: Option<PodKeys>,
 }
 
 /// Settings of an element-free Galerkin method.

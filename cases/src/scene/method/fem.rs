@@ -7,6 +7,7 @@ use serde::Deserialize;
 
 use super::common::{Dilation, Jitter, JitterKeys, Mass, Size, SizeKeys};
 use super::element::Element;
+use super::pod::PodKeys;
 use crate::scene::goal::Goal;
 use crate::scene::report::Report;
 use crate::scene::units::{Part, Q};
@@ -84,6 +85,7 @@ pub(crate) struct FemKeys {
     refine: Option<AdaptKeys>,
     /// Mass matrix for vibrations; kind = "modes" only
     pub mass: Option<Mass>,
+    pub pod: Option<PodKeys>,
 }
 
 /// Settings of a finite element method.

@@ -9,6 +9,7 @@ mod external;
 mod fem;
 mod functions;
 mod integration;
+mod pod;
 
 use std::path::PathBuf;
 
@@ -29,6 +30,7 @@ pub use fem::{Adapt, Fem, Hourglass, HourglassModulus};
 pub use functions::{Basis, Functions, SupportRule, SupportShape};
 pub use integration::Integration;
 pub(crate) use integration::IntegrationKeys;
+pub use pod::Pod;
 
 use super::procedure::ProcedureKind;
 use super::report::Report;
@@ -70,6 +72,8 @@ pub struct Method {
     pub family: Family,
     /// Mass matrix for vibrations (`kind = "modes"`, which requires it).
     pub mass: Option<Mass>,
+    /// Reduction to a few deformations.
+    pub pod: Option<Pod>,
 }
 
 /// Family of a method.
@@ -88,21 +92,22 @@ const LONGEST_ID: usize = 64;
 
 impl MethodKeys {
     pub fn read(self, report: &Report) -> Option<Method> {
-        let (id, series, mass, family) = match self {
+        let (id, series, mass, pod, family) = match self {
             MethodKeys::Fem(named) => {
-                let Named { id, series, keys } = *named;
-                (id, series, keys.mass, keys.read(report).map(Family::Fem))
+                let Named { id, series, mut keys } = *named;
+                (id, series, keys.mass, keys.pod.take(), keys.read(report).map(Family::Fem))
             }
             MethodKeys::Efg(named) => {
-                let Named { id, series, keys } = *named;
-                (id, series, keys.mass, keys.read(report).map(Family::Efg))
+                let Named { id, series, mut keys } = *named;
+                (id, series, keys.mass, keys.pod.take(), keys.read(report).map(Family::Efg))
             }
             MethodKeys::External(named) => {
                 let Named { id, series, keys } = *named;
-                (id, series, None, keys.read(report).map(Family::External))
+                (id, series, None, None, keys.read(report).map(Family::External))
             }
         };
-        Some(Method { series: series.unwrap_or_else(|| id.clone()), id, family: family?, mass })
+        let pod = pod.map(|keys| keys.read(&report.at("pod")));
+        Some(Method { series: series.unwrap_or_else(|| id.clone()), id, family: family?, mass, pod })
     }
 }
 
@@ -130,6 +135,7 @@ pub(crate) fn demands(methods: &[Method], kind: ProcedureKind, has_regions: bool
         }
         let help = "leave it out, or take [procedure] kind = \"modes\"";
         report.require(vibrates || method.mass.is_none(), "mass", "applies to vibrations only", help);
+        pod::demands(method, kind, &report.at("pod"));
         match &method.family {
             Family::Fem(fem) => fem.demands(&report),
             Family::Efg(efg) => efg.demands(kind, has_regions, &report),
@@ -227,7 +233,7 @@ impl Method {
         let Family::Fem(fem) = &self.family else { return None };
         let family = Family::External(External::twin(fem, adapter)?);
         let name = |own: &str| format!("{own}-{adapter}");
-        Some(Method { id: name(&self.id), series: name(&self.series), family, mass: None })
+        Some(Method { id: name(&self.id), series: name(&self.series), family, mass: None, pod: None })
     }
 
     /// Whether the method is `other`, at any size, solved by another solver.

@@ -86,6 +86,8 @@ pub enum Needs {
     Explicit,
     /// Frames with a fixed budget of work.
     Frames,
+    /// A reduced model.
+    Reduced,
     /// A loop in real time, and a tool.
     ToolLoop,
     /// A loop in real time, and probes.

@@ -241,6 +241,14 @@ metrics! {
         "number of linear systems solved by Newton's method in all steps";
     CUT_BACKS: "cut-backs", "cut-back steps", None, Count, Newton,
         "number of steps that failed and were repeated with a shorter length";
+    TRAINING_DISTANCE: "training-distance", "distance from the training", None, Value, Reduced,
+        "largest distance of a step's displacement, in the modes of the reduced model, from the nearest state of the \
+         training, divided by the largest displacement of the run";
+    SAMPLED_CELLS: "sampled-cells", "part of the cells with forces", None, Value, Reduced,
+        "part of the cells in which a reduced model evaluates forces";
+    SAMPLING_ERROR: "sampling-error", "error of the sampled forces", None, Error, Reduced,
+        "difference of the forces on the modes by the sampled cells from those by all cells, in all states of the \
+         training, relative to the latter";
     RELAXATION_STEPS: "relaxation-steps", "relaxation steps", None, Count, Steps,
         "pseudo-time steps of dynamic relaxation";
     RELAXATION_ERROR: "relaxation-error", "relaxation error", None, Error, Steps,

@@ -57,6 +57,21 @@ impl Solid<'_> {
         Ok(energies)
     }
 
+    /// Returns the internal forces on the nodes, N, at nodal parameters `u` (m), without a pressure field and
+    /// hourglass control.
+    ///
+    /// # Errors
+    /// A point is inverted.
+    pub fn nodal_forces(&self, u: &[Vector3]) -> Result<Vec<Vector3>, StaticError> {
+        let internal = self.internal(self.pairs().as_ref(), u, &[])?;
+        let mut forces = vec![Vector3::zeros(); self.node_count()];
+        for (q, stress) in internal.stress.iter().enumerate() {
+            let (nodes, grads) = self.volume.row(q);
+            nodes.iter().zip(grads).for_each(|(&node, grad)| forces[node as usize] += stress * grad);
+        }
+        Ok(forces)
+    }
+
     /// Computes energy and stresses at nodal parameters `u` (m) and pressures `p` (Pa).
     pub(crate) fn internal(
         &self,

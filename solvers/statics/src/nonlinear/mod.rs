@@ -1,6 +1,7 @@
 //! Bodies under large displacements: internal energy with projected volume change, and equilibrium by
 //! Newton's method.
 
+mod basis;
 mod curves;
 mod energy;
 mod error;
@@ -34,6 +35,7 @@ pub(crate) use stages::Stages;
 pub(crate) use stepper::{Attempt, Stepper};
 pub(crate) use system::SurfaceTable;
 
+pub use basis::Basis;
 pub use curves::{Curves, Timing};
 pub use error::{Inverted, StaticError, Worst};
 pub use following::FollowingLoad;

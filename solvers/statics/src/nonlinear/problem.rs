@@ -3,6 +3,7 @@
 use contact::{ContactSurface, Drive, DrivenTool};
 use shape::{Coarser, FixedDof, Point3};
 
+use super::basis::Basis;
 use super::curves::Curves;
 use super::following::FollowingLoad;
 use super::penalty::PenaltySurface;
@@ -21,6 +22,9 @@ pub enum LinearSystems<'a> {
         /// Linear mesh of a quadratic mesh, the next coarser level.
         linear: Option<&'a Coarser>,
     },
+    /// The displacement is a combination of a few modes, and the tangent of their coefficients is dense.
+    /// Prescribed nodes stay at rest, and there is no pressure field.
+    Modal(&'a Basis),
 }
 
 /// A body with loads, supports and tools.

@@ -6,6 +6,7 @@ use lanes::LanePath;
 use rayon::prelude::*;
 use shape::{Matrix3, Vector3};
 
+use super::basis::Basis;
 use super::energy::{Hessian, Internal};
 use super::following::{FollowingLoad, Pressed};
 use super::groups::Pairs;
@@ -121,6 +122,13 @@ pub(crate) struct Skew {
     pairs: Vec<([u32; 2], Matrix3)>,
 }
 
+impl Skew {
+    /// Whether the tangent is symmetric.
+    pub fn is_empty(&self) -> bool {
+        self.points.is_empty() && self.pairs.is_empty()
+    }
+}
+
 /// Structure of the system of a solid with loaded or constrained surfaces.
 pub(crate) struct System<'a> {
     solid: Solid<'a>,
@@ -139,13 +147,15 @@ pub(crate) struct System<'a> {
     pub stiffness: Stiffness,
     /// Index of each degree of freedom among the unknowns, [`CONSTRAINED`] if prescribed; pressures follow.
     pub place: Vec<usize>,
-    /// Number of free displacement degrees of freedom.
+    /// Number of free displacement degrees of freedom, or of modes.
     pub free: usize,
     /// Scale of the pressure unknowns, Pa. Unscaled pressure entries of the matrix are 1e-15 of a stiffness,
     /// and the static regularisation would swamp them.
     pub pressure_scale: f64,
     /// Whether the tangent is assembled transposed.
     pub transposed: bool,
+    /// Modes whose coefficients are the unknowns; `None` for the free degrees of freedom.
+    basis: Option<&'a Basis>,
 }
 
 impl<'a> System<'a> {
@@ -207,7 +217,13 @@ impl<'a> System<'a> {
             free,
             pressure_scale: 1.0,
             transposed: false,
+            basis: None,
         }
+    }
+
+    /// Makes the coefficients of modes the unknowns.
+    pub fn restricted(self, basis: Option<&'a Basis>) -> System<'a> {
+        System { free: basis.map_or(self.free, Basis::len), basis, ..self }
     }
 
     /// Number of unknowns: free displacements and pressures.
@@ -402,9 +418,12 @@ impl<'a> System<'a> {
         entries
     }
 
-    /// Returns the vector of unknowns: the free components of the nodal vectors `nodal`, then the values
+    /// Returns the vector of unknowns: the free components of the nodal vectors `nodal`, or their parts along the modes, then the values
     /// `pressure`, one per pressure parameter. Nothing is multiplied by [`System::pressure_scale`].
     pub fn gather(&self, nodal: &[Vector3], pressure: &[f64]) -> Vec<f64> {
+        if let Some(basis) = self.basis {
+            return basis.project(nodal);
+        }
         let mut out = vec![0.0; self.dim()];
         for (dof, &at) in self.place.iter().enumerate().filter(|(_, at)| **at != CONSTRAINED) {
             out[at] = nodal[dof / 3][dof % 3];
@@ -416,6 +435,9 @@ impl<'a> System<'a> {
     /// Adds `factor` times the increments `step` of the unknowns to the nodal vectors `nodal` and the values
     /// `pressure`; the inverse of [`System::gather`]. Constrained components remain unchanged.
     pub fn scatter_add(&self, step: &[f64], factor: f64, nodal: &mut [Vector3], pressure: &mut [f64]) {
+        if let Some(basis) = self.basis {
+            return basis.add_to(step, factor, nodal);
+        }
         for (dof, &at) in self.place.iter().enumerate().filter(|(_, at)| **at != CONSTRAINED) {
             nodal[dof / 3][dof % 3] += factor * step[at];
         }

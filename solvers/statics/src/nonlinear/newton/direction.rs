@@ -2,6 +2,7 @@
 
 use algebra::{Factorization, Unsymmetric};
 
+use super::modal::Modal;
 use crate::nonlinear::system::Skew;
 
 /// A tangent ready to be solved, over the free unknowns and the displacements of the tools that have a
@@ -11,6 +12,8 @@ pub(super) enum Factored {
     Iterated(Skew),
     Symmetric(Factorization),
     Unsymmetric(Unsymmetric),
+    /// The tangent of the coefficients of a few modes.
+    Modal(Modal),
 }
 
 /// A Newton step with the factor that gave it.
@@ -33,7 +36,7 @@ impl Factored {
     /// constrained.
     pub fn stable(&self) -> bool {
         match self {
-            Factored::Symmetric(_) | Factored::Iterated(_) => true,
+            Factored::Symmetric(_) | Factored::Iterated(_) | Factored::Modal(_) => true,
             Factored::Unsymmetric(f) => f.stable(),
         }
     }

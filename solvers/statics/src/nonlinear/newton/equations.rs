@@ -13,7 +13,7 @@ use crate::load::nodal_forces_by_curve;
 use crate::nonlinear::energy::Internal;
 use crate::nonlinear::error::{StaticError, Worst};
 use crate::nonlinear::in_time::{Ended, TimeTerms};
-use crate::nonlinear::problem::StaticProblem;
+use crate::nonlinear::problem::{LinearSystems, StaticProblem};
 use crate::nonlinear::solid::{Active, Solid};
 use crate::nonlinear::system::{SurfaceTable, System};
 use crate::support::prescribed;
@@ -121,7 +121,12 @@ impl<'a> Equations<'a> {
         surfaces.extend(mass.cloned());
         let constrained: Vec<bool> = prescribed.iter().map(Option::is_some).collect();
         let solid = problem.solid;
-        let mut system = System::new(solid, &constrained, surfaces, problem.following);
+        let basis = match problem.systems {
+            LinearSystems::Modal(basis) => Some(basis),
+            LinearSystems::Factored | LinearSystems::Iterated { .. } => None,
+        };
+        let system = System::new(solid, &constrained, surfaces, problem.following);
+        let mut system = system.restricted(basis);
         system.springs = springs(solid.volume, |q| [solid.law(q).lambda(), solid.law(q).mu()]);
         Ok(Equations {
             problem,

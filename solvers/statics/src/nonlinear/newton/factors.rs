@@ -289,6 +289,7 @@ impl Factors {
         match factored {
             Factored::Symmetric(f) => f.solve(b).map(drop)?,
             Factored::Unsymmetric(f) => self.work.inner += f.solve(b, self.forcing)? as u64,
+            Factored::Modal(f) => f.solve(b)?,
             Factored::Iterated(skew) => {
                 self.work.inner += self.levels.chord(system, skew, b, self.forcing) as u64;
             }

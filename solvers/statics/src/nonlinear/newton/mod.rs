@@ -6,6 +6,7 @@ mod equations;
 mod factors;
 mod iterative;
 mod levels;
+mod modal;
 mod policy;
 mod predict;
 mod rigid;
@@ -344,7 +345,7 @@ impl<'a> Newton<'a> {
     fn prove(&mut self, last: &mut Direction, state: &State, balance: &Balance) -> Result<(), StaticError> {
         let Newton { equations, factors, .. } = self;
         last.definite = match &last.factored {
-            Factored::Symmetric(_) => return Ok(()),
+            Factored::Symmetric(_) | Factored::Modal(_) => return Ok(()),
             Factored::Unsymmetric(near) => factors.prove(near.matrix())?,
             Factored::Iterated(_) => match factors.levels.prove_definite(&equations.system) {
                 Some(iterations) => {

@@ -12,6 +12,7 @@ use super::state::State;
 use crate::error::SolveError;
 use crate::nonlinear::energy::Hessian;
 use crate::nonlinear::error::StaticError;
+use crate::nonlinear::problem::LinearSystems;
 use crate::nonlinear::system::SurfaceStiffness;
 
 impl Equations<'_> {
@@ -116,6 +117,9 @@ impl Newton<'_> {
         time: f64,
         prescribed_move: Option<&[Vector3]>,
     ) -> Result<Direction, StaticError> {
+        if let LinearSystems::Modal(basis) = self.equations.problem.systems {
+            return self.modal(basis, state, balance, time, prescribed_move);
+        }
         if self.iterates()
             && let Some(direction) = self.iterated(state, balance, time, prescribed_move)?
         {
@@ -158,7 +162,8 @@ impl Newton<'_> {
         self.take(last, right, state, balance, time)
     }
 
-    fn take(
+    /// Solves for the step with the factor of `last`.
+    pub(super) fn take(
         &mut self,
         last: Direction,
         mut step: Vec<f64>,
