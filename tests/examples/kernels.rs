@@ -16,7 +16,8 @@ use lanes::LanePath;
 use material::{HolzapfelOgden, Law, LinearElastic, NeoHookean};
 use shape::{DilationGroups, FixedDof, HourglassModulus, Matrix3, Point3, RowBlocks, Vector3, VolumeRows};
 use statics::{
-    Assembled, FollowingLoad, LinearBody, LinearProblem, Load, PenaltySurface, StaticProblem, assemble,
+    Assembled, Basis, FollowingLoad, LinearBody, LinearProblem, LinearSystems, Load, PenaltySurface,
+    StaticProblem, assemble, solve_static,
 };
 
 type Kernels = Vec<(&'static str, fn(usize))>;
@@ -47,6 +48,7 @@ fn main() -> ExitCode {
         ("newton-following-pressure", |times| newton(Condition::FollowingPressure, times)),
         ("newton-fibers", |times| newton(Condition::Fibers, times)),
         ("newton-springs", |times| newton(Condition::Springs, times)),
+        ("newton-modes", modes),
     ];
     let args: Vec<String> = std::env::args().skip(1).collect();
     match &args[..] {
@@ -296,5 +298,22 @@ fn newton(condition: Condition, times: usize) {
     }
     for _ in 0..times {
         black_box(solve("kernel", black_box(&problem), &steps(1)));
+    }
+}
+
+/// Solves eight steps of the same block for the coefficients of the eight modes that they pass through.
+fn modes(times: usize) {
+    let model = Model::block((CellKind::Hex8, Projection::Element), [6, 6, 6]);
+    let law = Law::NeoHookean(NeoHookean::new(20e3, 0.45).unwrap());
+    let top = fem::surface_rows(&model.mesh, &model.facets(&["z-max"]), &SurfaceRule::STANDARD).unwrap();
+    let fixed = model.hold(&["z-min"], &[0, 1, 2], |_| Vector3::zeros());
+    let loads = [Load::Pressure { surface: &top, values: vec![1e3; top.weights().len()] }];
+    let problem = StaticProblem { loads: &loads, fixed: &fixed, ..model.problem(&law) };
+    let (params, mut states) = (steps(8), Vec::new());
+    solve_static(&problem, &params, |_, rest| states.push(rest.u.to_vec())).unwrap();
+    let basis = Basis::of_states(&model.volume, &states, 8);
+    let problem = StaticProblem { systems: LinearSystems::Modal(&basis), ..problem };
+    for _ in 0..times {
+        black_box(solve("modes", black_box(&problem), &params));
     }
 }

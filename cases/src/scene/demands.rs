@@ -46,7 +46,7 @@ pub(crate) fn scene(scene: &Scene, report: &Report) {
         bounds(scene, report);
     }
     goals(scene, report);
-    training::demands(scene, report);
+    training::demands(&scene.training, &scene.methods, &scene.supports, &scene.output, report);
     if let Some(reference) = reference {
         self::reference(reference, scene, report);
     }

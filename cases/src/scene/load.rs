@@ -7,7 +7,7 @@ use super::document;
 use super::error::{ErrorKind, SceneError, unread};
 use super::scene::{Scene, SceneKeys};
 use super::set::Override;
-use super::{fitted, sample, shared, tissue, training};
+use super::{fitted, sample, shared, tissue, trained};
 
 /// Reads the scene in a file. Messages name the file by `path` as given.
 pub fn load(path: &Path) -> Result<Scene, Vec<SceneError>> {
@@ -31,7 +31,7 @@ pub fn parse_with(text: &str, file: &str, overrides: &[Override]) -> Result<Scen
     let scene = resolved(keys, origin)?;
     sample::driven(&scene)?;
     fitted::driven(&scene)?;
-    training::trainable(&scene)?;
+    trained::trainable(&scene)?;
     Ok(scene)
 }
 

@@ -55,6 +55,7 @@ mod timing;
 mod tissue;
 mod tool;
 mod touch;
+mod trained;
 mod training;
 mod units;
 mod vary;

@@ -31,6 +31,7 @@ pub use functions::{Basis, Functions, SupportRule, SupportShape};
 pub use integration::Integration;
 pub(crate) use integration::IntegrationKeys;
 pub use pod::Pod;
+use pod::Reduces;
 
 use super::procedure::ProcedureKind;
 use super::report::Report;
@@ -87,6 +88,27 @@ pub enum Family {
     External(External),
 }
 
+impl Family {
+    /// What a reduced model of the method depends on.
+    fn reduces(&self) -> Reduces {
+        match self {
+            Family::Fem(fem) => Reduces {
+                dilation: fem.dilation,
+                refined: fem.adapt.is_some(),
+                hourglass: fem.hourglass.is_some(),
+            },
+            Family::Efg(efg) => {
+                Reduces { dilation: efg.dilation, refined: efg.cloud.is_refined(), hourglass: false }
+            }
+            Family::External(external) => Reduces {
+                dilation: external.elements.dilation,
+                refined: false,
+                hourglass: external.elements.hourglass.is_some(),
+            },
+        }
+    }
+}
+
 /// Longest id of a method, characters: the id is part of file names.
 const LONGEST_ID: usize = 64;
 
@@ -135,7 +157,9 @@ pub(crate) fn demands(methods: &[Method], kind: ProcedureKind, has_regions: bool
         }
         let help = "leave it out, or take [procedure] kind = \"modes\"";
         report.require(vibrates || method.mass.is_none(), "mass", "applies to vibrations only", help);
-        pod::demands(method, kind, &report.at("pod"));
+        if let Some(pod) = &method.pod {
+            pod.demands(&method.family.reduces(), kind, &report.at("pod"));
+        }
         match &method.family {
             Family::Fem(fem) => fem.demands(&report),
             Family::Efg(efg) => efg.demands(kind, has_regions, &report),

@@ -5,7 +5,6 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::common::Dilation;
-use super::{Family, Method};
 use crate::scene::procedure::ProcedureKind;
 use crate::scene::report::Report;
 use crate::scene::units::{Part, Q};
@@ -45,33 +44,36 @@ impl PodKeys {
     }
 }
 
-/// Reports contradictions of a reduced model with its method and the procedure.
-pub(super) fn demands(method: &Method, kind: ProcedureKind, report: &Report) {
-    let Some(pod) = method.pod else { return };
-    let at_rest = kind == ProcedureKind::Static;
-    report.require(at_rest, "", "needs static load steps", "take [procedure] kind = \"static\"");
-    let (dilation, refined) = match &method.family {
-        Family::Fem(fem) => (fem.dilation, fem.adapt.is_some()),
-        Family::Efg(efg) => (efg.dilation, efg.cloud.is_refined()),
-        Family::External(_) => return,
-    };
-    report.require(!refined, "", "does not go with a refined method", "leave pod or refine out");
-    if dilation == Dilation::Mixed {
-        let problem = "has no modes of a pressure field, which dilation = \"mixed\" has";
-        report.add("", Problem::new(problem).help("take \"element-mean\", \"nodal-mean\" or \"standard\""));
-    }
-    let shared = !matches!(dilation, Dilation::Standard | Dilation::ElementMean);
-    if pod.cells.is_some() && shared {
-        let problem =
-            format!("can't be chosen with dilation = \"{}\", whose cells share dilations", dilation.name());
-        report.add(
-            "cells",
-            Problem::new(problem).help("leave it out, or take \"element-mean\" or \"standard\""),
-        );
-    }
-    let hourglass = matches!(&method.family, Family::Fem(fem) if fem.hourglass.is_some());
-    if pod.cells.is_some() && hourglass {
+/// What a method has that a reduced model may not go with.
+pub(super) struct Reduces {
+    pub dilation: Dilation,
+    /// Whether the mesh or the cloud is refined.
+    pub refined: bool,
+    pub hourglass: bool,
+}
+
+impl Pod {
+    /// Reports contradictions with the method and the procedure.
+    pub(super) fn demands(&self, method: &Reduces, kind: ProcedureKind, report: &Report) {
+        let Reduces { dilation, refined, hourglass } = *method;
+        let at_rest = kind == ProcedureKind::Static;
+        report.require(at_rest, "", "needs static load steps", "take [procedure] kind = \"static\"");
+        report.require(!refined, "", "does not go with a refined method", "leave pod or refine out");
+        if dilation == Dilation::Mixed {
+            let problem = "has no modes of a pressure field, which dilation = \"mixed\" has";
+            let help = "take \"element-mean\", \"nodal-mean\" or \"standard\"";
+            report.add("", Problem::new(problem).help(help));
+        }
+        if self.cells.is_none() {
+            return;
+        }
+        if !matches!(dilation, Dilation::Standard | Dilation::ElementMean) {
+            let name = dilation.name();
+            let problem = format!("can't be chosen with dilation = \"{name}\", whose cells share dilations");
+            let help = "leave it out, or take \"element-mean\" or \"standard\"";
+            report.add("cells", Problem::new(problem).help(help));
+        }
         let problem = "can't be chosen with hourglass control, which acts in every cell";
-        report.add("cells", Problem::new(problem).help("leave it out, or take reduced = false"));
+        report.require(!hourglass, "cells", problem, "leave it out, or take reduced = false");
     }
 }

@@ -7,6 +7,7 @@ mod factors;
 mod iterative;
 mod levels;
 mod modal;
+mod modal_step;
 mod policy;
 mod predict;
 mod rigid;
