@@ -46,8 +46,9 @@ fn towards(angle: f64, length: f64) -> Vector {
 
 /// A test for each surface.
 macro_rules! surfaces {
-    ($($name:ident: |$p:ident| $inside:expr, $low:expr, $high:expr, $cells:expr;)*) => {$(
+    ($($(#[$attribute:meta])? $name:ident: |$p:ident| $inside:expr, $low:expr, $high:expr, $cells:expr;)*) => {$(
         #[test]
+        $(#[$attribute])?
         fn $name() {
             let inside = |$p: Vector| -> f64 { $inside };
             runs(stringify!($name), &surface(&inside, [$low, $high], $cells));
@@ -79,6 +80,7 @@ surfaces! {
         rod(p, [[0.0, 0.0, 130.0], [-30.0, 0.0, 150.0]], [12.0, 11.0]), ellipsoid(p, [-16.0, 0.0, -165.0], [17.0, 22.0, 18.0]),
         ellipsoid(p, [18.0, 0.0, -165.0], [17.0, 22.0, 18.0])], 8.0),
         [-62.0, -28.0, -190.0], [42.0, 28.0, 182.0], 84;
+    #[ignore = "takes as long as all others together: cargo xtask nightly"]
     spiral: |p| tube(p, |t| { let [x, y, _] = towards(9.0 * t, 20.0 - 16.0 * t); [x, y, 47.0 * t] }, [9.0, 2.0], 24),
         [-32.0, -32.0, -12.0], [32.0, 32.0, 52.0], 44;
     animal: |p| union([ellipsoid(p, [0.0; 3], [32.0, 13.0, 14.0]), rod(p, [[28.0, 0.0, 5.0], [42.0, 0.0, 20.0]], [6.0, 5.0]),

@@ -54,17 +54,18 @@ fn errors_fall_with_the_modes_and_sampled_cells_give_the_forces_of_all() {
     let of = |id: &str| runs.iter().find(|run| run["method"] == id).unwrap();
     let error = |id: &str| [number(of(id), "relative-rms"), number(of(id), "tool-force-error")];
     let [few, many] = [error("four"), error("sixteen")];
-    assert!(few[0] > 0.03 && many[0] < 0.02 && many[1] < 0.01, "{few:?} {many:?}");
+    assert!(few[0] > many[0] && few[1] > 2.0 * many[1], "{few:?} {many:?}");
+    assert!(many[0] < 0.02 && many[1] < 0.001, "{many:?}");
     let [all, some] = ["all", "sampled"].map(of);
     assert_eq!(number(all, "sampled-cells"), 1.0);
     assert!(number(some, "sampled-cells") <= 0.4 && number(some, "sampling-error") < 0.02, "{some}");
     let force = |run: &Value| number(run, "tool-force");
     assert!((force(some) / force(all) - 1.0).abs() < 0.01, "{} for {}", force(some), force(all));
-    // The support carries the tool's force, in all cells. The modes leave some of it unbalanced.
+    // The support carries the force of the tool, but for what the modes leave unbalanced.
     for run in [all, some] {
-        assert!((number(run, "reaction-z") / force(run) - 1.0).abs() < 0.02, "{run}");
+        assert!((number(run, "reaction-z") / force(run) - 1.0).abs() < 0.04, "{run}");
         let distance = number(run, "training-distance");
-        assert!(distance > 0.01 && distance < 0.5, "{distance}");
+        assert!(distance > 0.01 && distance < 0.6, "{distance}");
     }
     assert!(of("full")["metrics"]["training-distance"].is_null());
 }
@@ -112,12 +113,7 @@ fn what_it_cannot_do_is_refused_at_its_key() {
         "method[1].pod",
         "static",
     );
-    refused(
-        "fix = \"xyz\"",
-        "fix = \"xyz\", move = [\"0 mm\", \"0 mm\", \"1 mm\"]",
-        "method[1].pod",
-        "support[0]",
-    );
+    refused("fix = \"xyz\"", "fix = \"xy\", move = { z = \"1 mm\" }", "method[1].pod", "support[0]");
     refused("output = {", "output = { estimate = true,", "method[1].pod", "error estimate");
     refused("\"tool[0].at\"", "\"body.size\"", "training[0].body.size", "does not belong to a training run");
     refused("\"tool[0].at\"", "\"tool[3].at\"", "tool[3].at", "out of range");

@@ -16,8 +16,8 @@ use lanes::LanePath;
 use material::{HolzapfelOgden, Law, LinearElastic, NeoHookean};
 use shape::{DilationGroups, FixedDof, HourglassModulus, Matrix3, Point3, RowBlocks, Vector3, VolumeRows};
 use statics::{
-    Assembled, Basis, FollowingLoad, LinearBody, LinearProblem, LinearSystems, Load, PenaltySurface,
-    StaticProblem, assemble, solve_static,
+    Assembled, FollowingLoad, LinearBody, LinearProblem, LinearSystems, Load, PenaltySurface, StaticProblem,
+    assemble, solve_static,
 };
 
 type Kernels = Vec<(&'static str, fn(usize))>;
@@ -311,7 +311,7 @@ fn modes(times: usize) {
     let problem = StaticProblem { loads: &loads, fixed: &fixed, ..model.problem(&law) };
     let (params, mut states) = (steps(8), Vec::new());
     solve_static(&problem, &params, |_, rest| states.push(rest.u.to_vec())).unwrap();
-    let basis = Basis::of_states(&model.volume, &states, 8);
+    let basis = statics::Basis::of_states(&model.volume, &states, 8);
     let problem = StaticProblem { systems: LinearSystems::Modal(&basis), ..problem };
     for _ in 0..times {
         black_box(solve("modes", black_box(&problem), &params));

@@ -1,5 +1,5 @@
-//! The checks that take hours, for a schedule: listed faults, killed processes, dependencies, packages, and
-//! fuzzing.
+//! The checks that take hours, for a schedule: listed faults, killed processes, closed surfaces, dependencies,
+//! packages, and fuzzing.
 
 use std::ffi::OsStr;
 use std::path::Path;
@@ -17,11 +17,12 @@ const MINUTE: u32 = 60;
 /// Runs every check regardless of the others, with `minutes` for each fuzz target, and returns the worst exit
 /// code.
 pub(crate) fn nightly(root: &Path, minutes: u32) -> Result<u8> {
-    let checks: [(&str, &dyn Fn() -> Result<u8>); 6] = [
+    let checks: [(&str, &dyn Fn() -> Result<u8>); 7] = [
         ("deny", &|| deny(root)),
         ("package", &|| cargo(&["package", "--workspace", "--allow-dirty", "--locked", "--quiet"], &[])),
         ("mutants", &|| mutants(root, &[])),
         ("survive", &survive),
+        ("organs", &organs),
         ("newcomer", &newcomer),
         ("fuzz", &|| fuzz(root, minutes)),
     ];
@@ -42,6 +43,12 @@ pub(crate) fn nightly(root: &Path, minutes: u32) -> Result<u8> {
 fn survive() -> Result<u8> {
     let test = ["test", "--release", "--locked", "--package", "tissuebench-harness", "--test", "survive"];
     cargo(&[&test[..], &["--", "--ignored", "--nocapture"]].concat(), &[])
+}
+
+/// Makes scenes of all closed surfaces and runs them with every method.
+fn organs() -> Result<u8> {
+    let test = ["test", "--release", "--locked", "--package", "tissuebench-harness", "--test", "organs"];
+    cargo(&[&test[..], &["--", "--include-ignored"]].concat(), &[])
 }
 
 /// Follows the first page of the guide in a fresh clone, with a time limit.

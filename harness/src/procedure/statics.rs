@@ -122,10 +122,8 @@ fn path(problem: &Problem, asked: &Static, counters: &mut Counters) -> Result<(S
     let path = with_static_problem(method, setup, prepared, contact.as_ref(), usual, |problem| {
         let systems = tangents.systems().unwrap_or(problem.systems);
         solve_static(&StaticProblem { systems, ..problem.clone() }, &params, |step, rest| {
-            let whole = whole_reaction(setup, prepared, &rest);
-            let rest = Rest { reaction: whole.as_deref().unwrap_or(rest.reaction), ..rest };
-            supports = support_forces(method, prepared, &rest, step.time);
-            reaction = rest.reaction.to_vec();
+            reaction = whole_reaction(setup, prepared, &rest);
+            supports = support_forces(method, prepared, &Rest { reaction: &reaction, ..rest }, step.time);
             points = prepared.foundation_forces(rest.u, &[]);
             let reported = |step| with_forces(reported(step, setup), &supports, &points);
             if let Some(watch) = watch {
@@ -244,18 +242,21 @@ pub(super) fn predicted(problem: &Problem, carried: &Carried) -> Result<Solution
     })
 }
 
-/// Returns the reaction of the nodal supports, N, from the forces in all cells, if the model evaluates forces in
-/// some cells only. A cell that is not chosen gives its part of a support's force, too.
-fn whole_reaction(setup: &Setup, prepared: &Prepared, rest: &Rest) -> Option<Vec<Vector3>> {
-    let chosen = prepared.reduced.as_ref()?.volume.as_ref()?;
-    let forces = |volume| solid(setup, volume).nodal_forces(rest.u).ok();
-    let (all, part) = (forces(&prepared.volume)?, forces(chosen)?);
+/// Returns the reaction of the nodal supports, N. A reduced model gives it from the forces in all cells: a cell that
+/// is not chosen gives its part of a support's force, too.
+fn whole_reaction(setup: &Setup, prepared: &Prepared, rest: &Rest) -> Vec<Vector3> {
     let mut reaction = rest.reaction.to_vec();
+    let chosen = prepared.reduced.as_ref().and_then(|reduced| reduced.volume.as_ref());
+    let forces = |volume| solid(setup, volume).nodal_forces(rest.u).ok();
+    let Some((all, part)) = chosen.and_then(|chosen| Some((forces(&prepared.volume)?, forces(chosen)?)))
+    else {
+        return reaction;
+    };
     for held in prepared.fixed() {
         let (node, axis) = (held.node as usize, held.axis as usize);
         reaction[node][axis] += all[node][axis] - part[node][axis];
     }
-    Some(reaction)
+    reaction
 }
 
 /// Forces of the supports on the body at an equilibrium.

@@ -210,10 +210,10 @@ fn an_arrow_back_would_be_seen() {
         BTreeSet::from([0, 2])
     );
     let used = |text: &str| SCENE.used("crate::scene::method::fem", text);
-    assert_eq!(used("use super::{Method, common::{Size, Mass}};"), [20, 29].into());
+    assert_eq!(used("use super::{Method, common::{Size, Mass}};"), [22, 32].into());
     assert_eq!(
         used("use crate::exact::Exact; use crate::scene::{tool::Tool, words::words};"),
-        [31, 59].into()
+        [34, 62].into()
     );
 }
 
