@@ -191,9 +191,7 @@ fn met(needs: Needs, scene: &Scene) -> (bool, &'static str) {
             scene.procedure.has_frames(),
             "needs [procedure] kind = \"vbd\", \"xpbd\" or \"implicit-cg\" in the scene",
         ),
-        Needs::Reduced => {
-            (scene.methods.iter().any(|of| of.pod.is_some()), "needs a method with pod in the scene")
-        }
+        Needs::Reduced => (scene.methods.iter().any(|of| of.pod.is_some()), "needs a method with pod"),
         Needs::ToolLoop | Needs::PointLoop => in_real_time(needs, scene),
         Needs::Newton => (
             matches!(kind, ProcedureKind::Static | ProcedureKind::ImplicitDynamic),

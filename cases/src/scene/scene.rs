@@ -70,6 +70,8 @@ pub(crate) struct SceneKeys {
     check: Vec<CheckKeys>,
     vary: Option<VaryKeys>,
     fit: Option<FitKeys>,
+    /// Runs of the scene from whose states reduced models take their deformations. A table for each run has keys of
+    /// the scene, such as "tool[0].at", with their values there
     #[serde(default)]
     training: Vec<TrainingKeys>,
 }
