@@ -1,5 +1,5 @@
-//! Reduced models: their errors fall with their modes, sampled cells give the forces of all, what they cannot do is
-//! refused, and a run says how far it is from its training.
+//! Reduced models: their errors fall with their modes, sampled cells give the forces of all, what they cannot
+//! do is refused, and a run says how far it is from its training.
 
 mod common;
 

@@ -8,7 +8,8 @@ use statics::Basis;
 use crate::discretise::Volume;
 use crate::error::Failure;
 
-/// Error of the forces in the training states, relative to those of all cells, at which no further cell is taken.
+/// Error of the forces in the training states, relative to those of all cells, at which no further cell is
+/// taken.
 const ENOUGH: f64 = 1e-3;
 
 /// A reduced model.
@@ -26,8 +27,8 @@ pub struct Reduced {
 }
 
 impl Reduced {
-    /// Returns the largest distance of displacements (m, by node) from the nearest state of the training, relative to
-    /// the largest of them, both as coefficients of the modes.
+    /// Returns the largest distance of displacements (m, by node) from the nearest state of the training,
+    /// relative to the largest of them, both as coefficients of the modes.
     pub fn distance(&self, fields: &[Vec<Vector3>]) -> f64 {
         let (mut farthest, mut largest) = (0.0f64, 0.0f64);
         for field in fields {
@@ -40,11 +41,12 @@ impl Reduced {
     }
 }
 
-/// Chooses at most a part of the cells, with weights for which the works of the stresses along the modes (J, for
-/// each state by point and mode) add up to those of all points. Returns the quadrature, the number of cells taken
-/// and of all, and the relative error.
+/// Chooses at most a part of the cells, with weights for which the works of the stresses along the modes (J,
+/// for each state by point and mode) add up to those of all points. Returns the quadrature, the number of
+/// cells taken and of all, and the relative error.
 ///
-/// Source: energy-conserving sampling and weighting, Farhat et al., Int. J. Numer. Meth. Engng 98 (2014), 625-662.
+/// Source: energy-conserving sampling and weighting, Farhat et al., Int. J. Numer. Meth. Engng 98 (2014),
+/// 625-662.
 pub fn chosen(
     volume: &Volume,
     works: &[Vec<Vec<f64>>],
@@ -52,7 +54,6 @@ pub fn chosen(
 ) -> Result<(Volume, [usize; 2], f64), Failure> {
     let cells = cells(volume);
     let modes = works.first().and_then(|points| points.first()).map_or(0, Vec::len);
-    // States of small loads count as much as those of large ones.
     let column = |cell: &[usize]| -> Vec<f64> {
         let mut column = vec![0.0; works.len() * modes];
         for (entries, works) in column.chunks_exact_mut(modes.max(1)).zip(works) {

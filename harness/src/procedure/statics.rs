@@ -242,8 +242,8 @@ pub(super) fn predicted(problem: &Problem, carried: &Carried) -> Result<Solution
     })
 }
 
-/// Returns the reaction of the nodal supports, N. A reduced model gives it from the forces in all cells: a cell that
-/// is not chosen gives its part of a support's force, too.
+/// Returns the reaction of the nodal supports, N. A reduced model gives it from the forces in all cells: a
+/// cell that is not chosen gives its part of a support's force, too.
 fn whole_reaction(setup: &Setup, prepared: &Prepared, rest: &Rest) -> Vec<Vector3> {
     let mut reaction = rest.reaction.to_vec();
     let chosen = prepared.reduced.as_ref().and_then(|reduced| reduced.volume.as_ref());

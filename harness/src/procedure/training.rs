@@ -1,5 +1,5 @@
-//! Training of a reduced model: the scene's training runs of the full method, whose states give the modes and the
-//! cells in which forces are evaluated.
+//! Training of a reduced model: the scene's training runs of the full method, whose states give the modes and
+//! the cells in which forces are evaluated.
 
 use cases::scene::{Pod, Procedure};
 use geometry::Vector3;

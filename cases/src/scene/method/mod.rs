@@ -89,7 +89,7 @@ pub enum Family {
 }
 
 impl Family {
-    /// What a reduced model of the method depends on.
+    /// Properties on which a reduced model of the method depends.
     fn reduces(&self) -> Reduces {
         match self {
             Family::Fem(fem) => Reduces {

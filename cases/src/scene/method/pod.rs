@@ -1,4 +1,5 @@
-//! Reduced models: displacements restricted to a few deformations that training runs of the scene pass through.
+//! Reduced models: displacements restricted to a few deformations that training runs of the scene pass
+//! through.
 
 use catalogue::Problem;
 use schemars::JsonSchema;
@@ -44,7 +45,7 @@ impl PodKeys {
     }
 }
 
-/// What a method has that a reduced model may not go with.
+/// Properties of a method that a reduced model may not go with.
 pub(super) struct Reduces {
     pub dilation: Dilation,
     /// Whether the mesh or the cloud is refined.

@@ -23,13 +23,11 @@ pub struct Basis {
     len: usize,
     /// Orthonormal modes; for each node and axis the component of every mode.
     values: Vec<f64>,
-    /// Part of the squares of the recorded gradients that the modes contain.
-    captured: f64,
 }
 
 impl Basis {
-    /// Takes at most `most` modes from recorded displacements (m), one for each node of `volume`. There are fewer
-    /// if the displacements are combinations of fewer. The distance of two displacements is that of their
+    /// Takes at most `most` modes from recorded displacements (m), one for each node of `volume`. There are
+    /// fewer if the displacements are combinations of fewer. The distance of two displacements is that of their
     /// gradients, the square integrated over the body: forces depend on gradients.
     pub fn of_states(volume: &VolumeRows, states: &[Vec<Vector3>], most: usize) -> Basis {
         let count = states.len();
@@ -43,14 +41,12 @@ impl Basis {
         let rows: Vec<Vec<f64>> =
             (0..count).into_par_iter().map(|i| (0..=i).map(|j| product(i, j)).collect()).collect();
         let products = DMatrix::from_fn(count, count, |i, j| rows[i.max(j)][i.min(j)]);
-        let total = products.trace();
         let SymmetricEigen { eigenvalues, eigenvectors } = SymmetricEigen::new(products);
         let mut order: Vec<usize> = (0..count).collect();
         order.sort_by(|&i, &j| eigenvalues[j].total_cmp(&eigenvalues[i]));
         let least = order.first().map_or(0.0, |&first| ROUNDING.powi(2) * eigenvalues[first]);
         let nodes = states.first().map_or(0, Vec::len);
         let mut modes: Vec<Vec<Vector3>> = Vec::new();
-        let mut captured = 0.0;
         for &at in order.iter().take(most).filter(|&&at| eigenvalues[at] > least) {
             let mut mode = vec![Vector3::zeros(); nodes];
             for (state, part) in states.iter().zip(eigenvectors.column(at).iter()) {
@@ -64,10 +60,9 @@ impl Basis {
             let norm = mode.iter().map(Vector3::norm_squared).sum::<f64>().sqrt();
             mode.iter_mut().for_each(|m| *m /= norm);
             modes.push(mode);
-            captured += eigenvalues[at];
         }
         let values = (0..3 * nodes).flat_map(|dof| modes.iter().map(move |mode| mode[dof / 3][dof % 3]));
-        Basis { len: modes.len(), values: values.collect(), captured: captured / total }
+        Basis { len: modes.len(), values: values.collect() }
     }
 
     /// Number of modes.
@@ -78,11 +73,6 @@ impl Basis {
     /// Whether there is no mode, because nothing has moved.
     pub fn is_empty(&self) -> bool {
         self.len == 0
-    }
-
-    /// Part of the squares of the recorded gradients that the modes contain.
-    pub fn captured(&self) -> f64 {
-        self.captured
     }
 
     /// Components of all modes at a node along an axis.

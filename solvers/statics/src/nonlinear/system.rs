@@ -418,7 +418,8 @@ impl<'a> System<'a> {
         entries
     }
 
-    /// Returns the vector of unknowns: the free components of the nodal vectors `nodal`, or their parts along the modes, then the values
+    /// Returns the vector of unknowns: the free components of the nodal vectors `nodal`, or their parts along
+    /// the modes, then the values
     /// `pressure`, one per pressure parameter. Nothing is multiplied by [`System::pressure_scale`].
     pub fn gather(&self, nodal: &[Vector3], pressure: &[f64]) -> Vec<f64> {
         if let Some(basis) = self.basis {
