@@ -118,11 +118,14 @@ fn path(problem: &Problem, asked: &Static, counters: &mut Counters) -> Result<(S
     // with 1331 nodes did.
     params.newton.loosest = method.interpolates.then_some(NewtonParams::LOOSEST);
     let tangents = Tangents::new(problem)?;
-    let usual = Curves::proportional();
+    let (usual, mut inverted) = (Curves::proportional(), None);
     let path = with_static_problem(method, setup, prepared, contact.as_ref(), usual, |problem| {
         let systems = tangents.systems().unwrap_or(problem.systems);
         solve_static(&StaticProblem { systems, ..problem.clone() }, &params, |step, rest| {
-            reaction = whole_reaction(setup, prepared, &rest);
+            match whole_reaction(setup, prepared, &rest) {
+                Ok(whole) => reaction = whole,
+                Err(error) => inverted = Some(error),
+            }
             supports = support_forces(method, prepared, &Rest { reaction: &reaction, ..rest }, step.time);
             points = prepared.foundation_forces(rest.u, &[]);
             let reported = |step| with_forces(reported(step, setup), &supports, &points);
@@ -141,6 +144,7 @@ fn path(problem: &Problem, asked: &Static, counters: &mut Counters) -> Result<(S
             }
         })
     })?;
+    inverted.map_or(Ok(()), Err)?;
     let iterations = count(&path, counters);
     let relaxes = plan.runs(StageName::Relaxation);
     let last = LoadStep { supports, points, ..last(&path, setup, relaxes)? };
@@ -164,12 +168,7 @@ fn path(problem: &Problem, asked: &Static, counters: &mut Counters) -> Result<(S
     }
     let metrics = metrics(limit.step.as_ref(), iterations, path.cut_back, relaxed.as_ref());
     let forces = relaxed.as_ref().map(|relaxed| relaxed.forces);
-    let stalled = path.failure.map(Failure::from);
-    let (failure, relaxed) = match relaxed.map(|relaxed| relaxed.failure) {
-        None => (stalled, None),
-        Some(None) => (None, stalled),
-        Some(Some(failure)) => (Some(failure.into()), None),
-    };
+    let (failure, relaxed) = endings(path.failure.map(Failure::from), relaxed);
     let solution = Solution {
         dofs: problem.free_dofs() + path.pressure.len(),
         u,
@@ -242,21 +241,32 @@ pub(super) fn predicted(problem: &Problem, carried: &Carried) -> Result<Solution
     })
 }
 
+/// Returns the failure that ended a path early, and that of Newton's method which relaxation overcame.
+fn endings(stalled: Option<Failure>, relaxed: Option<Relaxed>) -> (Option<Failure>, Option<Failure>) {
+    match relaxed.map(|relaxed| relaxed.failure) {
+        None => (stalled, None),
+        Some(None) => (None, stalled),
+        Some(Some(failure)) => (Some(failure.into()), None),
+    }
+}
+
 /// Returns the reaction of the nodal supports, N. A reduced model gives it from the forces in all cells: a
 /// cell that is not chosen gives its part of a support's force, too.
-fn whole_reaction(setup: &Setup, prepared: &Prepared, rest: &Rest) -> Vec<Vector3> {
+///
+/// # Errors
+/// A point of a cell that is not chosen is inverted.
+fn whole_reaction(setup: &Setup, prepared: &Prepared, rest: &Rest) -> Result<Vec<Vector3>, StaticError> {
     let mut reaction = rest.reaction.to_vec();
-    let chosen = prepared.reduced.as_ref().and_then(|reduced| reduced.volume.as_ref());
-    let forces = |volume| solid(setup, volume).nodal_forces(rest.u).ok();
-    let Some((all, part)) = chosen.and_then(|chosen| Some((forces(&prepared.volume)?, forces(chosen)?)))
-    else {
-        return reaction;
+    let Some(chosen) = prepared.reduced.as_ref().and_then(|reduced| reduced.volume.as_ref()) else {
+        return Ok(reaction);
     };
+    let [all, part] = [&prepared.volume, chosen].map(|volume| solid(setup, volume).nodal_forces(rest.u));
+    let (all, part) = (all?, part?);
     for held in prepared.fixed() {
         let (node, axis) = (held.node as usize, held.axis as usize);
         reaction[node][axis] += all[node][axis] - part[node][axis];
     }
-    reaction
+    Ok(reaction)
 }
 
 /// Forces of the supports on the body at an equilibrium.
