@@ -25,7 +25,7 @@ pub(crate) fn run(data: &[u8]) {
     fill(folder.path(), text);
     let Ok(run) = records::read_run(folder.path()) else { return };
     let baseline = Baseline::of(&run.records, "fuzz");
-    assert!(baseline.compare(&baseline, true).expect("numbers are paired").changes.is_empty());
+    assert!(baseline.compare(&baseline, true).changes.is_empty());
     // A run that was read and has distinct keys can be written and read again without a change.
     let other = folder.path().join("again");
     if records::write_run(&other, &run).is_ok() {

@@ -88,7 +88,7 @@ pub enum RecordError {
         /// Description of the problem.
         reason: String,
     },
-    /// A data frame that could not be created, joined or written.
+    /// A data frame that could not be created or written.
     #[error("records: {0}")]
     Frame(#[from] polars::error::PolarsError),
 }

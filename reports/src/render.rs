@@ -114,7 +114,8 @@ fn render_set(
     // The folders of an existing report contain only report files with these suffixes; those not written
     // again are outdated.
     let ours = disk::read_text(&page, disk::Kind::RESULTS).is_ok_and(|old| old.contains(page::TITLE));
-    let html = page::html(set, (&runs, &clouds), &trends, &tables, &drawn, records_from(results, out))?;
+    let stored = (records_from(results, out), results.join(STUDY).is_file());
+    let html = page::html(set, (&runs, &clouds), &trends, &tables, &drawn, stored)?;
     write(page.clone(), html.as_bytes())?;
     if ours {
         remove_files(&table_dir, &["csv", "md", "tex"], &files)?;
@@ -135,6 +136,9 @@ fn draw(figure: Figure) -> Result<Painted, ReportError> {
     let (png, pdf) = figures::png_and_pdf(&figure.name, &figure.title, &svg)?;
     Ok(Painted { drawn: Drawn { figure, svg }, png, pdf })
 }
+
+/// File in the results of a study that names its runs.
+const STUDY: &str = "study.json";
 
 /// Path of the records for the page; empty unless the folders move together.
 fn records_from(results: &Path, out: &Path) -> &'static str {

@@ -45,7 +45,34 @@ impl TrainingKeys {
             let help = "set keys of tool, load, material or curve";
             report.require(CHANGED.contains(&head), key, problem, help);
         }
-        Some(Training { set: self.0.into_iter().map(|(key, value)| (key, value.to_string())).collect() })
+        let set = self.0.into_iter().flat_map(|(key, value)| dotted(key, value)).collect();
+        Some(Training { set })
+    }
+}
+
+/// Keys with their values as TOML. TOML reads `material.young = "5 kPa"` as a table `material`, which would
+/// replace that of the scene.
+fn dotted(key: String, value: Value) -> Vec<(String, String)> {
+    match value {
+        Value::Table(table) if !key.contains(['.', '[']) => {
+            table.into_iter().map(|(inner, value)| (format!("{key}.{inner}"), value.to_string())).collect()
+        }
+        value => vec![(key, value.to_string())],
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_key_without_quotes_changes_that_key_alone() {
+        let keys = |text: &str| toml::from_str::<TrainingKeys>(text).unwrap();
+        let set = |text: &str| keys(text).0.into_iter().flat_map(|(k, v)| dotted(k, v)).collect::<Vec<_>>();
+        let expected = vec![("material.young".to_string(), "\"5 kPa\"".to_string())];
+        assert_eq!(set("material.young = \"5 kPa\""), expected);
+        assert_eq!(set("\"material.young\" = \"5 kPa\""), expected);
+        assert_eq!(set("\"tool[0].drive\" = { closure = \"1 mm\" }")[0].0, "tool[0].drive");
     }
 }
 

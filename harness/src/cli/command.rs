@@ -24,6 +24,7 @@ use crate::study::isolated::ExperimentArgs;
 use crate::study::jobs::status::StatusArgs;
 use crate::study::jobs::worker::JobArgs;
 use crate::study::merge::MergeArgs;
+use crate::study::reproduce::ReproduceArgs;
 
 /// Verification and benchmarks of soft-tissue solvers: finite elements, element-free Galerkin and
 /// interpolation on the same scenes.
@@ -135,6 +136,11 @@ pub enum Command {
     ///
     /// The folder may be in use. Exit code 0: all runs have results; 5: some have not.
     Status(StatusArgs),
+    /// Make stored runs of a study again, and compare their numbers with the stored ones
+    ///
+    /// Each run is one that `verify` has stored in the folder. Exit code 0: all numbers are the stored ones, bit
+    /// by bit on the same kind of processor; 1: some differ.
+    Reproduce(ReproduceArgs),
     /// Render tables, figures and the report of stored results, and the evidence of credibility by the
     /// factors of ASME V&V 40
     Report {

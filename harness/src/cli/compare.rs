@@ -21,13 +21,7 @@ pub(super) fn compare(args: &CompareArgs) -> u8 {
             return 2;
         }
     };
-    let found = match Comparison::of(&pairs, args.tolerance, !args.no_times) {
-        Ok(found) => found,
-        Err(bad) => {
-            eprintln!("tissuebench: {bad}");
-            return 2;
-        }
-    };
+    let found = Comparison::of(&pairs, args.tolerance, !args.no_times);
     if found.numbers.compared == 0 && found.is_same() {
         eprintln!("tissuebench: nothing was compared: the results have no number in common");
         return 2;

@@ -27,6 +27,7 @@ mod paced;
 mod pick;
 mod plan;
 mod reference;
+mod reproduce;
 mod results;
 mod run;
 mod scenes;
@@ -58,6 +59,7 @@ use list::list;
 use merge::merge;
 use plan::plan;
 use reference::reference;
+use reproduce::reproduce;
 use results::report;
 use run::run;
 use solve::solve;
@@ -119,6 +121,7 @@ fn act(cli: Cli) -> u8 {
         Command::Fit(args) => fit(&args),
         Command::Merge(args) => merge(&args),
         Command::Status(args) => status(&args),
+        Command::Reproduce(args) => reproduce(&args),
         Command::Job(args) => job(&args).map_or_else(|failure| fail(&failure), |()| 0),
         Command::Leash(args) => leash(&args),
         Command::Solve(args) => solve(&args),

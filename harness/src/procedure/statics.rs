@@ -122,7 +122,7 @@ fn path(problem: &Problem, asked: &Static, counters: &mut Counters) -> Result<(S
     let path = with_static_problem(method, setup, prepared, contact.as_ref(), usual, |problem| {
         let systems = tangents.systems().unwrap_or(problem.systems);
         solve_static(&StaticProblem { systems, ..problem.clone() }, &params, |step, rest| {
-            match whole_reaction(setup, prepared, &rest) {
+            match whole_reaction(setup, prepared, &rest, step.time) {
                 Ok(whole) => reaction = whole,
                 Err(error) => inverted = Some(error),
             }
@@ -255,12 +255,19 @@ fn endings(stalled: Option<Failure>, relaxed: Option<Relaxed>) -> (Option<Failur
 ///
 /// # Errors
 /// A point of a cell that is not chosen is inverted.
-fn whole_reaction(setup: &Setup, prepared: &Prepared, rest: &Rest) -> Result<Vec<Vector3>, StaticError> {
+fn whole_reaction(
+    setup: &Setup,
+    prepared: &Prepared,
+    rest: &Rest,
+    time: f64,
+) -> Result<Vec<Vector3>, StaticError> {
     let mut reaction = rest.reaction.to_vec();
     let Some(chosen) = prepared.reduced.as_ref().and_then(|reduced| reduced.volume.as_ref()) else {
         return Ok(reaction);
     };
-    let [all, part] = [&prepared.volume, chosen].map(|volume| solid(setup, volume).nodal_forces(rest.u));
+    let active = prepared.active(setup, time);
+    let at_time = |volume| Solid { active: Active::new(&active), ..solid(setup, volume) };
+    let [all, part] = [&prepared.volume, chosen].map(|volume| at_time(volume).nodal_forces(rest.u));
     let (all, part) = (all?, part?);
     for held in prepared.fixed() {
         let (node, axis) = (held.node as usize, held.axis as usize);

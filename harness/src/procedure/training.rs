@@ -3,7 +3,7 @@
 
 use cases::scene::{Pod, Procedure};
 use geometry::Vector3;
-use statics::Basis;
+use statics::{Active, Basis, Solid};
 
 use super::problem::Problem;
 use super::statics::{solid, solve};
@@ -18,6 +18,8 @@ use crate::scenario::setup::Setup;
 struct Run {
     prepared: Prepared,
     states: Vec<Vec<Vector3>>,
+    /// Load fraction of each state.
+    times: Vec<f64>,
 }
 
 /// Learns the reduced model of a method from the training runs of its setup.
@@ -53,11 +55,13 @@ pub(crate) fn reduced(
     let Some(part) = pod.cells else { return Ok(all) };
     let mut works = Vec::new();
     for (run, training) in runs.iter().zip(&setup.training) {
-        for u in &run.states {
+        for (u, &time) in run.states.iter().zip(&run.times) {
             // The stress of the reduced model belongs to the nearest displacement that it can have.
             let mut near = vec![Vector3::zeros(); u.len()];
             all.basis.add_to(&all.basis.project(u), 1.0, &mut near);
-            let solid = solid(training, &run.prepared.volume);
+            let active = run.prepared.active(training, time);
+            let whole = solid(training, &run.prepared.volume);
+            let solid = Solid { active: Active::new(&active), ..whole };
             works.push(all.basis.works(&solid, &near)?);
         }
     }
@@ -75,7 +79,10 @@ fn run(method: &Discretisation, training: &Setup, plan: &Plan) -> Result<Run, Fa
     let history = solution.history.expect("a static solution has steps");
     match history.failure {
         Some(failure) => Err(failure),
-        None => Ok(Run { states: history.fields, prepared }),
+        None => {
+            let times = history.steps.iter().map(|step| step.load).collect();
+            Ok(Run { prepared, states: history.fields, times })
+        }
     }
 }
 

@@ -21,6 +21,7 @@ mod plan;
 mod progress;
 #[cfg(test)]
 mod project;
+pub(crate) mod reproduce;
 mod results;
 mod samples;
 mod shards;
@@ -41,6 +42,7 @@ pub use isolated::ExperimentArgs;
 pub use listing::Planned;
 pub use merge::MergeArgs;
 pub use plan::StudyPlan;
+pub use reproduce::ReproduceArgs;
 pub use results::{FinishedStudy, compared_with, reference_records};
 pub(crate) use samples::numerical;
 pub use store::has_stored;

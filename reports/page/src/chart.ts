@@ -105,7 +105,8 @@ function card(point: Point): (Node | string)[] {
   const record = page.records
     ? h("a", { href: page.records }, `run ${r.id[at]} in records.csv`)
     : h("span", {}, `run ${r.id[at]} in records.csv`);
-  return [h("b", {}, name(point.label)), ` of ${r.case[at]} (${r.method[at]}): ${facts.join(", ")}. Errors: ${errors.join(", ") || "none"}. `, record];
+  return [h("b", {}, name(point.label)), ` of ${r.case[at]} (${r.method[at]}): ${facts.join(", ")}. Errors: ${errors.join(", ") || "none"}. `, record,
+    ...(page.study ? ["; run again by ", h("code", {}, `tissuebench reproduce results ${r.id[at]}`)] : [])];
 }
 
 function marks(chart: Chart, x: [number, number], y: [number, number]): Plot.Markish[] {

@@ -50,6 +50,7 @@ export interface Page {
   machine: { cpu: string; model: string; clock: number | null; instructions: string; threads: number; load: number | null; quiet: boolean | null };
   scenes: { case: string; blake3: string; title: string }[];
   records: string;
+  study: boolean;
   counts: {
     runs: number; numbers: number; failures: number; partial: number; warnings: number;
     pass: number; fail: number; known: number; not_run: number;

@@ -125,6 +125,8 @@ test("hovering shows a run with its record", async (open) => {
   await page.move(at[0], at[1]);
   await page.until(`${text("#front .card")}.includes("nodes")`);
   assert.match(await page.eval(text("#front .card")), /run [0-9a-zA-Z(].* in records\.csv/);
+  if (await page.eval(`${data}.study`))
+    assert.match(await page.eval(text("#front .card")), /run again by tissuebench reproduce results [0-9a-f]{16}/);
 });
 
 test("hovering shows the exact number, however small", async (open) => {

@@ -1,6 +1,6 @@
 //! Comparison of two baselines, run by run and quantity by quantity.
 
-use records::{Paired, RecordError, difference};
+use records::{Paired, difference};
 
 use super::Baseline;
 use super::tolerance::close;
@@ -52,12 +52,9 @@ pub struct Comparison {
 impl Baseline {
     /// Compares accepted numbers with current ones. If `whole`, the current numbers are those of the whole
     /// study, and runs that only the baseline has are differences.
-    ///
-    /// # Errors
-    /// Numbers that cannot be paired.
-    pub fn compare(&self, now: &Baseline, whole: bool) -> Result<Comparison, RecordError> {
+    pub fn compare(&self, now: &Baseline, whole: bool) -> Comparison {
         let bitwise = self.processor == now.processor;
-        let found = difference(&self.runs, &now.runs)?;
+        let found = difference(&self.runs, &now.runs);
         let mut changes = Vec::new();
         let mut renamed: Vec<&String> = Vec::new();
         for run in &found.only_after {
@@ -81,7 +78,7 @@ impl Baseline {
         }));
         let compared =
             found.paired.iter().flat_map(|paired| &paired.pairs).filter(|pair| pair.before.is_some());
-        Ok(Comparison { changes, bitwise, compared: compared.count() })
+        Comparison { changes, bitwise, compared: compared.count() }
     }
 
     /// Applies a change, with values of the current numbers.
@@ -142,28 +139,28 @@ mod tests {
     fn one_bit_is_a_difference_on_the_same_processor_and_none_on_another() {
         let before = one("a", "rms [m]", &[0.3], "p");
         let next = f64::from_bits(0.3f64.to_bits() + 1);
-        assert_eq!(before.compare(&one("a", "rms [m]", &[next], "p"), true).unwrap().changes.len(), 1);
-        assert!(before.compare(&one("a", "rms [m]", &[next], "q"), true).unwrap().changes.is_empty());
-        assert_eq!(before.compare(&one("a", "rms [m]", &[0.3001], "q"), true).unwrap().changes.len(), 1);
+        assert_eq!(before.compare(&one("a", "rms [m]", &[next], "p"), true).changes.len(), 1);
+        assert!(before.compare(&one("a", "rms [m]", &[next], "q"), true).changes.is_empty());
+        assert_eq!(before.compare(&one("a", "rms [m]", &[0.3001], "q"), true).changes.len(), 1);
         // A resultant of rounding size has no significant digits; a larger one has all.
         let load = |newton: f64, processor: &str| one("a", "load-y [N]", &[newton], processor);
-        assert!(load(1e-17, "p").compare(&load(-2e-17, "q"), true).unwrap().changes.is_empty());
-        assert_eq!(load(1e-3, "p").compare(&load(1.1e-3, "q"), true).unwrap().changes.len(), 1);
+        assert!(load(1e-17, "p").compare(&load(-2e-17, "q"), true).changes.is_empty());
+        assert_eq!(load(1e-3, "p").compare(&load(1.1e-3, "q"), true).changes.len(), 1);
         // Values of rounding size have no significant digits: 1e-12 of the run's largest length.
         let before = one("a", "rms [m]", &[1e-12], "p");
-        assert!(before.compare(&one("a", "rms [m]", &[3e-12], "q"), true).unwrap().changes.is_empty());
+        assert!(before.compare(&one("a", "rms [m]", &[3e-12], "q"), true).changes.is_empty());
     }
 
     #[test]
     fn a_run_under_another_name_is_renamed_and_each_change_can_be_accepted() {
         let mut before = one("a", "rms [m]", &[0.3], "p");
         let now = one("b", "rms [m]", &[0.3], "p");
-        let changes = before.compare(&now, true).unwrap().changes;
+        let changes = before.compare(&now, true).changes;
         assert_eq!(changes, [Change::Renamed { from: "a".into(), to: "b".into() }]);
         before.accept(&changes[0], &now);
         assert_eq!(before, now);
         let other = one("b", "l2 [1]", &[0.1, 0.2], "p");
-        let changes = before.compare(&other, true).unwrap().changes;
+        let changes = before.compare(&other, true).changes;
         assert_eq!(changes.len(), 2);
         for change in &changes {
             before.accept(change, &other);
@@ -176,7 +173,7 @@ mod tests {
         let mut before = one("a", "rms [m]", &[0.3], "p");
         before.runs.extend(one("b", "rms [m]", &[0.4], "p").runs);
         let part = one("a", "rms [m]", &[0.3], "p");
-        assert!(before.compare(&part, false).unwrap().changes.is_empty());
-        assert_eq!(before.compare(&part, true).unwrap().changes, [Change::Removed { run: "b".into() }]);
+        assert!(before.compare(&part, false).changes.is_empty());
+        assert_eq!(before.compare(&part, true).changes, [Change::Removed { run: "b".into() }]);
     }
 }

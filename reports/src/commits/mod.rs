@@ -35,7 +35,7 @@ pub fn add(history: &Path, set: &RunSet, label: &str) -> Result<PathBuf, ReportE
 /// A folder or a file that cannot be read.
 pub fn trends(history: &Path) -> Result<Vec<Trend>, ReportError> {
     let read = files(history)?.into_iter().map(|(number, path)| Ok((number, Summary::load(&path)?)));
-    Ok(trend::trends(read.collect::<Result<_, RecordError>>()?)?)
+    Ok(trend::trends(read.collect::<Result<_, RecordError>>()?))
 }
 
 /// Checks that a folder contains a history.

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use records::{Pair, Paired, RecordError, difference};
+use records::{Pair, Paired, difference};
 use serde::Serialize;
 
 use super::summary::Summary;
@@ -138,12 +138,12 @@ impl Step {
         !self.worse.is_empty() || !self.better.is_empty() || !self.called.is_empty()
     }
 
-    fn between(before: &[Summary], after: &[Summary]) -> Result<Step, RecordError> {
+    fn between(before: &[Summary], after: &[Summary]) -> Step {
         let mut step = Step::default();
-        let (Some(old), Some(new)) = (before.last(), after.last()) else { return Ok(step) };
+        let (Some(old), Some(new)) = (before.last(), after.last()) else { return step };
         step.lost = old.runs.keys().filter(|run| !new.runs.contains_key(*run)).count();
         step.new = new.runs.keys().filter(|run| !old.runs.contains_key(*run)).count();
-        for change in errors(old, new)? {
+        for change in errors(old, new) {
             let (a, b) = (change.before, change.after);
             if (a - b).abs() > TOLERANCE * a.abs().max(b.abs()) && a.max(b) > ROUNDING {
                 if b > a { &mut step.worse } else { &mut step.better }.push(change);
@@ -155,25 +155,25 @@ impl Step {
             list.sort_by(|a, b| size(b).total_cmp(&size(a)));
         }
         let pairs: Vec<_> = before.iter().zip(after).map(|(a, b)| (a.times(), b.times())).collect();
-        if let Some(times) = Comparison::of(&pairs, TOLERANCE, true)?.times {
+        if let Some(times) = Comparison::of(&pairs, TOLERANCE, true).times {
             (step.times, step.called) = (times.whole, times.called);
         }
-        Ok(step)
+        step
     }
 }
 
 /// Errors that two results have in common.
-fn errors(old: &Summary, new: &Summary) -> Result<Vec<ErrorStep>, RecordError> {
-    let found = difference(&old.errors(), &new.errors())?.paired.into_iter();
+fn errors(old: &Summary, new: &Summary) -> Vec<ErrorStep> {
+    let found = difference(&old.errors(), &new.errors()).paired.into_iter();
     let both = |Paired { run, quantity, pairs, .. }: Paired| {
         let Pair { before: Some(before), after: Some(after) } = *pairs.first()? else { return None };
         Some(ErrorStep { run, quantity, before, after })
     };
-    Ok(found.filter_map(both).collect())
+    found.filter_map(both).collect()
 }
 
 /// Trends of results, in the order in which they were added.
-pub(super) fn trends(all: Vec<(u32, Summary)>) -> Result<Vec<Trend>, RecordError> {
+pub(super) fn trends(all: Vec<(u32, Summary)>) -> Vec<Trend> {
     let mut found: Vec<(String, String, Vec<Added>)> = Vec::new();
     for (number, summary) in all {
         let source = summary.source.clone();
@@ -201,7 +201,7 @@ pub(super) fn trends(all: Vec<(u32, Summary)>) -> Result<Vec<Trend>, RecordError
     }
     found
         .into_iter()
-        .map(|(source, machine, commits)| Ok(Trend { source, machine, points: points(&commits)? }))
+        .map(|(source, machine, commits)| Trend { source, machine, points: points(&commits) })
         .collect()
 }
 
@@ -218,7 +218,7 @@ fn machine(summary: &Summary) -> String {
     format!("{}, {}, {} threads", machine.cpu, machine.instructions, machine.threads)
 }
 
-fn points(commits: &[Added]) -> Result<Vec<Point>, RecordError> {
+fn points(commits: &[Added]) -> Vec<Point> {
     let mut points = Vec::new();
     for (at, added) in commits.iter().enumerate() {
         let first = &commits[0];
@@ -238,11 +238,11 @@ fn points(commits: &[Added]) -> Result<Vec<Point>, RecordError> {
             checks_failed: newest.checks_failed,
             seconds,
             seconds_ratio: (old > 0.0).then_some(new / old),
-            error_ratio: error_ratio(oldest, newest)?,
-            step: before.map(|before| Step::between(before, &added.results)).transpose()?,
+            error_ratio: error_ratio(oldest, newest),
+            step: before.map(|before| Step::between(before, &added.results)),
         });
     }
-    Ok(points)
+    points
 }
 
 /// Time of a run, s: the shortest of all results of a commit.
@@ -250,13 +250,13 @@ fn shortest(added: &Added, run: &str) -> Option<f64> {
     added.results.iter().filter_map(|result| result.total(run)).reduce(f64::min)
 }
 
-fn error_ratio(first: &Summary, now: &Summary) -> Result<Option<f64>, RecordError> {
-    let logs: Vec<f64> = errors(first, now)?
+fn error_ratio(first: &Summary, now: &Summary) -> Option<f64> {
+    let logs: Vec<f64> = errors(first, now)
         .iter()
         .filter(|e| e.before > ROUNDING && e.after > ROUNDING)
         .map(|e| (e.after / e.before).ln())
         .collect();
-    Ok((!logs.is_empty()).then(|| (logs.iter().sum::<f64>() / logs.len() as f64).exp()))
+    (!logs.is_empty()).then(|| (logs.iter().sum::<f64>() / logs.len() as f64).exp())
 }
 
 #[cfg(test)]
@@ -297,7 +297,7 @@ mod tests {
             results("c", 12, 0.15, 1e-3),
             results("d", 12, 0.15, 2e-3),
         ];
-        let found = trends((1..).zip(all).collect()).unwrap();
+        let found = trends((1..).zip(all).collect());
         assert_eq!(found.len(), 1);
         let steps: Vec<&Step> = found[0].points.iter().filter_map(|point| point.step.as_ref()).collect();
         assert_eq!(steps.len(), 3);
@@ -316,18 +316,18 @@ mod tests {
         let mut busy = results("a", 12, 0.2, 1e-3);
         busy.machine.quiet = Some(false);
         let all = [results("a", 12, 0.1, 1e-3), busy, elsewhere];
-        let found = trends((1..).zip(all).collect()).unwrap();
+        let found = trends((1..).zip(all).collect());
         assert_eq!(found.len(), 2);
         let point = &found[0].points[0];
         assert_eq!((found[0].points.len(), point.results, point.quiet), (1, 2, Some(false)));
         assert!((point.seconds - 12.0 * 0.1).abs() < 0.05);
-        assert_eq!(trends(Vec::new()).unwrap(), []);
+        assert_eq!(trends(Vec::new()), []);
     }
 
     #[test]
     fn an_error_that_grows_from_nothing_is_worse_and_rounding_is_not() {
         let all = [1e-16, 4e-16, 1e-3].map(|error| results(&error.to_string(), 8, 0.1, error));
-        let found = trends((1..).zip(all).collect()).unwrap();
+        let found = trends((1..).zip(all).collect());
         let steps = found[0].points.iter().filter_map(|point| point.step.as_ref());
         assert_eq!(steps.map(|step| step.worse.len()).collect::<Vec<_>>(), [0, 8]);
     }
@@ -336,15 +336,14 @@ mod tests {
     fn changed_sources_are_never_the_same() {
         let mut changed = results("a", 8, 0.1, 1e-3);
         changed.program.dirty = true;
-        let found = trends((1..).zip([changed.clone(), changed]).collect()).unwrap();
+        let found = trends((1..).zip([changed.clone(), changed]).collect());
         let points: Vec<_> = found[0].points.iter().map(|point| (point.name(), point.results)).collect();
         assert_eq!(points, [("a+".to_string(), 1), ("a+".to_string(), 1)]);
     }
 
     #[test]
     fn runs_that_come_and_go_are_counted() {
-        let found =
-            trends((1..).zip([results("a", 8, 0.1, 1.0), results("b", 10, 0.1, 1.0)]).collect()).unwrap();
+        let found = trends((1..).zip([results("a", 8, 0.1, 1.0), results("b", 10, 0.1, 1.0)]).collect());
         let step = found[0].points[1].step.as_ref().unwrap();
         assert_eq!((step.lost, step.new), (0, 2));
         assert!((found[0].points[1].seconds_ratio.unwrap() - 1.0).abs() < 1e-9);

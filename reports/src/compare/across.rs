@@ -90,11 +90,11 @@ mod tests {
     #[test]
     fn runs_that_differ_in_the_stated_setting_are_pairs() {
         let pair = || (set(&[("a", "standard", 1.0)]), set(&[("a", "nodal-mean", 2.0)]));
-        let plain = Comparison::of(&[pair()], 1e-6, false).unwrap().numbers;
+        let plain = Comparison::of(&[pair()], 1e-6, false).numbers;
         assert_eq!((plain.compared, plain.only_before.len(), plain.only_after.len()), (0, 1, 1));
         let mut stated = pair();
         across(&mut stated, &["dilation".into()]).unwrap();
-        let found = Comparison::of(&[stated], 1e-6, false).unwrap().numbers;
+        let found = Comparison::of(&[stated], 1e-6, false).numbers;
         assert_eq!((found.compared, found.changes.len()), (1, 1), "{found:?}");
         assert!(found.only_before.is_empty() && found.only_after.is_empty());
     }

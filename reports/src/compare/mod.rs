@@ -12,7 +12,7 @@ pub use across::across;
 pub use numbers::{NumberChange, Numbers};
 pub use times::{Ratio, Scope, Times};
 
-use records::{RecordError, RunSet};
+use records::RunSet;
 use serde::Serialize;
 
 /// Differences between results before and after a change.
@@ -28,17 +28,10 @@ pub struct Comparison {
 impl Comparison {
     /// Compares pairs of results, before and after a change. The numbers are those of the first pair, the
     /// times those of all pairs. A number has changed if its relative difference exceeds `tolerance`.
-    ///
-    /// # Errors
-    /// Numbers that cannot be paired.
-    pub fn of(
-        pairs: &[(RunSet, RunSet)],
-        tolerance: f64,
-        with_times: bool,
-    ) -> Result<Comparison, RecordError> {
-        let numbers = pairs.first().map(|(a, b)| Numbers::of(a, b, tolerance)).transpose()?;
+    pub fn of(pairs: &[(RunSet, RunSet)], tolerance: f64, with_times: bool) -> Comparison {
+        let numbers = pairs.first().map(|(a, b)| Numbers::of(a, b, tolerance));
         let times = with_times.then(|| Times::of(pairs));
-        Ok(Comparison { numbers: numbers.unwrap_or_default(), times })
+        Comparison { numbers: numbers.unwrap_or_default(), times }
     }
 
     /// Whether no number has changed, no run is missing, and no change of a time is reported.

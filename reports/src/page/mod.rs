@@ -50,6 +50,8 @@ struct PageData<'a> {
     scenes: &'a [SceneHash],
     /// Path of the stored records for the page; empty if they are elsewhere.
     records: &'a str,
+    /// Whether the results are those of a study, whose runs can be reproduced.
+    study: bool,
     counts: Counts,
     cases: Vec<CaseView>,
     looks: BTreeMap<String, LookView>,
@@ -128,7 +130,7 @@ pub(crate) fn html(
     trends: &[Trend],
     tables: &[Table],
     figures: &[Drawn],
-    records: &str,
+    (records, study): (&str, bool),
 ) -> Result<String, ReportError> {
     let solved = solved(runs);
     let mut methods = Methods::new(&solved);
@@ -147,6 +149,7 @@ pub(crate) fn html(
         machine: &set.provenance.machine,
         scenes: &set.provenance.scenes,
         records,
+        study,
         counts: counts(set, runs_made),
         cases: cases(set),
         looks,

@@ -211,14 +211,14 @@ impl Patch {
     fn at(&self, r: &Vector3) -> Matrix3 {
         let linear = self.linear_at(r);
         let Some(quadratic) = &self.quadratic else { return linear };
-        let more = tensor(&(**quadratic * basis(r, self.size)));
+        let more = tensor(&value(quadratic, basis(r, self.size).as_slice()));
         linear + more - Matrix3::identity() * (more.trace() / 3.0)
     }
 
     /// Stress of the linear fit at `r` (m) from the node.
     fn linear_at(&self, r: &Vector3) -> Matrix3 {
         let r = r / self.size;
-        tensor(&(self.linear * SVector::from([1.0, r.x, r.y, r.z])))
+        tensor(&value(&self.linear, &[1.0, r.x, r.y, r.z]))
     }
 }
 
@@ -228,6 +228,18 @@ fn basis(r: &Vector3, size: f64) -> Basis {
     let r = r / size;
     let [x, y, z] = [r.x, r.y, r.z];
     Basis::from([1.0, x, y, z, x * x, y * y, z * z, y * z, z * x, x * y])
+}
+
+/// Value of a fit by its terms. This and the sums of [`nearest_fit`] are loops because the products of nalgebra
+/// have strides known only at run time, and took two thirds of the time.
+fn value<const M: usize>(fit: &Fit<M>, terms: &[f64]) -> SVector<f64, 6> {
+    let mut value = SVector::zeros();
+    for (m, term) in terms.iter().enumerate() {
+        for k in 0..6 {
+            value[k] += fit[(k, m)] * term;
+        }
+    }
+    value
 }
 
 /// Weighted least-squares polynomial of the first `M` terms for the residuals `left`, from which the
@@ -240,8 +252,11 @@ fn nearest_fit<const M: usize>(
 ) -> Fit<M> {
     let mut matrix = SMatrix::<f64, M, M>::zeros();
     for (p, w) in bases {
-        let p = p.fixed_rows::<M>(0);
-        matrix += p * p.transpose() * *w;
+        for a in 0..M {
+            for b in 0..M {
+                matrix[(b, a)] += p[b] * p[a] * w;
+            }
+        }
     }
     for k in 1..M {
         matrix[(k, k)] += ridge * matrix[(0, 0)];
@@ -252,11 +267,17 @@ fn nearest_fit<const M: usize>(
     for _ in 0..passes {
         let mut right = SMatrix::<f64, M, 6>::zeros();
         for ((p, w), s) in bases.iter().zip(left.iter()) {
-            right += p.fixed_rows::<M>(0) * s * *w;
+            for k in 0..6 {
+                for a in 0..M {
+                    right[(a, k)] += p[a] * s[k] * w;
+                }
+            }
         }
         let more = factor.solve(&right);
         for ((p, _), s) in bases.iter().zip(left.iter_mut()) {
-            *s -= p.fixed_rows::<M>(0).transpose() * more;
+            for k in 0..6 {
+                s[k] -= (0..M).map(|a| p[a] * more[(a, k)]).sum::<f64>();
+            }
         }
         fit += more.transpose();
     }
