@@ -58,7 +58,7 @@ fn times(chosen: &[RunSet], slow: impl Fn(&str) -> bool) -> Times {
     };
     let pairs: Vec<(RunSet, RunSet)> =
         chosen.chunks(2).map(|two| (longer_not(&two[0]), longer(&two[1]))).collect();
-    Comparison::of(&pairs, 1e-6, true).expect("pairs").times.expect("asked for")
+    Comparison::of(&pairs, 1e-6, true).times.expect("asked for")
 }
 
 fn longer_not(set: &RunSet) -> RunSet {

@@ -31,7 +31,7 @@ struct Cli {
 enum Task {
     /// Build, run the quick tier of the verification study, write tables, figures and the report to results/
     Verify {
-        /// Run the whole study instead of the quick tier: about 20 minutes
+        /// Run the whole study instead of the quick tier: up to an hour
         #[arg(long)]
         full: bool,
         /// Further arguments of `tissuebench verify` (STUDY, --filter TEXT, --resume, ...)
@@ -258,9 +258,9 @@ fn verify(full: bool, args: &[String]) -> Result<u8> {
     let quick = "--quick".to_string();
     let whole = full || args.contains(&quick) || args.iter().any(|a| a.ends_with(".toml"));
     if full {
-        eprintln!("xtask: all runs of the study, about 20 minutes after the build");
+        eprintln!("xtask: all runs of the study, up to an hour after the build");
     } else if !whole || args.contains(&quick) {
-        eprintln!("xtask: the quick tier of the study, 1 to 2 minutes after the build");
+        eprintln!("xtask: the quick tier of the study, about 5 minutes after the build");
     }
     let args = if whole { args.to_vec() } else { [&[quick], args].concat() };
     tissuebench("verify", &args)

@@ -59,10 +59,18 @@ pub(crate) fn reduced(
             // The stress of the reduced model belongs to the nearest displacement that it can have.
             let mut near = vec![Vector3::zeros(); u.len()];
             all.basis.add_to(&all.basis.project(u), 1.0, &mut near);
+            let works_at = |active: &[f64]| {
+                let whole = solid(training, &run.prepared.volume);
+                let solid = Solid { active: Active::new(active), ..whole };
+                all.basis.works(&solid, &near)
+            };
             let active = run.prepared.active(training, time);
-            let whole = solid(training, &run.prepared.volume);
-            let solid = Solid { active: Active::new(&active), ..whole };
-            works.push(all.basis.works(&solid, &near)?);
+            // Active and passive stress of a body that nothing loads balance each other. Their sum says nothing of the
+            // cells that each of them needs.
+            works.push(works_at(&vec![0.0; active.len()])?);
+            if !active.is_empty() {
+                works.push(works_at(&active)?);
+            }
         }
     }
     let (volume, [taken, count], error) = chosen(volume, &works, part)?;

@@ -87,10 +87,7 @@ pub(crate) fn note(args: &VerifyArgs, study: &Path) -> Result<(), Failure> {
 pub(super) fn noted(share: &Path) -> Result<Note, Failure> {
     let wrong = |bad: String| {
         let path = share.join(NOTE);
-        Failure::Input(format!(
-            "{}: {bad}; give folders written by `tissuebench verify --shard K/N`",
-            path.display()
-        ))
+        Failure::Input(format!("{}: {bad}; give folders written by `tissuebench verify`", path.display()))
     };
     let text =
         disk::read_text(&share.join(NOTE), disk::Kind::MESSAGE).map_err(|bad| wrong(bad.to_string()))?;
