@@ -61,21 +61,6 @@ fn dotted(key: String, value: Value) -> Vec<(String, String)> {
     }
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_key_without_quotes_changes_that_key_alone() {
-        let keys = |text: &str| toml::from_str::<TrainingKeys>(text).unwrap();
-        let set = |text: &str| keys(text).0.into_iter().flat_map(|(k, v)| dotted(k, v)).collect::<Vec<_>>();
-        let expected = vec![("material.young".to_string(), "\"5 kPa\"".to_string())];
-        assert_eq!(set("material.young = \"5 kPa\""), expected);
-        assert_eq!(set("\"material.young\" = \"5 kPa\""), expected);
-        assert_eq!(set("\"tool[0].drive\" = { closure = \"1 mm\" }")[0].0, "tool[0].drive");
-    }
-}
-
 /// Reports reduced models without training, with supports that move, or with estimates of errors.
 pub(crate) fn demands(
     training: &[Training],
@@ -104,5 +89,20 @@ pub(crate) fn demands(
     if known {
         let problem = "is not available with an error estimate: other deformations are excluded on purpose";
         report.add(first, Problem::new(problem).help("leave output.estimate, error_of and bounds out"));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_key_without_quotes_changes_that_key_alone() {
+        let keys = |text: &str| toml::from_str::<TrainingKeys>(text).unwrap();
+        let set = |text: &str| keys(text).0.into_iter().flat_map(|(k, v)| dotted(k, v)).collect::<Vec<_>>();
+        let expected = vec![("material.young".to_string(), "\"5 kPa\"".to_string())];
+        assert_eq!(set("material.young = \"5 kPa\""), expected);
+        assert_eq!(set("\"material.young\" = \"5 kPa\""), expected);
+        assert_eq!(set("\"tool[0].drive\" = { closure = \"1 mm\" }")[0].0, "tool[0].drive");
     }
 }
