@@ -8,7 +8,7 @@ use anyhow::{Context, Result};
 /// Runs the release binary, and builds it first if needed.
 pub(crate) fn tissuebench(command: &str, args: &[String]) -> Result<u8> {
     eprintln!(
-        "xtask: building tissuebench (12 minutes on two cores the first time), then: tissuebench {command}"
+        "xtask: building tissuebench (13 minutes on two cores the first time), then: tissuebench {command}"
     );
     let build = ["build", "--release", "--locked", "--package", "tissuebench-harness"];
     let code = cargo(&build, &[])?;

@@ -260,7 +260,7 @@ fn verify(full: bool, args: &[String]) -> Result<u8> {
     if full {
         eprintln!("xtask: all runs of the study, up to an hour after the build");
     } else if !whole || args.contains(&quick) {
-        eprintln!("xtask: the quick tier of the study, about 5 minutes after the build");
+        eprintln!("xtask: the quick tier of the study, about 7 minutes after the build");
     }
     let args = if whole { args.to_vec() } else { [&[quick], args].concat() };
     tissuebench("verify", &args)
