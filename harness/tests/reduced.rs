@@ -48,7 +48,8 @@ fn number(of: &Value, metric: &str) -> f64 {
     of["metrics"][metric]["value"].as_f64().unwrap_or_else(|| panic!("no {metric} in {of}"))
 }
 
-/// A block held at one end shortens along its fibres, most at half of the path. Nothing pulls at its other end.
+/// A block held at one end shortens along its fibres, most at half of the path. Nothing pulls at its other
+/// end.
 const MUSCLE: &str = r#"title = "A contracting block"
 body = { shape = "box", size = ["30 mm", "10 mm", "10 mm"] }
 material = { law = "neo-hookean", young = "20 kPa", poisson = 0.3, fibers = [1, 0, 0], active = "4 kPa", active_curve = "twitch" }
@@ -70,8 +71,8 @@ material.active = "5 kPa"
 fn a_sampled_muscle_has_the_active_stress_of_its_time() {
     let [run] = &runs(MUSCLE, &[])[..] else { panic!("one run") };
     assert!(number(run, "sampled-cells") < 0.5, "all cells are chosen");
-    // The active force is 0.2 N at the end. With that of half of the path in the cells that are not chosen, the support
-    // had a fifth of it.
+    // The active force is 0.2 N at the end. With the full active stress in the cells that are not chosen, the
+    // support had a fifth of it.
     let force = number(run, "reaction-x");
     assert!(force.abs() < 2e-3, "{force} N");
     assert!(number(run, "sampling-error") < 0.02, "{run}");

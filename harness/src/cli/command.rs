@@ -138,8 +138,8 @@ pub enum Command {
     Status(StatusArgs),
     /// Make stored runs of a study again, and compare their numbers with the stored ones
     ///
-    /// Each run is one that `verify` has stored in the folder. Exit code 0: all numbers are the stored ones, bit
-    /// by bit on the same kind of processor; 1: some differ.
+    /// Each run is one that `verify` has stored in the folder. Exit code 0: all numbers are the stored ones,
+    /// bit by bit on the same kind of processor; 1: some differ.
     Reproduce(ReproduceArgs),
     /// Render tables, figures and the report of stored results, and the evidence of credibility by the
     /// factors of ASME V&V 40

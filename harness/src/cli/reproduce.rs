@@ -39,7 +39,7 @@ pub(super) fn reproduce(args: &ReproduceArgs) -> u8 {
 }
 
 fn print(name: &str, again: &Repetition) {
-    let Repetition { changes, compared, bitwise, failures, seconds: [then, now] } = again;
+    let Repetition { changes, compared, bitwise, failures, seconds: [then, now], .. } = again;
     let how = if *bitwise { "bit by bit" } else { "within 1e-6, because the kind of processor differs" };
     let verdict = match again.is_same() {
         true => colour::out(GOOD, "same    "),

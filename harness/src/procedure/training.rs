@@ -65,8 +65,8 @@ pub(crate) fn reduced(
                 all.basis.works(&solid, &near)
             };
             let active = run.prepared.active(training, time);
-            // Active and passive stress of a body that nothing loads balance each other. Their sum says nothing of the
-            // cells that each of them needs.
+            // Active and passive stress of a body that nothing loads balance each other. Their sum says
+            // nothing of the cells that each of them needs.
             works.push(works_at(&vec![0.0; active.len()])?);
             if !active.is_empty() {
                 works.push(works_at(&active)?);

@@ -51,6 +51,8 @@ pub(crate) struct Repetition {
     pub(crate) compared: usize,
     /// Whether equal means bit by bit, because the processor is of the same kind.
     pub(crate) bitwise: bool,
+    /// Whether the stored run failed, so that there may be no number to compare.
+    failed: bool,
     /// Reasons for which the run failed when it was stored, and now, if these differ.
     pub(crate) failures: Option<[String; 2]>,
     /// Times of the stored run and of its repetition, s.
@@ -59,7 +61,7 @@ pub(crate) struct Repetition {
 
 impl Repetition {
     pub(crate) fn is_same(&self) -> bool {
-        self.changes.is_empty() && self.failures.is_none()
+        self.changes.is_empty() && self.failures.is_none() && (self.compared > 0 || self.failed)
     }
 }
 
@@ -127,20 +129,23 @@ impl Chosen {
             changes: found.changes,
             compared: found.compared,
             bitwise: found.bitwise,
+            failed: before.failure.is_some(),
             failures: (failures[0] != failures[1]).then_some(failures),
             seconds: [before.seconds, now.seconds],
         }
     }
 }
 
-/// Records of a run. The results of a sample of uncertain inputs, which have no records, become some.
+/// Records of a run. The results of a sample of uncertain inputs and the constants of a fit, which have no
+/// records, become some.
 fn numbers_of(result: &TaskResult) -> Vec<Record> {
-    let sample = result.sample.iter().flat_map(|sample| &sample.results);
-    let record = |(index, value): (usize, &Option<f64>)| {
+    let sample = result.sample.iter().flat_map(|sample| &sample.results).copied();
+    let fitted = result.fit.iter().flat_map(|fit| fit.constants.iter().map(|of| Some(of.value)));
+    let record = |(index, value): (usize, Option<f64>)| {
         let quantity = format!("result-{index}");
-        Some(Record { quantity, value: (*value)?, ..Record::default() })
+        Some(Record { quantity, value: value?, ..Record::default() })
     };
-    result.records.iter().cloned().chain((1..).zip(sample).filter_map(record)).collect()
+    result.records.iter().cloned().chain((1..).zip(sample.chain(fitted)).filter_map(record)).collect()
 }
 
 impl StudyPlan {
